@@ -1,0 +1,166 @@
+//! The camera: a pinhole, a thin lens around it, and a shutter.
+
+use crate::ray::Ray;
+use glam::{Vec2, Vec3};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// What a lens adds to a pinhole (stage 6).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lens {
+    /// Diameter of the opening; 0 is a pinhole.
+    pub aperture: f32,
+    /// Distance, along the view direction, at which everything is sharp; above 0.
+    pub focal_distance: f32,
+}
+
+/// When the film is open to light (stage 6).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Shutter {
+    /// Opening time in `0..=1`.
+    pub open: f32,
+    /// Closing time in `open..=1`.
+    pub close: f32,
+}
+
+/// A camera that looks along `towards`; `right` and `up` span the film.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    /// The eye.
+    pub position: Vec3,
+    /// Unit view direction.
+    pub towards: Vec3,
+    /// Unit direction of increasing x on the film.
+    pub right: Vec3,
+    /// Unit direction of decreasing y on the film.
+    pub up: Vec3,
+    /// Half the height of the film at distance 1: the tangent of half the vertical field of view.
+    pub half_height: f32,
+    /// Width over height.
+    pub aspect: f32,
+    /// The lens, if there is one.
+    pub lens: Option<Lens>,
+    /// The shutter, if it matters.
+    pub shutter: Option<Shutter>,
+}
+
+/// Why a camera cannot be built.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum CameraError {
+    /// Position and target are the same, or the direction is zero.
+    #[error("the camera looks nowhere: its direction has no length")]
+    NoDirection,
+    /// Up is zero or parallel to the view direction.
+    #[error("`up` runs along the view direction, so the picture could be turned any way")]
+    UpParallel,
+    /// Field of view out of range.
+    #[error("the vertical field of view must lie between 0 and 180 degrees, and is {0}")]
+    FieldOfView(f32),
+    /// Aspect ratio not above zero.
+    #[error("the aspect ratio must be above zero, and is {0}")]
+    Aspect(f32),
+    /// Some number is NaN or infinite.
+    #[error("a coordinate of the camera is not a finite number")]
+    NotFinite,
+}
+
+impl Camera {
+    /// A pinhole at `position` that looks along `direction`, with `up` upwards in the picture.
+    ///
+    /// `vertical_fov` in degrees, the whole angle, above 0 and below 180; `aspect` is width over height.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use raykata::camera::Camera;
+    /// let camera = Camera::new(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 90.0, 2.0).unwrap();
+    /// assert_eq!(camera.right, Vec3::X);
+    /// assert_eq!(camera.ray(0.5, 0.5).dir, Vec3::NEG_Z);
+    /// ```
+    pub fn new(
+        position: Vec3,
+        direction: Vec3,
+        up: Vec3,
+        vertical_fov: f32,
+        aspect: f32,
+    ) -> Result<Camera, CameraError> {
+        if !(position.is_finite() && direction.is_finite() && up.is_finite()) {
+            return Err(CameraError::NotFinite);
+        }
+        if !(0.0 < vertical_fov && vertical_fov < 180.0) {
+            return Err(CameraError::FieldOfView(vertical_fov));
+        }
+        if !(0.0 < aspect && aspect.is_finite()) {
+            return Err(CameraError::Aspect(aspect));
+        }
+        // Double precision here costs nothing and keeps the axes at right angles for any scale of the inputs.
+        let unit = |v: glam::DVec3| v.try_normalize();
+        let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
+        let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;
+        // The cross product of unit vectors is the sine between them: below 1e-6 rounding decides the picture.
+        let right = Some(towards.cross(up)).filter(|r| r.length() > 1e-6).ok_or(CameraError::UpParallel)?;
+        let right = right.normalize();
+        Ok(Camera {
+            position,
+            towards: towards.as_vec3(),
+            right: right.as_vec3(),
+            up: right.cross(towards).as_vec3(),
+            half_height: ((vertical_fov as f64).to_radians() / 2.0).tan() as f32,
+            aspect,
+            lens: None,
+            shutter: None,
+        })
+    }
+
+    /// The pinhole ray through film position `(x, y)`, both in `0..=1`, `(0, 0)` at the upper left.
+    ///
+    /// The direction comes from the axes alone and never as the difference of two far points, so a camera a
+    /// million units from the origin sees as many distinct directions as one at the origin (hard case K1).
+    pub fn ray(&self, x: f32, y: f32) -> Ray {
+        let film = Vec2::new((2.0 * x - 1.0) * self.aspect, 1.0 - 2.0 * y) * self.half_height;
+        Ray::new(self.position, (self.towards + film.x * self.right + film.y * self.up).normalize())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_far_camera_sees_640_directions_in_640_pixels() {
+        // K1: `normalize(P - P0)` leaves 19 distinct directions at this distance.
+        let camera = Camera::new(Vec3::splat(1e6), Vec3::NEG_Z, Vec3::Y, 40.0, 16.0 / 9.0).expect("a camera");
+        let mut xs: Vec<u32> =
+            (0..640).map(|i| camera.ray((i as f32 + 0.5) / 640.0, 0.5).dir.x.to_bits()).collect();
+        xs.dedup();
+        assert_eq!(xs.len(), 640);
+    }
+
+    #[test]
+    fn the_top_of_the_film_lies_half_the_field_of_view_above_the_axis() {
+        let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::Y, 60.0, 2.0).expect("a camera");
+        let angle = camera.ray(0.5, 0.0).dir.angle_between(Vec3::X).to_degrees();
+        assert!((angle - 30.0).abs() < 1e-3, "{angle}"); // a few roundings of f32 around 30
+        let side = camera.ray(1.0, 0.5).dir;
+        assert!((side.z / side.x - 2.0 * 30f32.to_radians().tan()).abs() < 1e-6); // aspect 2, not 1 (K3)
+    }
+
+    #[test]
+    fn a_slanted_up_does_not_narrow_the_picture() {
+        // K2: `right = towards × up` is only of unit length when up is at a right angle.
+        let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::new(0.8, 0.6, 0.0), 60.0, 1.0).expect("a camera");
+        assert!((camera.right.length() - 1.0).abs() < 1e-6);
+        assert!((camera.up - Vec3::Y).length() < 1e-6);
+    }
+
+    #[test]
+    fn senseless_cameras_are_refused() {
+        let new =
+            |direction, up, fov, aspect| Camera::new(Vec3::ZERO, direction, up, fov, aspect).unwrap_err();
+        assert_eq!(new(Vec3::ZERO, Vec3::Y, 40.0, 1.0), CameraError::NoDirection);
+        assert_eq!(new(Vec3::Y, Vec3::NEG_Y, 40.0, 1.0), CameraError::UpParallel);
+        assert_eq!(new(Vec3::X, Vec3::ZERO, 40.0, 1.0), CameraError::UpParallel);
+        assert_eq!(new(Vec3::X, Vec3::Y, 180.0, 1.0), CameraError::FieldOfView(180.0));
+        assert_eq!(new(Vec3::X, Vec3::Y, 40.0, 0.0), CameraError::Aspect(0.0));
+        assert_eq!(new(Vec3::NAN, Vec3::Y, 40.0, 1.0), CameraError::NotFinite);
+    }
+}

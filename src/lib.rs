@@ -1,0 +1,9 @@
+//! The scaffold of Raykata: everything around the exercises and nothing that answers one.
+
+pub mod aabb;
+pub mod camera;
+pub mod material;
+pub mod mesh;
+pub mod ray;
+pub mod scene;
+pub mod shape;

@@ -1,0 +1,184 @@
+//! A scene that has been read and found sound: everything that a frame needs, nothing that can fail.
+
+pub mod error;
+
+use crate::camera::Camera;
+use crate::material::{Light, Material, Texture};
+use crate::mesh::Mesh;
+use crate::shape::Shape;
+use glam::{Affine3A, Vec3};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// How linear light becomes the numbers of an image file.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Encoding {
+    /// The curve that screens expect.
+    #[default]
+    Srgb,
+    /// Power 1/2, the gamma of the lecture notes.
+    Gamma2,
+}
+
+/// Size and encoding of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FilmSettings {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// For 8-bit files.
+    pub encoding: Encoding,
+}
+
+/// Which structure finds the closest hit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Accelerator {
+    /// Every primitive for every ray.
+    BruteForce,
+    /// A bounding volume hierarchy.
+    #[default]
+    Bvh,
+    /// A uniform grid (stage 9).
+    Grid,
+    /// An octree (stage 9).
+    Octree,
+    /// A kd-tree (stage 9).
+    KdTree,
+    /// A binary space partition (stage 9).
+    Bsp,
+}
+
+/// How a hierarchy divides its primitives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Split {
+    /// Half of the primitives on either side.
+    ObjectMedian,
+    /// Half of the box on either side.
+    SpatialMedian,
+    /// Where the expected cost is least.
+    #[default]
+    SurfaceArea,
+}
+
+impl Split {
+    /// All three, in the order of the lecture.
+    pub const ALL: [Split; 3] = [Split::ObjectMedian, Split::SpatialMedian, Split::SurfaceArea];
+}
+
+/// Which of the ray/triangle tests is used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TriangleMethod {
+    /// Cramer's rule.
+    Cramer,
+    /// Plane first, then the Gram matrix.
+    Gram,
+    /// Watertight edge tests.
+    #[default]
+    Watertight,
+}
+
+/// Every knob that trades accuracy for time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// Samples a pixel, at least 1.
+    pub samples_per_pixel: u32,
+    /// Samples of an area light a hit, at least 1 (stage 6).
+    pub light_samples: u32,
+    /// Rays of a rough mirror a hit, at least 1 (stage 6).
+    pub gloss_samples: u32,
+    /// How often a ray may be mirrored or refracted (stage 5).
+    pub max_depth: u32,
+    /// Rays of less weight are not traced (stage 5).
+    pub min_contribution: f32,
+    /// What finds the closest hit.
+    pub accelerator: Accelerator,
+    /// How a hierarchy is split.
+    pub split: Split,
+    /// The most primitives that a leaf holds, at least 1.
+    pub leaf_size: u32,
+    /// The ray/triangle test.
+    pub triangle_method: TriangleMethod,
+    /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
+    pub grid_resolution: u32,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Quality {
+            samples_per_pixel: 1,
+            light_samples: 1,
+            gloss_samples: 1,
+            max_depth: 5,
+            min_contribution: 0.001,
+            accelerator: Accelerator::default(),
+            split: Split::default(),
+            leaf_size: 4,
+            triangle_method: TriangleMethod::default(),
+            grid_resolution: 0,
+        }
+    }
+}
+
+/// A mesh of the scene, with what the scene says of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneMesh {
+    /// The tables.
+    pub mesh: Arc<Mesh>,
+    /// Whether normals are interpolated over a triangle.
+    pub smooth: bool,
+    /// For each of the mesh's own material names, the index of the scene's material, if the scene wants them.
+    pub materials: Vec<usize>,
+}
+
+/// A node of the scene graph. Nodes may have several parents; they never form a cycle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    /// For messages.
+    pub name: String,
+    /// From the space of this node to that of its parent, at shutter time 0.
+    pub transform: Affine3A,
+    /// The same at shutter time 1, if the node moves (stage 6).
+    pub transform_end: Option<Affine3A>,
+    /// What the node shows, if anything.
+    pub shape: Option<Shape>,
+    /// Index of the node's material; without one, children and shape take the parent's.
+    pub material: Option<usize>,
+    /// Indices of nodes below.
+    pub children: Vec<usize>,
+}
+
+/// A scene, ready to be rendered.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// The picture to make.
+    pub film: FilmSettings,
+    /// Where it is taken from.
+    pub camera: Camera,
+    /// Colour of rays that hit nothing.
+    pub background: Vec3,
+    /// `A`, light that comes from everywhere.
+    pub ambient: Vec3,
+    /// Light bounced between surfaces is wanted (stage 11).
+    pub indirect_light: bool,
+    /// All lamps.
+    pub lights: Vec<Light>,
+    /// All materials; index 0 is the default for shapes that name none.
+    pub materials: Vec<Material>,
+    /// Names of the materials, for messages.
+    pub material_names: Vec<String>,
+    /// All images.
+    pub textures: Vec<Texture>,
+    /// All meshes.
+    pub meshes: Vec<SceneMesh>,
+    /// All nodes.
+    pub nodes: Vec<Node>,
+    /// Indices of the nodes that have no parent.
+    pub roots: Vec<usize>,
+    /// Default knobs for this scene.
+    pub quality: Quality,
+}

@@ -1,0 +1,148 @@
+//! Shapes as data: what they are and where they lie. How a ray meets them is for students to write.
+
+use crate::aabb::Aabb;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sphere {
+    /// Its centre.
+    pub center: Vec3,
+    /// Its radius, above zero.
+    pub radius: f32,
+}
+
+/// An endless plane through `point`, at right angles to `normal`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plane {
+    /// Any point of the plane.
+    pub point: Vec3,
+    /// Its normal, of any length but zero.
+    pub normal: Vec3,
+}
+
+/// A triangle with corners `a`, `b`, `c`; its normal `(b - a) × (c - a)` points to the side from which the
+/// corners run anticlockwise.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Triangle {
+    /// First corner.
+    pub a: Vec3,
+    /// Second corner.
+    pub b: Vec3,
+    /// Third corner.
+    pub c: Vec3,
+}
+
+/// A solid box with faces along the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cuboid {
+    /// The corner with the smallest coordinates.
+    pub min: Vec3,
+    /// The corner with the largest coordinates.
+    pub max: Vec3,
+}
+
+/// A cylinder from `base` to `top`, closed by a disk at either end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cylinder {
+    /// Centre of one end.
+    pub base: Vec3,
+    /// Centre of the other end.
+    pub top: Vec3,
+    /// Its radius, above zero.
+    pub radius: f32,
+}
+
+/// A cone from the disk around `base` to the point `apex`, closed by that disk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cone {
+    /// Centre of the disk.
+    pub base: Vec3,
+    /// The tip.
+    pub apex: Vec3,
+    /// Radius of the disk, above zero.
+    pub radius: f32,
+}
+
+/// A flat disk.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Disk {
+    /// Its centre.
+    pub center: Vec3,
+    /// Its normal, of any length but zero.
+    pub normal: Vec3,
+    /// Its radius, above zero.
+    pub radius: f32,
+}
+
+/// A flat convex polygon; its corners run around it in order.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Polygon {
+    /// Three corners or more.
+    pub corners: Vec<Vec3>,
+}
+
+/// Any shape of a scene, in the space of the node that holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// A sphere.
+    Sphere(Sphere),
+    /// An endless plane.
+    Plane(Plane),
+    /// One triangle.
+    Triangle(Triangle),
+    /// A box along the axes.
+    Cuboid(Cuboid),
+    /// A closed cylinder.
+    Cylinder(Cylinder),
+    /// A closed cone.
+    Cone(Cone),
+    /// A flat disk.
+    Disk(Disk),
+    /// A flat convex polygon.
+    Polygon(Polygon),
+    /// An instance of the mesh with this index in [`crate::scene::Scene::meshes`].
+    Mesh(usize),
+}
+
+impl Shape {
+    /// A box around the shape, given the meshes that instances name. `None` for a plane, which has no end.
+    ///
+    /// Rounded to nearest: a box that must not lose a point of a curved shape needs a little room on top.
+    pub fn bounds(&self, meshes: &[crate::scene::SceneMesh]) -> Option<Aabb> {
+        Some(match self {
+            Shape::Plane(_) => return None,
+            Shape::Sphere(s) => around([s.center], [Vec3::splat(s.radius)]),
+            Shape::Triangle(t) => bounds_of_points(&[t.a, t.b, t.c]),
+            Shape::Cuboid(c) => Aabb::new(c.min, c.max),
+            Shape::Cylinder(c) => {
+                let reach = disk_reach(c.top - c.base, c.radius);
+                around([c.base, c.top], [reach, reach])
+            }
+            Shape::Cone(c) => around([c.base, c.apex], [disk_reach(c.apex - c.base, c.radius), Vec3::ZERO]),
+            Shape::Disk(d) => around([d.center], [disk_reach(d.normal, d.radius)]),
+            Shape::Polygon(p) => bounds_of_points(&p.corners),
+            Shape::Mesh(index) => meshes[*index].mesh.bounds(),
+        })
+    }
+}
+
+/// How far a disk with this normal reaches along each axis: `r sin` of the angle between normal and axis.
+fn disk_reach(normal: Vec3, radius: f32) -> Vec3 {
+    let n = normal.normalize_or_zero();
+    radius * (Vec3::ONE - n * n).max(Vec3::ZERO).map(f32::sqrt)
+}
+
+/// The box around boxes given by centre and reach.
+fn around<const N: usize>(centers: [Vec3; N], reaches: [Vec3; N]) -> Aabb {
+    let corners: Vec<Vec3> = centers.iter().zip(reaches).flat_map(|(&c, r)| [c - r, c + r]).collect();
+    bounds_of_points(&corners)
+}
+
+/// The smallest box around `points`; empty when there are none.
+pub(crate) fn bounds_of_points(points: &[Vec3]) -> Aabb {
+    let min = points.iter().fold(Vec3::INFINITY, |low, p| low.min(*p));
+    let max = points.iter().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
+    Aabb::new(min, max)
+}
