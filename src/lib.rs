@@ -1,7 +1,11 @@
 //! The scaffold of Raykata: everything around the exercises and nothing that answers one.
 
 pub mod aabb;
+pub mod bvh;
 pub mod camera;
+pub mod count;
+pub mod film;
+pub mod frame;
 pub mod material;
 pub mod mesh;
 pub mod ray;

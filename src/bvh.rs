@@ -1,0 +1,139 @@
+//! The bounding volume hierarchy as data. Splitting, building and traversing it are exercises of stage 3.
+
+use crate::aabb::Aabb;
+use crate::ray::Ray;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// What a builder needs to know of a primitive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PrimitiveRef {
+    /// Which primitive this is.
+    pub id: u32,
+    /// A box around it.
+    pub bounds: Aabb,
+    /// The middle of that box.
+    pub centroid: Vec3,
+}
+
+/// What a node holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Contents {
+    /// Two nodes below.
+    Inner {
+        /// Number of the left one.
+        left: u32,
+        /// Number of the right one.
+        right: u32,
+    },
+    /// The primitives `order[first..first + count]`.
+    Leaf {
+        /// Where they begin in [`Bvh::order`].
+        first: u32,
+        /// How many they are.
+        count: u32,
+    },
+}
+
+/// A node: a box, and what lies in it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    /// Holds everything below.
+    pub bounds: Aabb,
+    /// What lies below.
+    pub contents: Contents,
+}
+
+/// A hierarchy over primitives `0..n`. Node 0 is the root; a hierarchy over nothing has no nodes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bvh {
+    /// All nodes, a parent before its children.
+    pub nodes: Vec<Node>,
+    /// Every primitive once, those of a leaf side by side.
+    pub order: Vec<u32>,
+    most_nodes: usize,
+}
+
+impl Bvh {
+    /// An empty hierarchy that will hold `n_primitives`.
+    pub fn for_primitives(n_primitives: usize) -> Self {
+        // A binary tree whose leaves hold something has at most one inner node fewer than leaves.
+        let most_nodes = (2 * n_primitives).saturating_sub(1);
+        Bvh { nodes: Vec::new(), order: Vec::with_capacity(n_primitives), most_nodes }
+    }
+
+    /// Adds a node around `bounds` and gives its number. It is a leaf with nothing in it until
+    /// [`Bvh::set_leaf`] or [`Bvh::set_children`] says otherwise.
+    ///
+    /// # Panics
+    ///
+    /// When there are more nodes than any tree over these primitives can have: then some split has put all
+    /// primitives on one side, and the recursion would never end.
+    pub fn add_node(&mut self, bounds: Aabb) -> u32 {
+        assert!(
+            self.nodes.len() < self.most_nodes,
+            "node {} of a tree that can have {} at most: a split left one side empty, so the recursion never ends",
+            self.nodes.len() + 1,
+            self.most_nodes
+        );
+        self.nodes.push(Node { bounds, contents: Contents::Leaf { first: 0, count: 0 } });
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Makes `node` a leaf that holds `primitives`.
+    pub fn set_leaf(&mut self, node: u32, primitives: &[PrimitiveRef]) {
+        let first = self.order.len() as u32;
+        self.order.extend(primitives.iter().map(|primitive| primitive.id));
+        self.nodes[node as usize].contents = Contents::Leaf { first, count: primitives.len() as u32 };
+    }
+
+    /// Makes `node` the parent of `left` and `right`.
+    pub fn set_children(&mut self, node: u32, left: u32, right: u32) {
+        self.nodes[node as usize].contents = Contents::Inner { left, right };
+    }
+
+    /// The number of the root, if there is anything.
+    pub fn root(&self) -> Option<u32> {
+        (!self.nodes.is_empty()).then_some(0)
+    }
+
+    /// The primitives of a leaf.
+    pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
+        &self.order[first as usize..(first + count) as usize]
+    }
+
+    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    pub fn depth(&self) -> usize {
+        let mut deepest = 0;
+        let mut waiting: Vec<(u32, usize)> = self.root().map(|root| (root, 1)).into_iter().collect();
+        while let Some((node, depth)) = waiting.pop() {
+            deepest = deepest.max(depth);
+            if let Contents::Inner { left, right } = self.nodes[node as usize].contents {
+                waiting.extend([(left, depth + 1), (right, depth + 1)]);
+            }
+        }
+        deepest
+    }
+}
+
+/// Everything that a search for hits may ask. Each question is counted, so what a search costs is known exactly.
+pub trait Probe {
+    /// What `node` holds. Counts a node visit.
+    fn open(&mut self, node: u32) -> Contents;
+
+    /// The `t` at which `ray` enters the box of `node`, not below `ray.t_min`; `None` if the ray misses the box
+    /// within `t_min..t_max`. Counts a box test.
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32>;
+
+    /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
+}
+
+/// The primitive that a ray meets, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PrimitiveHit {
+    /// Distance along the ray, in lengths of its direction.
+    pub t: f32,
+    /// Which primitive.
+    pub primitive: u32,
+}

@@ -1,0 +1,139 @@
+//! The film: linear light, one colour a pixel, and the files it can become.
+
+use glam::Vec3;
+use image::codecs::hdr::HdrEncoder;
+use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+/// A picture in linear light, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Film {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height` colours.
+    pub pixels: Vec<Vec3>,
+}
+
+/// A picture in bytes, three a pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bytes {
+    /// Red, green, blue, row by row from the top.
+    pub rgb: Vec<u8>,
+    /// Pixels that were NaN and are magenta now.
+    pub not_a_number: usize,
+}
+
+impl Film {
+    /// A black film.
+    pub fn new(width: u32, height: u32) -> Self {
+        Film { width, height, pixels: vec![Vec3::ZERO; width as usize * height as usize] }
+    }
+
+    /// The colour at column `x` and row `y`.
+    pub fn at(&self, x: u32, y: u32) -> Vec3 {
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// How many pixels have a component that is not a number.
+    pub fn not_a_number(&self) -> usize {
+        self.pixels.iter().filter(|pixel| pixel.is_nan()).count()
+    }
+
+    /// The picture in bytes, each component through `encode`.
+    ///
+    /// NaN would come out black and hide; such pixels turn magenta and are counted instead.
+    pub fn to_bytes(&self, encode: impl Fn(f32) -> u8) -> Bytes {
+        let magenta = [255, 0, 255];
+        let byte = |pixel: &Vec3| if pixel.is_nan() { magenta } else { pixel.to_array().map(&encode) };
+        Bytes { rgb: self.pixels.iter().flat_map(byte).collect(), not_a_number: self.not_a_number() }
+    }
+
+    /// Writes a PNG file; see [`Film::to_bytes`] for `encode`.
+    pub fn write_png(&self, file: &Path, encode: impl Fn(f32) -> u8) -> io::Result<()> {
+        let bytes = self.to_bytes(encode);
+        write_atomically(file, |out| {
+            PngEncoder::new(out)
+                .write_image(&bytes.rgb, self.width, self.height, ExtendedColorType::Rgb8)
+                .map_err(io::Error::other)
+        })
+    }
+
+    /// Writes a Radiance HDR file: linear, with steps of about one percent.
+    pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
+        let pixels: Vec<image::Rgb<f32>> = self.pixels.iter().map(|p| image::Rgb(p.to_array())).collect();
+        write_atomically(file, |out| {
+            HdrEncoder::new(out)
+                .encode(&pixels, self.width as usize, self.height as usize)
+                .map_err(io::Error::other)
+        })
+    }
+}
+
+/// The curve of IEC 61966-2-1 that screens expect, in bytes. NaN becomes 0.
+pub fn encode_srgb(linear: f32) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let curve = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (255.0 * curve + 0.5) as u8
+}
+
+/// Writes a file so that it is whole or not there: first beside its place, then into it.
+pub fn write_atomically(
+    file: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> io::Result<()> {
+    let name = file.file_name().ok_or_else(|| io::Error::other("the path names no file"))?;
+    let beside = file.with_file_name(format!(".{}.{}.part", name.to_string_lossy(), std::process::id()));
+    let written = File::create(&beside).and_then(|out| {
+        let mut out = BufWriter::new(out);
+        write(&mut out)?;
+        out.flush()
+    });
+    let placed = written.and_then(|()| fs::rename(&beside, file));
+    if placed.is_err() {
+        // The part is of no use to anyone; if it cannot be removed either, the first error says why.
+        let _ = fs::remove_file(&beside);
+    }
+    placed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_srgb_curve_meets_its_published_points() {
+        assert_eq!(encode_srgb(0.0), 0);
+        assert_eq!(encode_srgb(1.0), 255);
+        assert_eq!(encode_srgb(0.5), 188); // 0.7354 of the way up
+        assert_eq!(encode_srgb(-1.0), 0);
+        assert_eq!(encode_srgb(7.0), 255);
+        assert_eq!(encode_srgb(0.002), 7); // on the straight part: 12.92 · 0.002 · 255 = 6.6
+    }
+
+    #[test]
+    fn a_pixel_that_is_not_a_number_is_seen_and_counted() {
+        let mut film = Film::new(2, 1);
+        film.pixels[1] = Vec3::new(0.5, f32::NAN, 0.5);
+        let bytes = film.to_bytes(encode_srgb);
+        assert_eq!(bytes.rgb, [0, 0, 0, 255, 0, 255]);
+        assert_eq!(bytes.not_a_number, 1);
+    }
+
+    #[test]
+    fn a_failed_write_leaves_nothing_behind() {
+        let folder = std::env::temp_dir().join(format!("raykata-film-{}", std::process::id()));
+        fs::create_dir(&folder).expect("a new folder");
+        let file = folder.join("picture.png");
+        let result = write_atomically(&file, |_| Err(io::Error::other("no more light")));
+        assert_eq!(result.unwrap_err().to_string(), "no more light");
+        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0);
+        Film::new(3, 2).write_png(&file, encode_srgb).expect("a picture");
+        assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 1);
+        fs::remove_dir_all(&folder).expect("the folder goes");
+    }
+}
