@@ -2,11 +2,12 @@
 
 use crate::count::{Counts, Tally};
 use crate::film::Film;
+use crate::kit::{Mishap, mishap};
 use glam::Vec3;
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours share caches.
 const TILE: u32 = 16;
@@ -71,20 +72,23 @@ pub fn render<T: Tally>(
     let FrameSettings { width, height, .. } = *settings;
     let total = u64::from(width) * u64::from(height);
     let done = AtomicU64::new(0);
-    let tile = |corner: (u32, u32)| -> Option<Tile> {
-        if watch.cancelled() {
-            return None;
+    let broken = AtomicBool::new(false);
+    let tile = |corner: (u32, u32)| -> Result<Option<Tile>, Mishap> {
+        if watch.cancelled() || broken.load(Ordering::Relaxed) {
+            return Ok(None);
         }
-        let tile = render_tile::<T>(settings, corner, &radiance);
+        // Caught where it happens: a panic that crosses threads forgets its file and line.
+        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance))
+            .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.pixels.len() as u64;
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
-        Some(tile)
+        Ok(Some(tile))
     };
     let corners: Vec<(u32, u32)> = (0..height)
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
         .collect();
-    let tiles: Vec<Option<Tile>> = if settings.threads == 1 {
+    let tiles: Vec<Result<Option<Tile>, Mishap>> = if settings.threads == 1 {
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
@@ -95,6 +99,8 @@ pub fn render<T: Tally>(
         }
     };
 
+    let tiles: Vec<Option<Tile>> =
+        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|mishap| mishap::unwind(mishap));
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
     for tile in tiles {

@@ -1,0 +1,173 @@
+//! The traits themselves, and the same calls as messages. One list makes both, so they cannot drift apart.
+
+use super::*;
+use crate::aabb::Aabb;
+use crate::bvh::Bvh;
+use crate::frame::Watch;
+use crate::mesh::Mesh;
+use crate::shape::{Sphere, Triangle};
+use glam::Vec3;
+
+/// Carries a request to where the student's code lives and brings the answer back.
+///
+/// A call that cannot be answered (student code that panics, loops or crashes) unwinds with a [`Mishap`], as a panic
+/// of linked student code does; [`mishap::catch`] catches both.
+pub trait Transport: Sync {
+    /// Asks.
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer;
+}
+
+/// A kit at the other end of a transport.
+pub struct Door<T>(pub T);
+
+/// Everything that students write.
+pub trait Kit: Shapes + Triangles + Hierarchies + Shading + Frames + Sync {}
+impl<T: Shapes + Triangles + Hierarchies + Shading + Frames + Sync> Kit for T {}
+
+/// Whole frames, rendered where the student's code lives, so that no ray crosses a process boundary.
+pub trait Frames {
+    /// Renders `job`. `None` if `watch` cancelled it.
+    fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering>;
+}
+
+macro_rules! door {
+    ($($(#[$trait_doc:meta])* trait $stage:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident($query:ty) -> $answer:ty;)*
+    })*) => {
+        $($(#[$trait_doc])* pub trait $stage {
+            $($(#[$doc])* fn $name(&self, queries: &[$query]) -> Vec<$answer>;)*
+        })*
+
+        /// A call as a message.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        pub enum Request {
+            $($($(#[$doc])* $Message(Vec<$query>),)*)*
+            /// A whole frame.
+            Render(Box<RenderJob>),
+        }
+
+        /// An answer as a message.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        pub enum Answer {
+            $($($(#[$doc])* $Message(Vec<$answer>),)*)*
+            /// A whole frame; `None` when it was cancelled.
+            Render(Option<Box<Rendering>>),
+        }
+
+        impl Request {
+            /// Has `kit` answer.
+            pub fn answer(&self, kit: &dyn Kit, watch: &dyn Watch) -> Answer {
+                match self {
+                    $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
+                    Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
+                }
+            }
+        }
+
+        $(impl<T: Transport> $stage for Door<T> {
+            $(fn $name(&self, queries: &[$query]) -> Vec<$answer> {
+                match self.0.call(Request::$Message(queries.to_vec()), &crate::frame::Unwatched) {
+                    Answer::$Message(answers) if answers.len() == queries.len() => answers,
+                    answer => mishap::wrong_answer(&format!("{answer:?}")),
+                }
+            })*
+        })*
+    };
+}
+
+impl<T: Transport> Frames for Door<T> {
+    fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
+        match self.0.call(Request::Render(Box::new(job.clone())), watch) {
+            Answer::Render(rendering) => rendering.map(|rendering| *rendering),
+            answer => mishap::wrong_answer(&format!("{answer:?}")),
+        }
+    }
+}
+
+door! {
+    /// Stage 1: spheres and planes.
+    trait Shapes {
+        /// The first of two roots that counts for a ray.
+        NearestRoot fn nearest_root(RootQuery) -> Option<f32>;
+        /// Ray against sphere by the quadratic formula.
+        SphereAlgebraic fn sphere_algebraic(SphereQuery) -> Option<f32>;
+        /// Ray against sphere by right triangles.
+        SphereGeometric fn sphere_geometric(SphereQuery) -> Option<f32>;
+        /// The outward unit normal of a sphere at a point of it.
+        SphereNormal fn sphere_normal((Sphere, Vec3)) -> Vec3;
+        /// Ray against plane.
+        Plane fn plane(PlaneQuery) -> Option<f32>;
+        /// A normal, turned to the side that a ray with this direction comes from.
+        FaceViewer fn face_viewer((Vec3, Vec3)) -> Vec3;
+    }
+
+    /// Stage 2: triangles and meshes.
+    trait Triangles {
+        /// Ray against triangle by Cramer's rule.
+        TriangleCramer fn triangle_cramer(TriangleQuery) -> Option<TriangleHit>;
+        /// The four scalars of the Gram method.
+        GramScalars fn gram_scalars(Triangle) -> GramScalars;
+        /// Ray against triangle by plane and Gram matrix.
+        TriangleGram fn triangle_gram(TriangleQuery) -> Option<TriangleHit>;
+        /// Ray against triangle by a method of the student's choice; the reference is watertight.
+        TriangleChoice fn triangle_choice(TriangleQuery) -> Option<TriangleHit>;
+        /// Inside test I: planes through the ray's origin and each side.
+        InsideByPlanes fn inside_by_planes(InsideQuery) -> bool;
+        /// Inside test II: the ray's direction against each side.
+        InsideByDirection fn inside_by_direction(InsideQuery) -> bool;
+        /// Inside test III: areas; `(α, β, γ)` if inside.
+        InsideByAreas fn inside_by_areas(InsideQuery) -> Option<Vec3>;
+        /// A value between three corners.
+        Interpolate fn interpolate(InterpolateQuery) -> Vec3;
+        /// The unit normal of a triangle, if it has one.
+        FaceNormal fn face_normal(Triangle) -> Option<Vec3>;
+        /// One unit normal a vertex: the average of the faces around it.
+        VertexNormals fn vertex_normals(Mesh) -> Vec<Vec3>;
+        /// The closest hit among all primitives of the table.
+        BruteForce fn brute_force(SearchQuery) -> SearchAnswer;
+    }
+
+    /// Stage 3: bounding volume hierarchies.
+    trait Hierarchies {
+        /// The box around a triangle.
+        TriangleBounds fn triangle_bounds(Triangle) -> Aabb;
+        /// The box around a sphere.
+        SphereBounds fn sphere_bounds(Sphere) -> Aabb;
+        /// The smallest box around two boxes.
+        Union fn union((Aabb, Aabb)) -> Aabb;
+        /// The middle of a box.
+        Centroid fn centroid(Aabb) -> Vec3;
+        /// The surface area of a box.
+        SurfaceArea fn surface_area(Aabb) -> f32;
+        /// Where a ray enters and leaves a box, within its range.
+        Slab fn slab(SlabQuery) -> Option<(f32, f32)>;
+        /// Primitives divided by a rule.
+        Split fn split(SplitQuery) -> SplitAnswer;
+        /// A hierarchy over boxes.
+        Build fn build(BuildQuery) -> Bvh;
+        /// The closest hit, visiting both children always.
+        ClosestHitBoth fn closest_hit_both(SearchQuery) -> SearchAnswer;
+        /// The closest hit, nearer child first, skipping what lies beyond the best hit.
+        ClosestHit fn closest_hit(SearchQuery) -> SearchAnswer;
+        /// Whether there is any hit.
+        AnyHit fn any_hit(SearchQuery) -> (bool, SearchAnswer);
+    }
+
+    /// Stage 4: light and shade.
+    trait Shading {
+        /// The cosine term of diffuse light.
+        DiffuseTerm fn diffuse_term(TermQuery) -> f32;
+        /// The highlight.
+        SpecularTerm fn specular_term(TermQuery) -> f32;
+        /// The ray that asks whether a light is visible, if the light can matter.
+        ShadowRay fn shadow_ray(ShadowQuery) -> Option<crate::ray::Ray>;
+        /// The normal to shade with: `(geometric, interpolated, ray direction)`.
+        ShadingNormal fn shading_normal((Vec3, Option<Vec3>, Vec3)) -> Vec3;
+        /// The colour of a point.
+        Shade fn shade(ShadeQuery) -> ShadeAnswer;
+        /// Linear light to a byte with gamma 2.
+        EncodeGamma fn encode_gamma(f32) -> u8;
+        /// A byte to linear light with gamma 2.
+        DecodeGamma fn decode_gamma(u8) -> f32;
+    }
+}

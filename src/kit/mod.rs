@@ -1,0 +1,70 @@
+//! The door: the complete list of what students write, each with plain data in and plain data out.
+//!
+//! Tests, renderer and grader talk to a `&dyn Kit` and never know whose code answers, nor whether it is linked into
+//! the same process or sits in a worker at the other end of a pipe. Every call takes a batch, so that a check with
+//! thousands of cases crosses the pipe once.
+
+pub mod door;
+pub mod mishap;
+mod shading;
+mod shapes;
+mod table;
+mod triangles;
+
+pub use door::{Answer, Door, Frames, Hierarchies, Kit, Request, Shading, Shapes, Transport, Triangles};
+pub use mishap::Mishap;
+pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
+pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
+pub use table::{
+    BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
+};
+pub use triangles::{GramScalars, InsideQuery, InterpolateQuery, TriangleHit, TriangleQuery};
+
+use crate::count::Counts;
+use crate::film::Film;
+use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum View {
+    /// Light.
+    #[default]
+    Shaded,
+    /// The normals of the surfaces, as colours.
+    Normals,
+}
+
+/// A whole frame to render where the student's code lives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RenderJob {
+    /// What to render; its own film size and quality apply.
+    pub scene: Scene,
+    /// What to show of it.
+    pub view: View,
+    /// Picks the random numbers.
+    pub seed: u64,
+    /// 0 takes one thread a core.
+    pub threads: usize,
+    /// Whether work is counted. Rays and pixels are the same either way.
+    pub count: bool,
+}
+
+/// A rendered frame and what it took.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rendering {
+    /// The picture in linear light.
+    pub film: Film,
+    /// Work by kind; zero when the job did not ask for it.
+    pub counts: Counts,
+    /// Primitives that the frame was made of.
+    pub primitives: u64,
+    /// Nodes and depth of the hierarchy, if one was built.
+    pub hierarchy: Option<(u64, u64)>,
+    /// Seconds to build the structure.
+    pub build_seconds: f64,
+    /// Seconds to render the pixels.
+    pub render_seconds: f64,
+    /// What the picture lacks and why, one sentence each.
+    pub notes: Vec<String>,
+}
