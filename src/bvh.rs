@@ -137,3 +137,9 @@ pub struct PrimitiveHit {
     /// Which primitive.
     pub primitive: u32,
 }
+
+/// What it costs to look into an inner node (two box tests), in the unit of [`INTERSECTION_COST`].
+pub const TRAVERSAL_COST: f32 = 1.0;
+
+/// What it costs to test one primitive.
+pub const INTERSECTION_COST: f32 = 1.0;

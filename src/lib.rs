@@ -13,3 +13,4 @@ pub mod ray;
 pub mod scene;
 pub mod shape;
 pub mod worker;
+pub mod world;

@@ -1,1 +1,3 @@
-//! Stage.
+//! Stage 1 of your ray tracer. What it grades is in tests/checks/src/stage1.rs; where to write, in exercises/src/stage1*.rs.
+
+checks::stage1!(exercises::Kit);

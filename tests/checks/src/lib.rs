@@ -1,1 +1,44 @@
-//! Placeholder.
+//! The laws of a ray tracer: what students are graded on, one module a stage, to be read as a specification.
+//!
+//! Every check asks a [`raykata::kit::Kit`] through its door and never knows whose code answers. It is a function that
+//! gives `Ok(())` or a [`Broken`] law with the smallest input that breaks it.
+
+pub mod broken;
+pub mod double;
+pub mod generate;
+pub mod golden;
+pub mod paste;
+pub mod picture;
+pub mod rubric;
+pub mod scenes;
+pub mod stage1;
+pub mod trial;
+
+pub use broken::{Broken, Outcome};
+pub use trial::{Check, Trial, Verdict, grade, run};
+
+/// All checks of all stages that are built, in order.
+pub const STAGES: &[(u8, &[Check])] = &[(1, stage1::CHECKS)];
+
+/// Lists the checks of a stage, and makes the macro that turns them into tests of a kit: `checks::stage1!(kit)`.
+///
+/// The leading `($)` lends the inner macro its dollar sign.
+macro_rules! checks {
+    (($d:tt) $number:literal $stage:ident [$($name:ident)*]) => {
+        /// The checks of this stage, in the order of the lecture.
+        pub const CHECKS: &[$crate::Check] =
+            &[$($crate::Check { stage: $number, name: stringify!($name), law: $name }),*];
+
+        /// One test for each check of the stage.
+        #[macro_export]
+        macro_rules! $stage {
+            ($d kit:expr) => {
+                $(#[test]
+                fn $name() {
+                    $d crate::grade($number, stringify!($name), ::std::sync::Arc::new($d kit));
+                })*
+            };
+        }
+    };
+}
+pub(crate) use checks;

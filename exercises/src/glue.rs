@@ -1,0 +1,182 @@
+//! Nothing to do here: this connects the functions of the stage files with the door through which the kit calls them.
+
+use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, tracer};
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::bvh::{Bvh, PrimitiveHit};
+use raykata::frame::Watch;
+use raykata::kit::*;
+use raykata::mesh::Mesh;
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::shape::{Sphere, Triangle};
+
+/// The code in this folder, as the kit sees it.
+pub struct Kit;
+
+fn each<Q, A>(queries: &[Q], answer: impl FnMut(&Q) -> A) -> Vec<A> {
+    queries.iter().map(answer).collect()
+}
+
+impl Shapes for Kit {
+    fn nearest_root(&self, queries: &[RootQuery]) -> Vec<Option<f32>> {
+        each(queries, |q| stage1_shapes::nearest_root(q.roots, &q.ray))
+    }
+    fn sphere_algebraic(&self, queries: &[SphereQuery]) -> Vec<Option<f32>> {
+        each(queries, |q| stage1_shapes::sphere_algebraic(&q.ray, q.sphere.center, q.sphere.radius))
+    }
+    fn sphere_geometric(&self, queries: &[SphereQuery]) -> Vec<Option<f32>> {
+        each(queries, |q| stage1_shapes::sphere_geometric(&q.ray, q.sphere.center, q.sphere.radius))
+    }
+    fn sphere_normal(&self, queries: &[(Sphere, Vec3)]) -> Vec<Vec3> {
+        each(queries, |(sphere, point)| stage1_shapes::sphere_normal(sphere.center, *point))
+    }
+    fn plane(&self, queries: &[PlaneQuery]) -> Vec<Option<f32>> {
+        each(queries, |q| stage1_shapes::plane(&q.ray, q.plane.point, q.plane.normal))
+    }
+    fn face_viewer(&self, queries: &[(Vec3, Vec3)]) -> Vec<Vec3> {
+        each(queries, |(normal, dir)| stage1_shapes::face_viewer(*normal, *dir))
+    }
+}
+
+impl Triangles for Kit {
+    fn triangle_cramer(&self, queries: &[TriangleQuery]) -> Vec<Option<TriangleHit>> {
+        each(queries, |q| stage2_triangles::triangle_cramer(&q.ray, &q.triangle))
+    }
+    fn gram_scalars(&self, queries: &[Triangle]) -> Vec<GramScalars> {
+        each(queries, stage2_triangles::gram_scalars)
+    }
+    fn triangle_gram(&self, queries: &[TriangleQuery]) -> Vec<Option<TriangleHit>> {
+        each(queries, |q| {
+            let scalars = stage2_triangles::gram_scalars(&q.triangle);
+            stage2_triangles::triangle_gram(&q.ray, &q.triangle, &scalars)
+        })
+    }
+    fn triangle_choice(&self, queries: &[TriangleQuery]) -> Vec<Option<TriangleHit>> {
+        each(queries, |q| stage2_triangles::triangle_choice(&q.ray, &q.triangle))
+    }
+    fn inside_by_planes(&self, queries: &[InsideQuery]) -> Vec<bool> {
+        each(queries, |q| stage2_triangles::inside_by_planes(&q.ray, q.point, &q.triangle))
+    }
+    fn inside_by_direction(&self, queries: &[InsideQuery]) -> Vec<bool> {
+        each(queries, |q| stage2_triangles::inside_by_direction(&q.ray, q.point, &q.triangle))
+    }
+    fn inside_by_areas(&self, queries: &[InsideQuery]) -> Vec<Option<Vec3>> {
+        each(queries, |q| stage2_triangles::inside_by_areas(q.point, &q.triangle))
+    }
+    fn interpolate(&self, queries: &[InterpolateQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage2_triangles::interpolate(q.weights, q.corners))
+    }
+    fn face_normal(&self, queries: &[Triangle]) -> Vec<Option<Vec3>> {
+        each(queries, stage2_triangles::face_normal)
+    }
+    fn vertex_normals(&self, queries: &[Mesh]) -> Vec<Vec<Vec3>> {
+        each(queries, stage2_triangles::vertex_normals)
+    }
+    fn brute_force(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
+        each(queries, |q| {
+            let n_primitives = q.table.primitives.len() as u32;
+            search(q, |probe| stage2_triangles::brute_force(n_primitives, probe, &q.ray)).1
+        })
+    }
+}
+
+impl Hierarchies for Kit {
+    fn triangle_bounds(&self, queries: &[Triangle]) -> Vec<Aabb> {
+        each(queries, stage3_bvh::triangle_bounds)
+    }
+    fn sphere_bounds(&self, queries: &[Sphere]) -> Vec<Aabb> {
+        each(queries, stage3_bvh::sphere_bounds)
+    }
+    fn union(&self, queries: &[(Aabb, Aabb)]) -> Vec<Aabb> {
+        each(queries, |(first, second)| stage3_bvh::union(first, second))
+    }
+    fn centroid(&self, queries: &[Aabb]) -> Vec<Vec3> {
+        each(queries, stage3_bvh::centroid)
+    }
+    fn surface_area(&self, queries: &[Aabb]) -> Vec<f32> {
+        each(queries, stage3_bvh::surface_area)
+    }
+    fn slab(&self, queries: &[SlabQuery]) -> Vec<Option<(f32, f32)>> {
+        each(queries, |q| stage3_bvh::slab(&q.ray, q.ray.dir.recip(), &q.bounds))
+    }
+    fn split(&self, queries: &[SplitQuery]) -> Vec<SplitAnswer> {
+        each(queries, |q| {
+            let mut primitives = q.primitives.clone();
+            let middle = match q.split {
+                Split::ObjectMedian => Some(stage3_bvh::split_object_median(&mut primitives)),
+                Split::SpatialMedian => Some(stage3_bvh::split_spatial_median(&mut primitives)),
+                Split::SurfaceArea => stage3_bvh::split_surface_area(&mut primitives),
+            };
+            SplitAnswer { order: each(&primitives, |primitive| primitive.id), middle }
+        })
+    }
+    fn build(&self, queries: &[BuildQuery]) -> Vec<Bvh> {
+        each(queries, |q| stage3_bvh::build(&q.bounds, q.split, q.leaf_size))
+    }
+    fn closest_hit_both(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
+        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit_both(&q.bvh, probe, &q.ray)).1)
+    }
+    fn closest_hit(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
+        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit(&q.bvh, probe, &q.ray)).1)
+    }
+    fn any_hit(&self, queries: &[SearchQuery]) -> Vec<(bool, SearchAnswer)> {
+        each(queries, |q| {
+            let mut found = false;
+            let answer = search(q, |probe| {
+                found = stage3_bvh::any_hit(&q.bvh, probe, &q.ray);
+                None
+            });
+            (found, SearchAnswer { hit: answer.0, ..answer.1 })
+        })
+    }
+}
+
+/// Runs a search on a table; gives the last hit that it was told of, and its answer with what it asked.
+fn search(
+    query: &SearchQuery,
+    find: impl FnOnce(&mut TableProbe<'_>) -> Option<PrimitiveHit>,
+) -> (Option<PrimitiveHit>, SearchAnswer) {
+    let mut probe = TableProbe::new(query);
+    let hit = find(&mut probe);
+    (probe.last_hit, SearchAnswer { hit, counts: probe.counts })
+}
+
+impl Shading for Kit {
+    fn diffuse_term(&self, queries: &[TermQuery]) -> Vec<f32> {
+        each(queries, |q| stage4_shading::diffuse_term(q.normal, q.to_light))
+    }
+    fn specular_term(&self, queries: &[TermQuery]) -> Vec<f32> {
+        each(queries, |q| stage4_shading::specular_term(q.normal, q.to_light, q.to_viewer, q.exponent))
+    }
+    fn shadow_ray(&self, queries: &[ShadowQuery]) -> Vec<Option<Ray>> {
+        each(queries, |q| stage4_shading::shadow_ray(&q.surface, &q.light))
+    }
+    fn shading_normal(&self, queries: &[(Vec3, Option<Vec3>, Vec3)]) -> Vec<Vec3> {
+        each(queries, |(geometric, smooth, dir)| stage4_shading::shading_normal(*geometric, *smooth, *dir))
+    }
+    fn shade(&self, queries: &[ShadeQuery]) -> Vec<ShadeAnswer> {
+        each(queries, |q| {
+            let mut traced = Vec::new();
+            let visible = |light: usize, _: &Ray| {
+                traced.push(light);
+                q.visible[light]
+            };
+            let color =
+                stage4_shading::shade(&q.surface, q.to_viewer, &q.material, q.ambient, &q.lights, visible);
+            ShadeAnswer { color, traced }
+        })
+    }
+    fn encode_gamma(&self, queries: &[f32]) -> Vec<u8> {
+        each(queries, |linear| stage4_shading::encode_gamma(*linear))
+    }
+    fn decode_gamma(&self, queries: &[u8]) -> Vec<f32> {
+        each(queries, |byte| stage4_shading::decode_gamma(*byte))
+    }
+}
+
+impl Frames for Kit {
+    fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
+        tracer::render(job, watch)
+    }
+}

@@ -1,0 +1,349 @@
+//! Nothing to do here: this makes pictures out of the functions of the stage files. What is not written yet is left
+//! out, and the picture says so: without stage 4 it shows normals, without stage 3 every ray tests every primitive,
+//! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
+
+use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading};
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
+use raykata::count::{Counts, Event, Tally, Uncounted};
+use raykata::film::Film;
+use raykata::frame::{self, FrameSettings, Watch};
+use raykata::kit::{LightSample, Mishap, RenderJob, Rendering, Surface, View, mishap};
+use raykata::material::Material;
+use raykata::mesh::Mesh;
+use raykata::ray::Ray;
+use raykata::scene::{Accelerator, Quality, TriangleMethod};
+use raykata::shape::{Plane, Triangle};
+use raykata::world::{Geometry, Primitive, World, camera_for};
+use std::time::Instant;
+
+pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
+    let started = Instant::now();
+    let tracer = Tracer::new(job);
+    let build_seconds = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    let (film, counts) = if job.count {
+        tracer.frame::<Counts>(job, watch)?
+    } else {
+        tracer.frame::<Uncounted>(job, watch)?
+    };
+    Some(Rendering {
+        film,
+        counts,
+        primitives: (tracer.world.primitives.len() + tracer.world.planes.len()) as u64,
+        hierarchy: tracer.bvh.as_ref().map(|bvh| (bvh.nodes.len() as u64, bvh.depth() as u64)),
+        build_seconds,
+        render_seconds: started.elapsed().as_secs_f64(),
+        notes: tracer.world.notes,
+    })
+}
+
+/// How the closest hit is sought.
+#[derive(Clone, Copy, PartialEq)]
+enum Search {
+    Hierarchy,
+    BruteForce,
+    /// The last primitive that the ray meets, near or far.
+    Painter,
+}
+
+struct Tracer<'a> {
+    world: World,
+    bvh: Option<Bvh>,
+    search: Search,
+    view: View,
+    /// Whether normals are interpolated over smooth meshes.
+    smooth: bool,
+    quality: &'a Quality,
+    ambient: Vec3,
+    background: Vec3,
+}
+
+impl<'a> Tracer<'a> {
+    fn new(job: &'a RenderJob) -> Self {
+        let quality = &job.scene.quality;
+        let average = |mesh: &Mesh| stage2_triangles::vertex_normals(mesh);
+        let averages = written(|| stage2_triangles::vertex_normals(&Mesh::default()));
+        let mut world = World::new(&job.scene, averages.then_some(&average as &dyn Fn(&Mesh) -> Vec<Vec3>));
+        let search = choose_search(quality, &mut world.notes);
+        let view = choose_view(job.view, &mut world.notes);
+        let smooth = written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X));
+        let bvh = (search == Search::Hierarchy).then(|| {
+            let bounds: Vec<Aabb> = world.primitives.iter().map(bounds_of).collect();
+            stage3_bvh::build(&bounds, quality.split, quality.leaf_size as usize)
+        });
+        let (ambient, background) = (job.scene.ambient, job.scene.background);
+        Tracer { world, bvh, search, view, smooth, quality, ambient, background }
+    }
+
+    fn frame<T: Tally>(&self, job: &RenderJob, watch: &dyn Watch) -> Option<(Film, Counts)> {
+        let camera = camera_for(&job.scene);
+        let settings = FrameSettings {
+            width: job.scene.film.width,
+            height: job.scene.film.height,
+            samples_per_pixel: self.quality.samples_per_pixel,
+            threads: job.threads,
+            seed: job.seed,
+        };
+        frame::render::<T>(&settings, watch, |x, y, _, tally| {
+            tally.note(Event::Primary);
+            self.radiance(&camera.ray(x, y), tally)
+        })
+    }
+
+    /// The light that comes back along `ray`.
+    fn radiance<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec3 {
+        let Some(hit) = self.closest_hit(ray, tally) else { return self.background };
+        let (surface, material) = self.surface(ray, &hit);
+        match self.view {
+            View::Normals => 0.5 * surface.shading_normal + 0.5,
+            View::Shaded => {
+                let lights: Vec<LightSample> =
+                    self.world.lights.iter().map(|light| light.sample(surface.point)).collect();
+                let to_viewer = -ray.dir.normalize();
+                stage4_shading::shade(
+                    &surface,
+                    to_viewer,
+                    material,
+                    self.ambient,
+                    &lights,
+                    |_, shadow_ray| {
+                        tally.note(Event::Shadow);
+                        !self.any_hit(shadow_ray, tally)
+                    },
+                )
+            }
+        }
+    }
+
+    fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
+        let mut ray = *ray;
+        let mut closest = None;
+        for (index, (plane, _)) in self.world.planes.iter().enumerate() {
+            tally.note(Event::PrimitiveTest);
+            if let Some(t) = stage1_shapes::plane(&ray, plane.point, plane.normal) {
+                closest = Some(Hit::Plane { t, index });
+                if self.search != Search::Painter {
+                    ray.t_max = t;
+                }
+            }
+        }
+        let mut probe = SceneProbe::new(self, &ray, tally);
+        let hit = match (&self.bvh, self.search) {
+            (Some(bvh), _) => stage3_bvh::closest_hit(bvh, &mut probe, &ray),
+            (None, Search::Painter) => probe.last_hit(&ray),
+            (None, _) => stage2_triangles::brute_force(self.world.primitives.len() as u32, &mut probe, &ray),
+        };
+        hit.map(Hit::Primitive).or(closest)
+    }
+
+    fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
+        let in_plane = self.world.planes.iter().any(|(plane, _)| {
+            tally.note(Event::PrimitiveTest);
+            stage1_shapes::plane(ray, plane.point, plane.normal).is_some()
+        });
+        let mut probe = SceneProbe::new(self, ray, tally);
+        in_plane
+            || match &self.bvh {
+                Some(bvh) => stage3_bvh::any_hit(bvh, &mut probe, ray),
+                None => probe.last_hit(ray).is_some(),
+            }
+    }
+
+    /// The point that was hit, with a bound on its error, its normals, and what the surface is made of.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> (Surface, &Material) {
+        let (point, error, geometric, smooth, material) = match *hit {
+            Hit::Plane { t, index } => {
+                let (plane, material) = &self.world.planes[index];
+                let (point, error) = point_on_plane(ray, t, plane);
+                (point, error, plane.normal, None, *material)
+            }
+            Hit::Primitive(hit) => {
+                let primitive = &self.world.primitives[hit.primitive as usize];
+                let (point, error, geometric, smooth) = self.on_primitive(ray, hit.t, primitive);
+                (point, error, geometric, smooth, primitive.material)
+            }
+        };
+        let geometric_normal = stage1_shapes::face_viewer(geometric, ray.dir);
+        let shading_normal = if self.smooth && smooth.is_some() {
+            stage4_shading::shading_normal(geometric_normal, smooth, ray.dir)
+        } else {
+            geometric_normal
+        };
+        (Surface { point, error, geometric_normal, shading_normal }, &self.world.materials[material as usize])
+    }
+
+    fn on_primitive(&self, ray: &Ray, t: f32, primitive: &Primitive) -> (Vec3, Vec3, Vec3, Option<Vec3>) {
+        match primitive.geometry {
+            Geometry::Sphere(sphere) => {
+                // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
+                let normal = stage1_shapes::sphere_normal(sphere.center, ray.at(t));
+                let point = sphere.center + sphere.radius * normal;
+                let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
+                (point, error, normal, None)
+            }
+            Geometry::Triangle(triangle) => {
+                let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+                let (beta, gamma) = self
+                    .meet_triangle(&unbounded, &triangle)
+                    .map_or((1.0 / 3.0, 1.0 / 3.0), |(_, beta, gamma)| (beta, gamma));
+                let weights = Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma);
+                let Triangle { a, b, c } = triangle;
+                // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far
+                // the ray came from.
+                let terms = [weights.x * a, weights.y * b, weights.z * c];
+                let point = terms[0] + terms[1] + terms[2];
+                let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+                let flat = (b - a).cross(c - a).normalize_or(Vec3::Z);
+                let smooth = primitive.normals.map(|normals| {
+                    stage2_triangles::interpolate(weights, self.world.normals[normals as usize])
+                });
+                (point, error, flat, smooth)
+            }
+        }
+    }
+
+    /// `(t, β, γ)` by the method that the scene asks for.
+    fn meet_triangle(&self, ray: &Ray, triangle: &Triangle) -> Option<(f32, f32, f32)> {
+        let hit = match self.quality.triangle_method {
+            TriangleMethod::Watertight => stage2_triangles::triangle_choice(ray, triangle),
+            TriangleMethod::Cramer => stage2_triangles::triangle_cramer(ray, triangle),
+            TriangleMethod::Gram => {
+                stage2_triangles::triangle_gram(ray, triangle, &stage2_triangles::gram_scalars(triangle))
+            }
+        };
+        hit.map(|hit| (hit.t, hit.beta, hit.gamma))
+    }
+}
+
+enum Hit {
+    Plane { t: f32, index: usize },
+    Primitive(PrimitiveHit),
+}
+
+/// Answers the questions of a search about the world, and counts them.
+struct SceneProbe<'a, T> {
+    tracer: &'a Tracer<'a>,
+    inverse_dir: Vec3,
+    tally: &'a mut T,
+}
+
+impl<'a, T: Tally> SceneProbe<'a, T> {
+    fn new(tracer: &'a Tracer<'a>, ray: &Ray, tally: &'a mut T) -> Self {
+        SceneProbe { tracer, inverse_dir: ray.dir.recip(), tally }
+    }
+
+    /// The last primitive in the order of the scene that the ray meets.
+    fn last_hit(&mut self, ray: &Ray) -> Option<PrimitiveHit> {
+        let n_primitives = self.tracer.world.primitives.len() as u32;
+        (0..n_primitives)
+            .rev()
+            .find_map(|primitive| self.hit(primitive, ray).map(|t| PrimitiveHit { t, primitive }))
+    }
+}
+
+impl<T: Tally> Probe for SceneProbe<'_, T> {
+    fn open(&mut self, node: u32) -> Contents {
+        self.tally.note(Event::NodeVisit);
+        match &self.tracer.bvh {
+            Some(bvh) => bvh.nodes[node as usize].contents,
+            None => Contents::Leaf { first: 0, count: 0 },
+        }
+    }
+
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        self.tally.note(Event::BoxTest);
+        let bounds = &self.tracer.bvh.as_ref()?.nodes[node as usize].bounds;
+        stage3_bvh::slab(ray, self.inverse_dir, bounds).map(|(enter, _)| enter)
+    }
+
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.tally.note(Event::PrimitiveTest);
+        match &self.tracer.world.primitives[primitive as usize].geometry {
+            Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
+            Geometry::Triangle(triangle) => self.tracer.meet_triangle(ray, triangle).map(|(t, ..)| t),
+        }
+    }
+}
+
+fn bounds_of(primitive: &Primitive) -> Aabb {
+    match &primitive.geometry {
+        Geometry::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
+        Geometry::Triangle(triangle) => stage3_bvh::triangle_bounds(triangle),
+    }
+}
+
+/// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.
+fn point_on_plane(ray: &Ray, t: f32, plane: &Plane) -> (Vec3, Vec3) {
+    let rough = ray.at(t);
+    let normal = plane.normal.normalize();
+    let offset = rough - plane.point;
+    let point = rough - offset.dot(normal) * normal;
+    (point, rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element())))
+}
+
+/// `γ_n`, the largest relative error that `n` roundings can add up to (Higham).
+fn rounding(n: u32) -> f32 {
+    let nu = n as f32 * f32::EPSILON / 2.0;
+    nu / (1.0 - nu)
+}
+
+fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    let hierarchy = written(|| stage3_bvh::build(&[], quality.split, 1))
+        && written(|| stage3_bvh::closest_hit(&Bvh::default(), &mut Nothing, &ray))
+        && written(|| stage3_bvh::any_hit(&Bvh::default(), &mut Nothing, &ray))
+        && written(|| stage3_bvh::slab(&ray, Vec3::X, &Aabb::EMPTY));
+    let brute_force = written(|| stage2_triangles::brute_force(0, &mut Nothing, &ray));
+    match quality.accelerator {
+        Accelerator::BruteForce | Accelerator::Bvh => {}
+        other => notes.push(format!("a hierarchy stands in for {other:?}: stage 9, not built yet")),
+    }
+    if quality.accelerator != Accelerator::BruteForce && hierarchy {
+        return Search::Hierarchy;
+    }
+    if quality.accelerator != Accelerator::BruteForce {
+        notes.push("every ray tests every primitive: stage 3 is not written yet".into());
+    }
+    if brute_force {
+        return Search::BruteForce;
+    }
+    notes.push(
+        "later shapes are painted over earlier ones, near or far: `brute_force` of stage 2 is not written yet".into(),
+    );
+    Search::Painter
+}
+
+fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {
+    let nowhere =
+        Surface { point: Vec3::ZERO, error: Vec3::ZERO, geometric_normal: Vec3::Z, shading_normal: Vec3::Z };
+    let material = Material::default();
+    let shades =
+        written(|| stage4_shading::shade(&nowhere, Vec3::Z, &material, Vec3::ONE, &[], |_, _| false));
+    if wanted == View::Shaded && !shades {
+        notes.push("normals are shown as colours: stage 4 is not written yet".into());
+        return View::Normals;
+    }
+    wanted
+}
+
+/// Whether a function does more than say `todo!`.
+fn written<T>(call: impl FnOnce() -> T) -> bool {
+    !matches!(mishap::catch(call), Err(Mishap::NotWritten { .. }))
+}
+
+/// A world without anything in it.
+struct Nothing;
+
+impl Probe for Nothing {
+    fn open(&mut self, _: u32) -> Contents {
+        Contents::Leaf { first: 0, count: 0 }
+    }
+    fn enter(&mut self, _: u32, _: &Ray) -> Option<f32> {
+        None
+    }
+    fn hit(&mut self, _: u32, _: &Ray) -> Option<f32> {
+        None
+    }
+}

@@ -1,0 +1,200 @@
+//! Reference answers in double precision, each with how sure it is: where single precision cannot be expected to
+//! decide, nothing is judged. (Exact verdicts, for stage 10, are another matter.)
+
+use glam::{DVec3, Vec3};
+use raykata::kit::TriangleHit;
+use raykata::ray::Ray;
+use raykata::shape::{Plane, Sphere, Triangle};
+
+/// One rounding of an `f32`, relative.
+pub const U: f64 = f32::EPSILON as f64 / 2.0;
+
+/// What a correct method in single precision may answer for a `t`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Expected {
+    /// No hit that counts.
+    Miss,
+    /// A hit at `t`, give or take `tolerance`.
+    Hit {
+        /// Where.
+        t: f64,
+        /// How far an `f32` method may be off.
+        tolerance: f64,
+    },
+    /// Too close to call.
+    Open,
+}
+
+impl Expected {
+    /// Whether a correct method may give this answer.
+    pub fn accepts(&self, t: Option<f32>) -> bool {
+        match (self, t) {
+            (Expected::Open, _) | (Expected::Miss, None) => true,
+            (Expected::Hit { t: exact, tolerance }, Some(t)) => (f64::from(t) - exact).abs() <= *tolerance,
+            _ => false,
+        }
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        match self {
+            Expected::Miss => "None".into(),
+            Expected::Hit { t, tolerance } => format!("Some({t}) ± {tolerance:.1e}"),
+            Expected::Open => "either".into(),
+        }
+    }
+}
+
+/// Both roots of a line and a sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roots {
+    /// The smaller `t`.
+    pub near: f64,
+    /// The larger `t`.
+    pub far: f64,
+    /// How far an `f32` method may be off.
+    pub tolerance: f64,
+}
+
+/// The roots of a line and a sphere; `Err(true)` if the line clearly misses, `Err(false)` if it is too close to call.
+pub fn sphere_roots(ray: &Ray, sphere: &Sphere) -> Result<Roots, bool> {
+    let dir = ray.dir.as_dvec3();
+    let f = ray.origin.as_dvec3() - sphere.center.as_dvec3();
+    let radius = f64::from(sphere.radius);
+    let along = -f.dot(dir) / dir.length_squared();
+    let distance = (f + along * dir).length();
+    // f is rounded, and so is each step of its part at right angles to the ray: some sixteen roundings of |f|.
+    let slack = 16.0 * U * (f.length() + radius);
+    if distance > radius + slack {
+        return Err(true);
+    }
+    if distance > radius - slack {
+        return Err(false);
+    }
+    let half = (radius * radius - distance * distance).sqrt();
+    let length = dir.length();
+    // The half chord moves by distance / half for each step sideways: steep near the rim.
+    let tolerance = 2.0 * slack * (1.0 + distance / half) / length;
+    Ok(Roots { near: along - half / length, far: along + half / length, tolerance })
+}
+
+/// What a ray meets first of a sphere.
+pub fn sphere(ray: &Ray, sphere: &Sphere) -> Expected {
+    match sphere_roots(ray, sphere) {
+        Err(true) => Expected::Miss,
+        Err(false) => Expected::Open,
+        Ok(Roots { near, far, tolerance }) => first_in_range(ray, &[near, far], tolerance),
+    }
+}
+
+/// The first of ascending roots that lies in the range of the ray.
+fn first_in_range(ray: &Ray, roots: &[f64], tolerance: f64) -> Expected {
+    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    for &t in roots {
+        if (t - t_min).abs() <= tolerance || (t - t_max).abs() <= tolerance {
+            return Expected::Open;
+        }
+        if t_min < t && t < t_max {
+            return Expected::Hit { t, tolerance };
+        }
+    }
+    Expected::Miss
+}
+
+/// Where a ray meets a plane.
+pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
+    let (normal, dir) = (plane.normal.as_dvec3(), ray.dir.as_dvec3());
+    let offset = plane.point.as_dvec3() - ray.origin.as_dvec3();
+    let (distance, slope) = (offset.dot(normal), dir.dot(normal));
+    if slope == 0.0 {
+        return Expected::Miss;
+    }
+    // Each dot product is off by a few roundings of its largest term.
+    let distance_slack = 8.0 * U * (offset.abs().dot(normal.abs()));
+    let slope_slack = 8.0 * U * dir.abs().dot(normal.abs());
+    if slope.abs() <= 16.0 * slope_slack {
+        return Expected::Open;
+    }
+    let t = distance / slope;
+    let tolerance = 2.0 * (distance_slack + t.abs() * slope_slack) / slope.abs();
+    first_in_range(ray, &[t], tolerance)
+}
+
+/// What a correct method in single precision may answer for a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleExpected {
+    /// Hit, miss or open, and `t`.
+    pub t: Expected,
+    /// Weight of `b`.
+    pub beta: f64,
+    /// Weight of `c`.
+    pub gamma: f64,
+    /// How far the weights may be off.
+    pub tolerance: f64,
+}
+
+impl TriangleExpected {
+    /// Whether a correct method may give this answer.
+    pub fn accepts(&self, hit: Option<TriangleHit>) -> bool {
+        let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= self.tolerance;
+        self.t.accepts(hit.map(|hit| hit.t))
+            && (self.t == Expected::Open
+                || hit.is_none_or(|hit| near(hit.beta, self.beta) && near(hit.gamma, self.gamma)))
+    }
+
+    /// In words.
+    pub fn words(&self) -> String {
+        match self.t {
+            Expected::Hit { t, .. } => {
+                format!(
+                    "t = {t:.7}, beta = {:.6}, gamma = {:.6} (± {:.0e})",
+                    self.beta, self.gamma, self.tolerance
+                )
+            }
+            other => other.words(),
+        }
+    }
+}
+
+/// Where a ray meets a triangle: Cramer's rule in double precision, with a margin for the rounding of single
+/// precision in all the ways that students may choose.
+pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
+    let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.dir].map(Vec3::as_dvec3);
+    let (u, v, s) = (b - a, c - a, o - a);
+    let normal = u.cross(v);
+    let slope = -d.dot(normal);
+    let miss = |t| TriangleExpected { t, beta: 0.0, gamma: 0.0, tolerance: 0.0 };
+    if slope == 0.0 {
+        return miss(Expected::Miss);
+    }
+    let t = s.dot(normal) / slope;
+    let beta = -d.dot(s.cross(v)) / slope;
+    let gamma = -d.dot(u.cross(s)) / slope;
+
+    // How much a rounding of the inputs' size moves the results: the sizes of all terms over the size of the sum.
+    // The square of the angle at which the edges meet enters once more for methods that divide by |u × v|².
+    let thin = u.length() * v.length() / normal.length();
+    let steep = d.length() * normal.length() / slope.abs();
+    let reach = s.length().max(t.abs() * d.length()) + u.length().max(v.length());
+    let size = u.length().min(v.length());
+    let tolerance = 64.0 * U * thin * thin * steep * (1.0 + reach / size);
+    if !(tolerance < 0.02) {
+        return miss(Expected::Open);
+    }
+    let least = beta.min(gamma).min(1.0 - beta - gamma);
+    let t_tolerance = 64.0 * U * thin * steep * reach / d.length();
+    let verdict = if least < -tolerance {
+        Expected::Miss
+    } else if least < tolerance {
+        Expected::Open
+    } else {
+        first_in_range(ray, &[t], t_tolerance)
+    };
+    TriangleExpected { t: verdict, beta, gamma, tolerance }
+}
+
+/// The point of a triangle at `(β, γ)`.
+pub fn triangle_point(triangle: &Triangle, beta: f64, gamma: f64) -> DVec3 {
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    a + beta * (b - a) + gamma * (c - a)
+}

@@ -1,0 +1,53 @@
+//! Random inputs that shrink to small numbers.
+
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+/// A coordinate within `reach` of zero, on a grid of 1/8: such numbers are short to print, and sums and products of a
+/// few of them are exact.
+fn coordinate(reach: i32) -> impl Strategy<Value = f32> + Clone {
+    (-8 * reach..=8 * reach).prop_map(|eighths| eighths as f32 / 8.0)
+}
+
+/// A point on a grid of 1/8, each coordinate within `reach` of zero.
+pub fn point(reach: i32) -> impl Strategy<Value = Vec3> + Clone {
+    (coordinate(reach), coordinate(reach), coordinate(reach)).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+}
+
+/// A point with full mantissas, each coordinate within `reach` of zero.
+pub fn rough_point(reach: f32) -> impl Strategy<Value = Vec3> + Clone {
+    let range = -reach..reach;
+    (range.clone(), range.clone(), range).prop_map(|(x, y, z)| Vec3::new(x, y, z))
+}
+
+/// A direction of any length but zero, on a grid of 1/8.
+pub fn direction() -> impl Strategy<Value = Vec3> + Clone {
+    point(4).prop_map(|v| if v == Vec3::ZERO { Vec3::X } else { v })
+}
+
+/// A direction of length 1.
+pub fn unit() -> impl Strategy<Value = Vec3> + Clone {
+    direction().prop_map(Vec3::normalize)
+}
+
+/// A sphere near the origin.
+pub fn sphere() -> impl Strategy<Value = Sphere> + Clone {
+    (point(4), 1..=32i32).prop_map(|(center, eighths)| Sphere { center, radius: eighths as f32 / 8.0 })
+}
+
+/// A ray with a unit direction from a point near the origin.
+pub fn ray() -> impl Strategy<Value = Ray> + Clone {
+    (point(8), unit()).prop_map(|(origin, dir)| Ray::new(origin, dir))
+}
+
+/// A triangle near the origin; some have no area.
+pub fn triangle() -> impl Strategy<Value = Triangle> + Clone {
+    (point(4), point(4), point(4)).prop_map(|(a, b, c)| Triangle { a, b, c })
+}
+
+/// A power of ten between `10^low` and `10^high`, with a mantissa.
+pub fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> + Clone {
+    (low..high).prop_map(|exponent| 10f32.powf(exponent))
+}

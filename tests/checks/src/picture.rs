@@ -1,0 +1,109 @@
+//! Golden pictures, and what to do when one differs.
+//!
+//! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Up to the stated
+//! share of pixels may differ, because correct methods round differently along outlines; the rest may not.
+
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use glam::Vec3;
+use image::RgbImage;
+use raykata::film::{Film, write_atomically};
+use raykata::kit::{RenderJob, Rendering, View};
+use raykata::scene::Scene;
+use std::path::PathBuf;
+
+/// How far a channel may be off: four steps of a screen that shows 6 bits.
+const CHANNEL_TOLERANCE: u8 = 8;
+
+/// Renders `scene` with the kit, on this thread and with counts.
+pub fn render(trial: &Trial<'_>, scene: &Scene, view: View) -> Option<Rendering> {
+    let job = RenderJob { scene: scene.clone(), view, seed: 0, threads: 1, count: true };
+    trial.kit.render(&job, &raykata::frame::Unwatched)
+}
+
+/// Compares `film` with the golden picture `name`, of which a share of `may_differ` pixels may differ.
+/// `INSTA_UPDATE=always cargo test -p solutions` writes it anew.
+pub fn compare(name: &str, film: &Film, may_differ: f64) -> Outcome {
+    let golden_file =
+        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
+    let yours = film.to_bytes(gamma);
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        let written = film.write_png(&golden_file, gamma);
+        return written
+            .map_err(|error| Broken::told(name, "cannot be written", error.to_string(), "the file system"));
+    }
+    let input = format!("the picture tests/golden/{name}.png");
+    let golden = match image::open(&golden_file) {
+        Ok(golden) => golden.to_rgb8(),
+        Err(error) => return Err(Broken::told(input, "a picture", error.to_string(), "the golden picture")),
+    };
+    if (golden.width(), golden.height()) != (film.width, film.height) {
+        let size = |width: u32, height: u32| format!("{width} × {height} pixels");
+        let (yours, theirs) = (size(film.width, film.height), size(golden.width(), golden.height()));
+        return Err(Broken::told(input, yours, theirs, "the golden picture"));
+    }
+    let off: Vec<u8> = yours
+        .rgb
+        .chunks(3)
+        .zip(golden.chunks(3))
+        .map(|(yours, golden)| yours.iter().zip(golden).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0))
+        .collect();
+    let n_off = off.iter().filter(|&&off| off > CHANNEL_TOLERANCE).count();
+    if n_off as f64 <= may_differ * off.len() as f64 && yours.not_a_number == 0 {
+        return Ok(());
+    }
+    let worst = (0..off.len()).max_by_key(|&pixel| off[pixel]).unwrap_or(0);
+    let (x, y) = (worst as u32 % film.width, worst as u32 / film.width);
+    let side_by_side = write_side_by_side(name, &yours.rgb, &golden, film.width, film.height);
+    let not_a_number = match yours.not_a_number {
+        0 => String::new(),
+        n => format!(", and {n} are not numbers"),
+    };
+    Err(Broken::told(
+        format!("{input}\n{side_by_side}"),
+        format!(
+            "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
+            off.len(),
+            film.at(x, y)
+        ),
+        format!("at most {:.0} differ; there: {:?}", may_differ * off.len() as f64, linear(&golden, x, y)),
+        "the golden picture",
+    ))
+}
+
+fn gamma(linear: f32) -> u8 {
+    (255.0 * linear.clamp(0.0, 1.0).sqrt() + 0.5) as u8
+}
+
+fn linear(picture: &RgbImage, x: u32, y: u32) -> Vec3 {
+    Vec3::from_array(picture.get_pixel(x, y).0.map(|byte| (f32::from(byte) / 255.0).powi(2)))
+}
+
+/// Writes reference | yours | difference as one picture and says where.
+fn write_side_by_side(name: &str, yours: &[u8], golden: &RgbImage, width: u32, height: u32) -> String {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../out"));
+    let file = folder.join(format!("{name}.png"));
+    let mut wide = RgbImage::new(3 * width + 8, height);
+    for y in 0..height {
+        for x in 0..width {
+            let at = 3 * (y * width + x) as usize;
+            let mine = [yours[at], yours[at + 1], yours[at + 2]];
+            let theirs = golden.get_pixel(x, y).0;
+            // Four times the difference, so that a small one can be seen.
+            let difference = [0, 1, 2].map(|i| mine[i].abs_diff(theirs[i]).saturating_mul(4));
+            for (column, pixel) in [theirs, mine, difference].into_iter().enumerate() {
+                wide.put_pixel(column as u32 * (width + 4) + x, y, image::Rgb(pixel));
+            }
+        }
+    }
+    let written = std::fs::create_dir_all(&folder).and_then(|()| {
+        write_atomically(&file, |out| {
+            let encoder = image::codecs::png::PngEncoder::new(out);
+            wide.write_with_encoder(encoder).map_err(std::io::Error::other)
+        })
+    });
+    match written {
+        Ok(()) => format!("reference | yours | difference: out/{name}.png"),
+        Err(error) => format!("(out/{name}.png could not be written: {error})"),
+    }
+}

@@ -1,0 +1,158 @@
+//! Running a check: on a thread with a deep stack, with a limit on how long it may take, and with the same inputs
+//! every time.
+
+use crate::broken::{self, Broken, Outcome};
+use crate::rubric;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use raykata::kit::{Kit, Mishap, mishap};
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
+
+/// A check that takes longer hangs. The slowest takes a second in a development build on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// How many smaller inputs are tried once a law is broken.
+const SHRINK_STEPS: usize = 400;
+
+/// A law with a name.
+#[derive(Clone, Copy)]
+pub struct Check {
+    /// The stage it belongs to.
+    pub stage: u8,
+    /// A sentence about light or geometry, in snake case.
+    pub name: &'static str,
+    /// The law.
+    pub law: fn(&Trial<'_>) -> Outcome,
+}
+
+/// A kit on trial.
+pub struct Trial<'a> {
+    /// Whose answers are judged.
+    pub kit: &'a dyn Kit,
+    /// The check, for file names and for inputs that differ from check to check.
+    pub name: &'static str,
+    /// Picks the random inputs.
+    pub seed: u64,
+}
+
+/// How a check ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// The law holds.
+    Passed,
+    /// There is no code to judge.
+    NotWritten {
+        /// What is to be written.
+        task: String,
+        /// `file:line`.
+        place: String,
+    },
+    /// The law is broken, or the code did not come back: the message for the student.
+    Failed(String),
+}
+
+impl Trial<'_> {
+    /// Draws `cases` inputs, has `judge` look at all of them at once, and shrinks the first that breaks the law.
+    pub fn forall<S: Strategy>(
+        &self,
+        cases: usize,
+        inputs: S,
+        judge: impl Fn(&[S::Value]) -> Vec<Outcome>,
+    ) -> Outcome
+    where
+        S::Value: Clone,
+    {
+        let mut seed = [0; 32];
+        seed[..8].copy_from_slice(&self.seed.to_le_bytes());
+        seed[8..16].copy_from_slice(&fingerprint(self.name).to_le_bytes());
+        let config = Config { failure_persistence: None, ..Config::default() };
+        let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+        let mut runner = TestRunner::new_with_rng(config, random);
+        let mut trees: Vec<S::Tree> = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).collect();
+
+        let values: Vec<S::Value> = trees.iter().map(ValueTree::current).collect();
+        let broken =
+            judge(&values).into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)));
+        match broken {
+            None => Ok(()),
+            Some((index, broken)) => {
+                let judge_one = |value: S::Value| judge(&[value]).into_iter().find_map(Result::err);
+                Err(shrink(trees.swap_remove(index), broken, judge_one))
+            }
+        }
+    }
+}
+
+/// Looks for a smaller input that breaks the law as well.
+fn shrink<T: ValueTree>(
+    mut tree: T,
+    mut smallest: Broken,
+    judge: impl Fn(T::Value) -> Option<Broken>,
+) -> Broken {
+    let mut steps = 0;
+    let mut going = tree.simplify();
+    while going && steps < SHRINK_STEPS {
+        steps += 1;
+        going = match judge(tree.current()) {
+            Some(broken) => {
+                smallest = broken;
+                tree.simplify()
+            }
+            None => tree.complicate(),
+        };
+    }
+    smallest
+}
+
+/// FNV-1a: the same on every machine and in every version.
+fn fingerprint(name: &str) -> u64 {
+    name.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// Runs one check.
+pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdict {
+    let (send, outcome) = mpsc::channel();
+    let (check, kit) = (*check, kit.clone());
+    // The thread is left behind if it hangs: it ends with the process.
+    let spawned = std::thread::Builder::new()
+        .name(check.name.into())
+        .stack_size(raykata::worker::STACK_BYTES)
+        .spawn(move || {
+            let trial = Trial { kit: &*kit, name: check.name, seed };
+            let _ = send.send(mishap::catch(|| (check.law)(&trial)));
+        });
+    if let Err(error) = spawned {
+        return Verdict::Failed(format!("the check could not be started: {error}\n"));
+    }
+    let outcome =
+        outcome.recv_timeout(PATIENCE).unwrap_or(Err(Mishap::TimedOut { seconds: PATIENCE.as_secs() }));
+    let entry = rubric::entry(check.stage, check.name);
+    match outcome {
+        Ok(Ok(())) => Verdict::Passed,
+        Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
+        Err(Mishap::NotWritten { task, place }) => Verdict::NotWritten { task, place },
+        Err(mishap) => Verdict::Failed(format!(
+            "{}  {mishap}\n{}",
+            entry.header(),
+            broken::next_commands(check.stage, check.name)
+        )),
+    }
+}
+
+/// Runs the check of this name as a test of `kit`: prints what a student needs to know and ends the test.
+pub fn grade(stage: u8, name: &str, kit: Arc<dyn Kit + Send + Sync>) {
+    let checks =
+        crate::STAGES.iter().find(|(number, _)| *number == stage).map_or(&[][..], |(_, checks)| checks);
+    let Some(check) = checks.iter().find(|check| check.name == name) else {
+        panic!("stage {stage} has no check `{name}`");
+    };
+    match run(check, &kit, 0) {
+        Verdict::Passed => return,
+        Verdict::NotWritten { task, place } => println!("not written yet: {place}\n  {task}"),
+        Verdict::Failed(message) => println!("{message}"),
+    }
+    // Ends the test without the words and the backtrace of a panic: everything is said.
+    std::panic::resume_unwind(Box::new("the check failed"));
+}

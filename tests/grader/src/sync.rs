@@ -1,0 +1,206 @@
+//! `raykata sync`: makes `exercises/src` from `solutions/src`.
+//!
+//! An answer stands between `// <solution>` and `// </solution>`. In the exercise it gives way to the lines marked
+//! `// <stub>` inside, without that mark; the marks themselves go, too. Everything else is the same in both.
+
+use anyhow::{Context, Result, bail};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const BEGIN: &str = "// <solution>";
+const STUB: &str = "// <stub>";
+const END: &str = "// </solution>";
+
+/// Where the fingerprints of generated files are kept: a file that still has its own is one that nobody has begun.
+const RECORD: &str = "exercises/.generated";
+
+/// An exercise file in its three versions.
+pub struct Exercise {
+    /// Path below the workspace.
+    pub path: PathBuf,
+    /// What `sync` would write.
+    pub stub: String,
+    /// What is there now, if anything.
+    pub present: Option<String>,
+    /// Whether what is there was written by `sync` and not touched since.
+    pub untouched: bool,
+}
+
+/// All exercise files of the workspace at `root`.
+pub fn exercises(root: &Path) -> Result<Vec<Exercise>> {
+    let record = read_record(root);
+    let mut files: Vec<PathBuf> = fs::read_dir(root.join("solutions/src"))
+        .context("no folder solutions/src: is this the whole kit, or a hand-out?")?
+        .filter_map(|entry| entry.ok().map(|entry| entry.path()))
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect();
+    files.sort();
+    files
+        .iter()
+        .map(|solution| {
+            let name = solution.file_name().context("a file without a name")?;
+            let path = Path::new("exercises/src").join(name);
+            let shown = Path::new("solutions/src").join(name);
+            let stub = stub(&read(solution)?, &shown)?;
+            let present = fs::read_to_string(root.join(&path)).ok();
+            let untouched = present
+                .as_ref()
+                .is_none_or(|text| *text == stub || record.get(&path) == Some(&fingerprint(text)));
+            Ok(Exercise { path, stub, present, untouched })
+        })
+        .collect()
+}
+
+/// Says which exercises differ from what `sync` would write; fails if any does.
+pub fn check(root: &Path) -> Result<()> {
+    let different: Vec<String> = exercises(root)?
+        .iter()
+        .filter(|exercise| exercise.present.as_ref() != Some(&exercise.stub))
+        .map(|exercise| format!("  {}", exercise.path.display()))
+        .collect();
+    if different.is_empty() {
+        println!("exercises/ is what solutions/ makes it");
+        return Ok(());
+    }
+    bail!("not what `raykata sync` would write from solutions/:\n{}", different.join("\n"))
+}
+
+/// Writes all exercises that nobody has begun; with `force`, the others as well.
+pub fn sync(root: &Path, force: bool) -> Result<()> {
+    let exercises = exercises(root)?;
+    let mut record = BTreeMap::new();
+    let mut kept = Vec::new();
+    for exercise in &exercises {
+        if exercise.untouched || force {
+            if exercise.present.as_ref() != Some(&exercise.stub) {
+                write(&root.join(&exercise.path), &exercise.stub)?;
+                println!("wrote {}", exercise.path.display());
+            }
+            record.insert(exercise.path.clone(), fingerprint(&exercise.stub));
+        } else {
+            kept.push(exercise.path.display().to_string());
+        }
+    }
+    let lines: Vec<String> =
+        record.iter().map(|(path, print)| format!("{print} {}\n", path.display())).collect();
+    write(&root.join(RECORD), &lines.concat())?;
+    for path in &kept {
+        println!("kept {path}: you have begun it (`raykata sync --force` would overwrite it)");
+    }
+    Ok(())
+}
+
+/// The exercise that a solution file makes.
+pub fn stub(solution: &str, path: &Path) -> Result<String> {
+    let mut lines: Vec<String> = Vec::new();
+    let mut opened = None;
+    for (number, line) in solution.lines().enumerate() {
+        let (number, mark) = (number + 1, line.trim_start());
+        let indent = &line[..line.len() - mark.len()];
+        let place = || format!("{}:{number}", path.display());
+        match opened {
+            _ if mark == BEGIN => {
+                if let Some(begun) = opened.replace(number) {
+                    bail!("{}: `{BEGIN}` inside the one that line {begun} began", place());
+                }
+            }
+            None if mark == END || mark.starts_with(STUB) => {
+                bail!("{}: `{mark}` outside of `{BEGIN}`", place())
+            }
+            None => lines.push(line.to_owned()),
+            Some(_) if mark == END => opened = None,
+            Some(_) => {
+                if let Some(text) = mark.strip_prefix(STUB) {
+                    lines.push(format!("{indent}{}", text.trim_start_matches(' ')));
+                }
+            }
+        }
+    }
+    if let Some(begun) = opened {
+        bail!("{}:{begun}: `{BEGIN}` is never closed by `{END}`", path.display());
+    }
+    // An answer that leaves nothing behind leaves one blank line too many.
+    lines.dedup_by(|line, above| line.is_empty() && above.is_empty());
+    Ok(lines.join("\n").trim_end().to_owned() + "\n")
+}
+
+fn read_record(root: &Path) -> BTreeMap<PathBuf, String> {
+    let text = fs::read_to_string(root.join(RECORD)).unwrap_or_default();
+    text.lines()
+        .filter_map(|line| line.split_once(' '))
+        .map(|(print, path)| (path.into(), print.into()))
+        .collect()
+}
+
+/// The same for LF and CRLF: a checkout may turn one into the other.
+fn fingerprint(text: &str) -> String {
+    let digest = Sha256::digest(text.replace("\r\n", "\n").as_bytes());
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+fn read(file: &Path) -> Result<String> {
+    fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))
+}
+
+fn write(file: &Path, text: &str) -> Result<()> {
+    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stub_of(text: &str) -> Result<String> {
+        stub(text, Path::new("a.rs"))
+    }
+
+    #[test]
+    fn an_answer_gives_way_to_its_stub() {
+        let solution = "fn f() {\n    // <solution>\n    1 + 1\n    // <stub> todo!(\"add\")\n    // </solution>\n}\n\n\
+                        // <solution>\nfn helper() {}\n// </solution>\n\nfn g() {}\n";
+        assert_eq!(stub_of(solution).unwrap(), "fn f() {\n    todo!(\"add\")\n}\n\nfn g() {}\n");
+    }
+
+    #[test]
+    fn marks_that_do_not_match_are_errors_with_a_place() {
+        let message = |text: &str| stub_of(text).unwrap_err().to_string();
+        assert_eq!(
+            message("\n// <solution>\nx"),
+            "a.rs:2: `// <solution>` is never closed by `// </solution>`"
+        );
+        assert_eq!(message("// </solution>"), "a.rs:1: `// </solution>` outside of `// <solution>`");
+        assert_eq!(
+            message("// <solution>\n// <solution>"),
+            "a.rs:2: `// <solution>` inside the one that line 1 began"
+        );
+    }
+
+    #[test]
+    fn work_that_was_begun_is_kept_until_told_otherwise() {
+        let root = tempfile::tempdir().unwrap();
+        let at = |path: &str| root.path().join(path);
+        fs::create_dir_all(at("solutions/src")).unwrap();
+        fs::create_dir_all(at("exercises/src")).unwrap();
+        let solution =
+            "fn f() -> u8 {\n    // <solution>\n    7\n    // <stub> todo!()\n    // </solution>\n}\n";
+        fs::write(at("solutions/src/a.rs"), solution).unwrap();
+        sync(root.path(), false).unwrap();
+        check(root.path()).unwrap();
+
+        // A newer kit replaces what nobody has touched …
+        fs::write(at("solutions/src/a.rs"), solution.replace("u8", "u16")).unwrap();
+        assert!(check(root.path()).is_err());
+        sync(root.path(), false).unwrap();
+        assert!(fs::read_to_string(at("exercises/src/a.rs")).unwrap().contains("u16"));
+
+        // … and leaves alone what somebody has.
+        fs::write(at("exercises/src/a.rs"), "fn f() -> u16 { 8 }\n").unwrap();
+        sync(root.path(), false).unwrap();
+        assert_eq!(fs::read_to_string(at("exercises/src/a.rs")).unwrap(), "fn f() -> u16 { 8 }\n");
+        sync(root.path(), true).unwrap();
+        check(root.path()).unwrap();
+    }
+}
