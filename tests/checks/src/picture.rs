@@ -3,22 +3,42 @@
 //! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Up to the stated
 //! share of pixels may differ, because correct methods round differently along outlines; the rest may not.
 
-use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use glam::Vec3;
 use image::RgbImage;
+use raykata::camera::Camera;
 use raykata::film::{Film, write_atomically};
-use raykata::kit::{RenderJob, Rendering, View};
-use raykata::scene::Scene;
+use raykata::ray::Ray;
 use std::path::PathBuf;
 
 /// How far a channel may be off: four steps of a screen that shows 6 bits.
 const CHANNEL_TOLERANCE: u8 = 8;
 
-/// Renders `scene` with the kit, on this thread and with counts.
-pub fn render(trial: &Trial<'_>, scene: &Scene, view: View) -> Option<Rendering> {
-    let job = RenderJob { scene: scene.clone(), view, seed: 0, threads: 1, count: true };
-    trial.kit.render(&job, &raykata::frame::Unwatched)
+/// Size of the pictures that are put together here.
+const WIDTH: u32 = 80;
+const HEIGHT: u32 = 60;
+
+/// One ray through the middle of each pixel of a small picture, row by row from the top.
+///
+/// Graded pictures are put together here, from answers about many rays at once, so that they show one stage and do
+/// not break when another is broken.
+pub fn rays(eye: Vec3, target: Vec3) -> Vec<Ray> {
+    let camera = Camera::new(eye, target - eye, Vec3::Y, 45.0, WIDTH as f32 / HEIGHT as f32);
+    let camera = camera.expect("the eye is not above its target");
+    let pixels = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)));
+    pixels
+        .map(|(x, y)| camera.ray((x as f32 + 0.5) / WIDTH as f32, (y as f32 + 0.5) / HEIGHT as f32))
+        .collect()
+}
+
+/// The picture that these colours make, in the order of [`rays`].
+pub fn develop(pixels: Vec<Vec3>) -> Film {
+    Film { width: WIDTH, height: HEIGHT, pixels }
+}
+
+/// A normal as a colour.
+pub fn normal_color(normal: Vec3) -> Vec3 {
+    0.5 * normal + 0.5
 }
 
 /// Compares `film` with the golden picture `name`, of which a share of `may_differ` pixels may differ.
