@@ -34,7 +34,12 @@ pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
 /// The smallest box around two boxes. [`Aabb::EMPTY`] changes nothing.
 pub fn union(first: &Aabb, second: &Aabb) -> Aabb {
     // <solution>
-    Aabb::new(first.min.min(second.min), first.max.max(second.max))
+    // f32::min and max drop a NaN; those of Vec3 keep or drop it depending on the order, and a broken primitive that
+    // was kept would break the boxes of all others.
+    let pick = |choose: fn(f32, f32) -> f32, p: Vec3, q: Vec3| {
+        Vec3::new(choose(p.x, q.x), choose(p.y, q.y), choose(p.z, q.z))
+    };
+    Aabb::new(pick(f32::min, first.min, second.min), pick(f32::max, first.max, second.max))
     // <stub> todo!("take the smaller min and the larger max")
     // </solution>
 }

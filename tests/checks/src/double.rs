@@ -2,6 +2,7 @@
 //! decide, nothing is judged. (Exact verdicts, for stage 10, are another matter.)
 
 use glam::{DVec3, Vec3};
+use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
 use raykata::shape::{Plane, Sphere, Triangle};
@@ -197,4 +198,23 @@ pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
 pub fn triangle_point(triangle: &Triangle, beta: f64, gamma: f64) -> DVec3 {
     let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
     a + beta * (b - a) + gamma * (c - a)
+}
+
+/// Where an endless line along `ray` enters and leaves a box, which is closed; `(inf, -inf)` if it passes by.
+pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
+    let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
+    for axis in 0..3 {
+        let [low, high, origin, dir] =
+            [bounds.min[axis], bounds.max[axis], ray.origin[axis], ray.dir[axis]].map(f64::from);
+        let (enter, leave) = if dir != 0.0 {
+            let (first, last) = ((low - origin) / dir, (high - origin) / dir);
+            (first.min(last), first.max(last))
+        } else if low <= origin && origin <= high {
+            (f64::NEG_INFINITY, f64::INFINITY)
+        } else {
+            (f64::INFINITY, f64::NEG_INFINITY)
+        };
+        (near, far) = (near.max(enter), far.min(leave));
+    }
+    if near <= far { (near, far) } else { (f64::INFINITY, f64::NEG_INFINITY) }
 }

@@ -1,0 +1,286 @@
+//! What checks know of hierarchies: a reference builder and a reference search, the invariants of a tree, its expected
+//! cost, and tables of answers for searches.
+
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::bvh::{Bvh, Contents, INTERSECTION_COST, PrimitiveHit, PrimitiveRef, Probe, TRAVERSAL_COST};
+use raykata::kit::{SearchQuery, Table};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+/// The smallest box around all of `boxes`.
+pub fn around<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Aabb {
+    boxes.into_iter().fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
+}
+
+/// Half the surface of a box; 0 for an empty one.
+pub fn half_area(bounds: &Aabb) -> f64 {
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    let size = (bounds.max - bounds.min).as_dvec3();
+    size.x * size.y + size.y * size.z + size.z * size.x
+}
+
+/// What builders know of boxes `0..n`.
+pub fn references(boxes: &[Aabb]) -> Vec<PrimitiveRef> {
+    let reference = |(id, bounds): (usize, &Aabb)| PrimitiveRef {
+        id: id as u32,
+        bounds: *bounds,
+        centroid: 0.5 * (bounds.min + bounds.max),
+    };
+    boxes.iter().enumerate().map(reference).collect()
+}
+
+/// `A(L) n(L) + A(R) n(R)`, with half areas, of the cut before `middle`.
+pub fn cut_cost(primitives: &[PrimitiveRef], middle: usize) -> f64 {
+    let side = |part: &[PrimitiveRef]| half_area(&around(part.iter().map(|p| &p.bounds))) * part.len() as f64;
+    side(&primitives[..middle]) + side(&primitives[middle..])
+}
+
+/// The least [`cut_cost`] over all three axes, with the order and the place that give it. Tries every cut.
+pub fn best_cut(primitives: &[PrimitiveRef]) -> (f64, Vec<PrimitiveRef>, usize) {
+    let mut best = (f64::INFINITY, primitives.to_vec(), 1);
+    for axis in 0..3 {
+        let mut sorted = primitives.to_vec();
+        sorted.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
+        for middle in 1..sorted.len() {
+            let cost = cut_cost(&sorted, middle);
+            if cost < best.0 {
+                best = (cost, sorted.clone(), middle);
+            }
+        }
+    }
+    best
+}
+
+/// Whether a leaf is cheaper than a cut of this cost; `None` if rounding decides.
+pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
+    let area = half_area(&around(primitives.iter().map(|p| &p.bounds)));
+    let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
+    let leaf = intersection * area * primitives.len() as f64;
+    let split = traversal * area + intersection * cost;
+    ((leaf - split).abs() > 1e-4 * leaf).then_some(leaf < split)
+}
+
+/// Builds a tree with the cheapest cut at every node.
+pub fn build(boxes: &[Aabb], leaf_size: usize) -> Bvh {
+    let mut bvh = Bvh::for_primitives(boxes.len());
+    if !boxes.is_empty() {
+        subdivide(&mut bvh, &references(boxes), leaf_size);
+    }
+    bvh
+}
+
+fn subdivide(bvh: &mut Bvh, primitives: &[PrimitiveRef], leaf_size: usize) -> u32 {
+    let node = bvh.add_node(around(primitives.iter().map(|p| &p.bounds)));
+    let (cost, sorted, middle) = best_cut(primitives);
+    let fits = primitives.len() <= leaf_size;
+    if primitives.len() == 1 || fits && leaf_is_cheaper(primitives, cost) != Some(false) {
+        bvh.set_leaf(node, primitives);
+    } else {
+        let left = subdivide(bvh, &sorted[..middle], leaf_size);
+        let right = subdivide(bvh, &sorted[middle..], leaf_size);
+        bvh.set_children(node, left, right);
+    }
+    node
+}
+
+/// What a tree is expected to cost a ray that enters its root: each node weighs the share of the root's area that it
+/// has.
+pub fn expected_cost(bvh: &Bvh) -> f64 {
+    let area = |node: usize| half_area(&bvh.nodes[node].bounds);
+    let cost = |node: usize| match bvh.nodes[node].contents {
+        Contents::Inner { .. } => f64::from(TRAVERSAL_COST),
+        Contents::Leaf { count, .. } => f64::from(INTERSECTION_COST) * f64::from(count),
+    };
+    (0..bvh.nodes.len()).map(|node| area(node) * cost(node)).sum::<f64>() / area(0)
+}
+
+/// The first thing that is wrong with a tree over `boxes`: `(what it is, what it should be)`.
+pub fn fault(bvh: &Bvh, boxes: &[Aabb], leaf_size: usize) -> Option<(String, String)> {
+    let wrong = |yours: String, expected: &str| Some((yours, expected.to_owned()));
+    let n = boxes.len();
+    if n == 0 {
+        return if bvh.nodes.is_empty() {
+            None
+        } else {
+            wrong(format!("{} nodes", bvh.nodes.len()), "no nodes")
+        };
+    }
+    let mut seen = vec![0; n];
+    let mut reached = vec![false; bvh.nodes.len()];
+    let mut waiting = vec![0];
+    while let Some(node) = waiting.pop() {
+        let Some(this) = bvh.nodes.get(node) else {
+            return wrong(
+                format!("a child with number {node} of {}", bvh.nodes.len()),
+                "children that exist",
+            );
+        };
+        if std::mem::replace(&mut reached[node], true) {
+            return wrong(format!("node {node} has two parents"), "a tree");
+        }
+        match this.contents {
+            Contents::Inner { left, right } => {
+                for child in [left as usize, right as usize] {
+                    let inside = bvh.nodes.get(child).is_none_or(|c| this.bounds.contains_box(&c.bounds));
+                    if !inside {
+                        return wrong(
+                            format!("node {child} sticks out of its parent {node}"),
+                            "boxes within boxes",
+                        );
+                    }
+                    waiting.push(child);
+                }
+            }
+            Contents::Leaf { first, count } => {
+                let (first, count) = (first as usize, count as usize);
+                if count == 0 || count > leaf_size {
+                    return wrong(
+                        format!("leaf {node} holds {count}"),
+                        &format!("1 to {leaf_size} primitives a leaf"),
+                    );
+                }
+                let Some(ids) = bvh.order.get(first..first + count) else {
+                    return wrong(
+                        format!("leaf {node} ends at {} of {}", first + count, bvh.order.len()),
+                        "leaves within `order`",
+                    );
+                };
+                for &id in ids {
+                    let Some(bounds) = boxes.get(id as usize) else {
+                        return wrong(format!("primitive {id}"), &format!("primitives 0..{n}"));
+                    };
+                    seen[id as usize] += 1;
+                    if !bounds.min.is_nan() && !this.bounds.contains_box(bounds) {
+                        return wrong(
+                            format!("primitive {id} sticks out of leaf {node}"),
+                            "boxes around their primitives",
+                        );
+                    }
+                }
+            }
+        }
+    }
+    let missing = seen.iter().position(|&times| times != 1);
+    missing.and_then(|id| {
+        wrong(format!("primitive {id} is in {} leaves", seen[id]), "each primitive in exactly one leaf")
+    })
+}
+
+/// A tree as text: one line a node, indented by depth, children in the order of their boxes.
+pub fn as_text(bvh: &Bvh) -> String {
+    let mut text = String::new();
+    if let Some(root) = bvh.root() {
+        write_node(bvh, root, 0, &mut text);
+    }
+    text
+}
+
+fn write_node(bvh: &Bvh, node: u32, depth: usize, text: &mut String) {
+    let Aabb { min, max } = bvh.nodes[node as usize].bounds;
+    let bounds =
+        format!("({:.3} {:.3} {:.3})..({:.3} {:.3} {:.3})", min.x, min.y, min.z, max.x, max.y, max.z);
+    let indent = "  ".repeat(depth);
+    match bvh.nodes[node as usize].contents {
+        Contents::Leaf { first, count } => {
+            let mut ids = bvh.primitives(first, count).to_vec();
+            ids.sort_unstable();
+            text.push_str(&format!("{indent}leaf {bounds} {ids:?}\n"));
+        }
+        Contents::Inner { left, right } => {
+            text.push_str(&format!("{indent}node {bounds}\n"));
+            let mut children = [left, right];
+            let low = |child: u32| bvh.nodes[child as usize].bounds.min;
+            children.sort_by(|&p, &q| {
+                low(p).to_array().map(f32::to_bits).cmp(&low(q).to_array().map(f32::to_bits))
+            });
+            children.into_iter().for_each(|child| write_node(bvh, child, depth + 1, text));
+        }
+    }
+}
+
+// ---- searches ----
+
+/// A box around a sphere, with room for rounding.
+pub fn sphere_box(sphere: &Sphere) -> Aabb {
+    let reach = Vec3::splat(1.0001 * sphere.radius);
+    Aabb::new(sphere.center - reach, sphere.center + reach)
+}
+
+/// The question for the closest of `spheres` along `ray`, with all answers worked out in double precision.
+pub fn search_query(bvh: &Bvh, spheres: &[Sphere], ray: &Ray) -> SearchQuery {
+    let primitives: Vec<f32> = spheres.iter().map(|sphere| sphere_t(ray, sphere)).collect();
+    let mut boxes: Vec<(f32, f32)> = bvh.nodes.iter().map(|node| interval(ray, &node.bounds)).collect();
+    // A parent comes before its children, so this goes from the leaves up: no box begins after what it holds.
+    for node in (0..bvh.nodes.len()).rev() {
+        let within: Vec<(f32, f32)> = match bvh.nodes[node].contents {
+            Contents::Inner { left, right } => vec![boxes[left as usize], boxes[right as usize]],
+            Contents::Leaf { first, count } => {
+                let hits = bvh.primitives(first, count).iter().map(|&id| primitives[id as usize]);
+                hits.filter(|t| t.is_finite()).map(|t| (t, t)).collect()
+            }
+        };
+        for (near, far) in within {
+            boxes[node] = (boxes[node].0.min(near), boxes[node].1.max(far));
+        }
+    }
+    SearchQuery { bvh: bvh.clone(), ray: *ray, table: Table { boxes, primitives } }
+}
+
+/// The nearest hit in front of the ray, rounded to a 64th, so that ties are common.
+fn sphere_t(ray: &Ray, sphere: &Sphere) -> f32 {
+    match crate::double::sphere(&Ray::new(ray.origin, ray.dir), sphere) {
+        crate::double::Expected::Hit { t, .. } => ((64.0 * t).ceil() / 64.0) as f32,
+        _ => f32::INFINITY,
+    }
+}
+
+fn interval(ray: &Ray, bounds: &Aabb) -> (f32, f32) {
+    let (near, far) = crate::double::box_interval(ray, bounds);
+    if near <= far {
+        ((near as f32).next_down(), (far as f32).next_up())
+    } else {
+        (f32::INFINITY, f32::NEG_INFINITY)
+    }
+}
+
+/// The reference search: nearer child first, and nothing beyond the best hit.
+pub fn search(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
+    let mut ray = *ray;
+    let mut best: Option<PrimitiveHit> = None;
+    let root = bvh.root()?;
+    let mut waiting = vec![(probe.enter(root, &ray)?, root)];
+    while let Some((enter, node)) = waiting.pop() {
+        if enter >= ray.t_max {
+            continue;
+        }
+        match probe.open(node) {
+            Contents::Inner { left, right } => {
+                let mut children: Vec<(f32, u32)> = [left, right]
+                    .into_iter()
+                    .filter_map(|child| Some((probe.enter(child, &ray)?, child)))
+                    .collect();
+                children.sort_by(|p, q| q.0.total_cmp(&p.0));
+                waiting.extend(children);
+            }
+            Contents::Leaf { first, count } => {
+                for &primitive in bvh.primitives(first, count) {
+                    let Some(t) = probe.hit(primitive, &ray) else { continue };
+                    if best.is_none_or(|best| (t, primitive) < (best.t, best.primitive)) {
+                        best = Some(PrimitiveHit { t, primitive });
+                    }
+                    ray.t_max = ray.t_max.min(t.next_up());
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Nodes whose boxes the ray enters when nothing is skipped.
+pub fn overlapped(query: &SearchQuery) -> Vec<usize> {
+    let enters = |&(near, far): &(f32, f32)| near.max(query.ray.t_min) <= far && near < query.ray.t_max;
+    (0..query.bvh.nodes.len()).filter(|&node| enters(&query.table.boxes[node])).collect()
+}
