@@ -55,10 +55,31 @@ impl Film {
 
     /// Writes a PNG file; see [`Film::to_bytes`] for `encode`.
     pub fn write_png(&self, file: &Path, encode: impl Fn(f32) -> u8) -> io::Result<()> {
-        let bytes = self.to_bytes(encode);
+        self.write_rgb(file, &self.to_bytes(encode).rgb)
+    }
+
+    /// Writes a PNG file of components that were encoded elsewhere, one byte for each of ours. NaN turns magenta, as
+    /// in [`Film::to_bytes`].
+    pub fn write_png_bytes(&self, file: &Path, components: &[u8]) -> io::Result<()> {
+        if components.len() != 3 * self.pixels.len() {
+            return Err(io::Error::other(format!(
+                "{} bytes for {} pixels",
+                components.len(),
+                self.pixels.len()
+            )));
+        }
+        let seen = self.to_bytes(|_| 0).rgb;
+        let magenta = |(pixel, ours): (&[u8], &[u8])| {
+            if pixel[0] > 0 { [255, 0, 255] } else { [ours[0], ours[1], ours[2]] }
+        };
+        let rgb: Vec<u8> = seen.chunks(3).zip(components.chunks(3)).flat_map(magenta).collect();
+        self.write_rgb(file, &rgb)
+    }
+
+    fn write_rgb(&self, file: &Path, rgb: &[u8]) -> io::Result<()> {
         write_atomically(file, |out| {
             PngEncoder::new(out)
-                .write_image(&bytes.rgb, self.width, self.height, ExtendedColorType::Rgb8)
+                .write_image(rgb, self.width, self.height, ExtendedColorType::Rgb8)
                 .map_err(io::Error::other)
         })
     }

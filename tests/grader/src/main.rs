@@ -1,10 +1,97 @@
-//! The tool.
+//! `raykata`: renders scenes, checks exercises, gives hints, and keeps exercises in step with solutions.
+
+mod check;
+mod generate;
+mod kits;
+mod render;
+mod report;
 mod sync;
-fn main() -> anyhow::Result<()> {
-    let root = std::env::current_dir()?;
-    if std::env::args().nth(1).as_deref() == Some("sync") {
-        sync::sync(&root, std::env::args().any(|a| a == "--force"))
-    } else {
-        sync::check(&root)
+mod worker;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use kits::{Source, Which, root};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Build a ray tracer by making its tests pass. Without a command: where you stand and what comes next.
+///
+/// You write in exercises/src. `cargo test --test stage1` grades stage 1, `raykata render scenes/stage1.toml --kit
+/// exercises` makes a picture with your code.
+///
+/// Exit codes: 0 all went well; 1 something is wrong: checks failed, files differ, a scene cannot be read; 2 the
+/// command line was not understood.
+#[derive(Parser)]
+#[command(name = "raykata", version, verbatim_doc_comment)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene to a picture.
+    Render(render::Options),
+    /// Grade your exercises and print the scorecard.
+    Check {
+        /// One stage only.
+        stage: Option<u8>,
+        /// Whose code to grade.
+        #[arg(long, value_enum, default_value_t = Which::Exercises)]
+        kit: Which,
+    },
+    /// List all checks with their points.
+    List,
+    /// Get a hint for a check.
+    Hint {
+        /// Its name, as `list` and failing tests print it.
+        check: String,
+        /// 1 is a nudge, 3 nearly the answer.
+        #[arg(default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
+        level: u8,
+    },
+    /// Make exercises/ from solutions/ (for authors). Keeps what you have begun.
+    Sync {
+        /// Only say whether anything differs.
+        #[arg(long)]
+        check: bool,
+        /// Overwrite exercises that have been begun.
+        #[arg(long, conflicts_with = "check")]
+        force: bool,
+    },
+    /// Make the mesh of the showcase scene (for authors).
+    Generate {
+        /// Where to write it.
+        #[arg(default_value = "scenes/meshes/knot.ply")]
+        out: PathBuf,
+    },
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(cli) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(1)
+        }
     }
+}
+
+/// Whether all went well.
+fn run(cli: Cli) -> Result<bool> {
+    match cli.command {
+        None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
+        Some(Command::Render(options)) => render::run(&options)?,
+        Some(Command::Check { stage, kit }) => {
+            return check::scorecard(&Source::prepare(kit, &root()?)?, stage);
+        }
+        Some(Command::List) => check::list(),
+        Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,
+        Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
+        Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
+        Some(Command::Generate { out }) => generate::write(&out)?,
+    }
+    Ok(true)
 }

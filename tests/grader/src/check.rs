@@ -1,0 +1,192 @@
+//! `raykata check`, `list`, `hint`, and `raykata` alone: where a student stands and what comes next.
+
+use crate::kits::Source;
+use anyhow::{Result, bail};
+use checks::rubric::{self, RUBRIC};
+use checks::{Check, STAGES, Verdict};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A check and how it ended.
+pub struct Graded {
+    pub check: &'static Check,
+    pub verdict: Verdict,
+    pub points: u32,
+}
+
+impl Graded {
+    fn passed(&self) -> bool {
+        self.verdict == Verdict::Passed
+    }
+}
+
+/// Runs all checks of the stages for which `wanted` holds, each with a kit of its own, on all cores.
+pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Vec<Graded> {
+    let checks: Vec<&'static Check> =
+        STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
+    let next = AtomicUsize::new(0);
+    let verdicts = Mutex::new(BTreeMap::new());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(check) = checks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let verdict = checks::run(check, &source.fresh(), 0);
+                    if let Ok(mut verdicts) = verdicts.lock() {
+                        verdicts.insert((check.stage, check.name), verdict);
+                    }
+                }
+            });
+        }
+    });
+    let mut verdicts = verdicts.into_inner().unwrap_or_default();
+    checks
+        .into_iter()
+        .map(|check| Graded {
+            check,
+            verdict: verdicts
+                .remove(&(check.stage, check.name))
+                .unwrap_or_else(|| Verdict::Failed("the check itself broke\n".into())),
+            points: rubric::entry(check.stage, check.name).points,
+        })
+        .collect()
+}
+
+/// Prints the scorecard; `Ok(true)` if everything passed.
+pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
+    if let Some(stage) = stage
+        && !STAGES.iter().any(|(number, _)| *number == stage)
+    {
+        bail!("there is no stage {stage}; `raykata list` shows what there is");
+    }
+    let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number));
+    for (number, _) in STAGES.iter().filter(|(number, _)| stage.is_none_or(|stage| stage == *number)) {
+        let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
+        println!("{}", stage_line(*number, &of_stage));
+        for one in &of_stage {
+            let word = match &one.verdict {
+                Verdict::Passed => "ok",
+                Verdict::NotWritten { .. } => "not written",
+                Verdict::Failed(_) => "FAILED",
+            };
+            let entry = rubric::entry(*number, one.check.name);
+            let earned = if one.passed() { one.points } else { 0 };
+            println!("  {word:<11}  {earned:>2}/{:<2}  {:<52}  {}", one.points, one.check.name, entry.title);
+        }
+        println!();
+    }
+    for one in &graded {
+        if let Verdict::Failed(message) = &one.verdict {
+            println!("{message}");
+        }
+    }
+    for (place, (task, waiting)) in gaps(&graded) {
+        println!("not written yet: {place}\n  {task} ({} wait for it)", count(waiting, "check"));
+    }
+    let passed = graded.iter().filter(|one| one.passed()).count();
+    let (earned, all) = points(graded.iter());
+    println!("\n{earned} of {all} points\n{passed} passed, {} failed", graded.len() - passed);
+    Ok(passed == graded.len())
+}
+
+fn count(n: usize, what: &str) -> String {
+    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+}
+
+/// `place → (task, checks that wait for it)`.
+fn gaps(graded: &[Graded]) -> BTreeMap<String, (String, usize)> {
+    let mut gaps: BTreeMap<String, (String, usize)> = BTreeMap::new();
+    for one in graded {
+        if let Verdict::NotWritten { task, place } = &one.verdict {
+            gaps.entry(place.clone()).or_insert((task.clone(), 0)).1 += 1;
+        }
+    }
+    gaps
+}
+
+fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> (u32, u32) {
+    graded.fold((0, 0), |(earned, all), one| {
+        (earned + if one.passed() { one.points } else { 0 }, all + one.points)
+    })
+}
+
+fn stage_line(number: u8, graded: &[&Graded]) -> String {
+    let title = RUBRIC.get(&format!("stage{number}")).map_or("", |stage| &stage.title);
+    let passed = graded.iter().filter(|one| one.passed()).count();
+    let (earned, all) = points(graded.iter().copied());
+    format!(
+        "stage {number} · {title:<28} {passed:>2} of {:<2} checks   {earned:>3} of {all:<3} points",
+        graded.len()
+    )
+}
+
+/// Where the student stands, and the next step.
+pub fn status(source: &Source) {
+    let graded = run_checks(source, |_| true);
+    for (number, _) in STAGES {
+        let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
+        println!("{}", stage_line(*number, &of_stage));
+    }
+    println!();
+    match graded.iter().find(|one| !one.passed()) {
+        None => println!(
+            "Everything passes. `cargo run --release -- render scenes/showcase.toml --kit exercises` shows it."
+        ),
+        Some(next) => {
+            let (stage, name) = (next.check.stage, next.check.name);
+            match &next.verdict {
+                Verdict::NotWritten { task, place } => println!("Next: {place}\n  {task}\n"),
+                Verdict::Failed(message) => println!("Next, `{name}` fails:\n{message}"),
+                Verdict::Passed => {}
+            }
+            println!("  run it:  cargo test --test stage{stage} {name}");
+            println!("  a hint:  cargo run -- hint {name}");
+        }
+    }
+}
+
+/// All checks with their points and laws.
+pub fn list() {
+    for (number, checks) in STAGES {
+        let stage = RUBRIC.get(&format!("stage{number}"));
+        println!("stage {number} · {}", stage.map_or("", |stage| &stage.title));
+        println!(
+            "  work in {}, run `cargo test --test stage{number}`",
+            stage.map_or("", |stage| &stage.file)
+        );
+        for check in *checks {
+            let entry = rubric::entry(*number, check.name);
+            println!("  {:>2}  {:<52}  {}", entry.points, check.name, entry.title);
+        }
+        println!();
+    }
+}
+
+/// One of the three hints of a check.
+pub fn hint(name: &str, level: usize) -> Result<()> {
+    let all: Vec<&Check> = STAGES.iter().flat_map(|(_, checks)| checks.iter()).collect();
+    let Some(check) = all.iter().find(|check| check.name == name) else {
+        let mut near: Vec<&str> =
+            all.iter().map(|check| check.name).filter(|other| other.contains(name)).collect();
+        if near.is_empty() {
+            near = all
+                .iter()
+                .map(|check| check.name)
+                .filter(|other| strsim::jaro_winkler(other, name) > 0.85)
+                .collect();
+        }
+        near.truncate(5);
+        match near.is_empty() {
+            true => bail!("there is no check `{name}`; `raykata list` shows all"),
+            false => bail!("there is no check `{name}`; did you mean {}?", near.join(", ")),
+        }
+    };
+    let entry = rubric::entry(check.stage, name);
+    print!("{}", entry.header());
+    println!("\n  {}\n", entry.hints[level - 1]);
+    if level < entry.hints.len() {
+        println!("  still stuck: cargo run -- hint {name} {}", level + 1);
+    }
+    Ok(())
+}

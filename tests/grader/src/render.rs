@@ -1,0 +1,259 @@
+//! `raykata render`: a scene becomes a picture.
+
+use crate::kits::{Source, Which, root};
+use crate::report::{Thousands, load_scene};
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use raykata::film::{Film, encode_srgb};
+use raykata::frame::Watch;
+use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
+use raykata::scene::{Accelerator, Encoding, Scene, Split, TriangleMethod};
+use std::path::{Path, PathBuf};
+
+/// What to render and how.
+#[derive(Args)]
+pub struct Options {
+    /// The scene, a TOML file.
+    scene: PathBuf,
+    /// Where the picture goes: .png, .hdr or .exr [default: out/NAME.png].
+    #[arg(long, short)]
+    out: Option<PathBuf>,
+    /// Whose code makes it.
+    #[arg(long, value_enum, default_value_t = Which::Solutions)]
+    kit: Which,
+    /// Size in pixels, such as 640x360 [default: the scene's].
+    #[arg(long, value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Samples a pixel [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    spp: Option<u32>,
+    /// Threads; 0 takes one a core.
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Picks the random numbers.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Split strategy of the hierarchy [default: the scene's].
+    #[arg(long, value_enum)]
+    split: Option<SplitName>,
+    /// Most primitives in a leaf [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    leaf_size: Option<u32>,
+    /// What finds the closest hit [default: the scene's].
+    #[arg(long, value_enum)]
+    accelerator: Option<AcceleratorName>,
+    /// Ray/triangle test [default: the scene's].
+    #[arg(long, value_enum)]
+    triangles: Option<TriangleName>,
+    /// Show normals instead of light.
+    #[arg(long)]
+    normals: bool,
+    /// Do not count work: a little faster.
+    #[arg(long)]
+    no_counts: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SplitName {
+    ObjectMedian,
+    SpatialMedian,
+    SurfaceArea,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum AcceleratorName {
+    BruteForce,
+    Bvh,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum TriangleName {
+    Cramer,
+    Gram,
+    Watertight,
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let parsed = text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parsed {
+        Some((width, height)) if (1..=65_536).contains(&width) && (1..=65_536).contains(&height) => {
+            Ok((width, height))
+        }
+        _ => Err("a size is two numbers from 1 to 65536 with an x between them, such as 640x360".into()),
+    }
+}
+
+/// Which kind of file a picture becomes.
+#[derive(Clone, Copy)]
+enum Format {
+    Png,
+    Hdr,
+    Exr,
+}
+
+fn format_of(file: &Path) -> Result<Format> {
+    let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    match extension.to_ascii_lowercase().as_str() {
+        "png" => Ok(Format::Png),
+        "hdr" => Ok(Format::Hdr),
+        "exr" => Ok(Format::Exr),
+        _ => bail!(
+            "cannot tell what kind of picture {} is to be: let it end in .png, .hdr or .exr",
+            file.display()
+        ),
+    }
+}
+
+/// Renders and tells what it took.
+pub fn run(options: &Options) -> Result<()> {
+    let mut scene = load_scene(&options.scene)?;
+    apply(options, &mut scene);
+    let out = match &options.out {
+        Some(out) => out.clone(),
+        None => Path::new("out")
+            .join(options.scene.file_stem().context("the scene has no name")?)
+            .with_extension("png"),
+    };
+    let format = format_of(&out)?;
+    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    }
+
+    let source = match options.kit {
+        Which::Solutions => Source::Solutions,
+        Which::Exercises => Source::prepare(options.kit, &root()?)?,
+    };
+    let kit = source.fresh();
+    let view = if options.normals { View::Normals } else { View::Shaded };
+    let job =
+        RenderJob { scene, view, seed: options.seed, threads: options.threads, count: !options.no_counts };
+    let bar = Bar::new();
+    let rendering = mishap::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
+    bar.0.finish_and_clear();
+
+    let write = match format {
+        Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
+        Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),
+        Format::Exr => write_exr(&rendering.film, &out),
+    };
+    write.with_context(|| format!("cannot write {}", out.display()))?;
+    tell(&out, &job, &rendering);
+    Ok(())
+}
+
+fn apply(options: &Options, scene: &mut Scene) {
+    if let Some((width, height)) = options.size {
+        (scene.film.width, scene.film.height) = (width, height);
+    }
+    let quality = &mut scene.quality;
+    quality.samples_per_pixel = options.spp.unwrap_or(quality.samples_per_pixel);
+    quality.leaf_size = options.leaf_size.unwrap_or(quality.leaf_size);
+    quality.split = options.split.map_or(quality.split, |split| match split {
+        SplitName::ObjectMedian => Split::ObjectMedian,
+        SplitName::SpatialMedian => Split::SpatialMedian,
+        SplitName::SurfaceArea => Split::SurfaceArea,
+    });
+    quality.accelerator = options.accelerator.map_or(quality.accelerator, |accelerator| match accelerator {
+        AcceleratorName::BruteForce => Accelerator::BruteForce,
+        AcceleratorName::Bvh => Accelerator::Bvh,
+    });
+    quality.triangle_method = options.triangles.map_or(quality.triangle_method, |method| match method {
+        TriangleName::Cramer => TriangleMethod::Cramer,
+        TriangleName::Gram => TriangleMethod::Gram,
+        TriangleName::Watertight => TriangleMethod::Watertight,
+    });
+}
+
+/// Gamma 2 is an exercise, so the kit that made the picture encodes it.
+fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
+    match encoding {
+        Encoding::Srgb => film.write_png(out, encode_srgb)?,
+        Encoding::Gamma2 => {
+            let components: Vec<f32> = film.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+            let bytes = mishap::catch(|| kit.encode_gamma(&components))?;
+            film.write_png_bytes(out, &bytes)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_exr(film: &Film, out: &Path) -> Result<()> {
+    use exr::prelude::{SpecificChannels, WritableImage};
+    let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
+        let pixel = film.at(at.x() as u32, at.y() as u32);
+        (pixel.x, pixel.y, pixel.z)
+    });
+    let picture = exr::prelude::Image::from_channels((film.width as usize, film.height as usize), channels);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write().to_buffered(&mut bytes)?;
+    raykata::film::write_atomically(out, |file| std::io::Write::write_all(file, bytes.get_ref()))?;
+    Ok(())
+}
+
+/// A progress bar; draws nothing when nobody sees it.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Bar(bar)
+    }
+}
+
+impl Watch for Bar {
+    fn progress(&self, done: u64, total: u64) {
+        self.0.set_length(total);
+        self.0.set_position(done);
+    }
+}
+
+fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
+    let Rendering { film, counts, .. } = rendering;
+    let quality = &job.scene.quality;
+    let samples = match quality.samples_per_pixel {
+        1 => "1 sample a pixel".to_owned(),
+        n => format!("{n} samples a pixel"),
+    };
+    println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
+    println!("  primitives       {}", Thousands(rendering.primitives));
+    if let Some((nodes, depth)) = rendering.hierarchy {
+        println!(
+            "  hierarchy        {} nodes, {depth} levels, {:?}, leaves of {} or fewer",
+            Thousands(nodes),
+            quality.split,
+            quality.leaf_size
+        );
+    }
+    println!("  build            {:.3} s", rendering.build_seconds);
+    println!("  render           {:.3} s", rendering.render_seconds);
+    if job.count {
+        println!("  primary rays     {}", Thousands(counts.primary));
+        println!("  shadow rays      {}", Thousands(counts.shadow));
+        println!("  reflected rays   {}", Thousands(counts.reflection));
+        println!("  refracted rays   {}", Thousands(counts.transmission));
+        println!("  node visits      {}", Thousands(counts.node_visits));
+        println!("  box tests        {}", Thousands(counts.box_tests));
+        println!("  primitive tests  {}", Thousands(counts.primitive_tests));
+        let rays = counts.rays().max(1) as f64;
+        println!(
+            "  a ray            {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
+            counts.box_tests as f64 / rays,
+            counts.primitive_tests as f64 / rays,
+            1e9 * rendering.render_seconds / rays
+        );
+    }
+    for note in &rendering.notes {
+        println!("  not simulated    {note}");
+    }
+    match film.not_a_number() {
+        0 => {}
+        n => println!(
+            "  warning          {} pixels are not numbers (NaN); they are magenta",
+            Thousands(n as u64)
+        ),
+    }
+}
