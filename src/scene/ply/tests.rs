@@ -34,3 +34,20 @@ fn plain_with(from: &str, to: &str) -> String {
     assert!(text.contains(from), "nothing to replace");
     text.replacen(from, to, 1)
 }
+
+/// Whatever the bytes are, the answer is a mesh that is sound or an error.
+#[test]
+fn no_bytes_make_the_reader_panic() {
+    let ascii = format!("{PLAIN}{CORNERS}3 0 1 2\n");
+    let mut binary = PLAIN.replace("ascii", "binary_big_endian").into_bytes();
+    [0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().for_each(|v| binary.extend(v.to_be_bytes()));
+    binary.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
+    for original in [ascii.as_bytes(), &binary] {
+        assert!(parsed(original).is_ok());
+        crate::scene::ply::text::mutations(original, |bytes| {
+            if let Ok(mesh) = parsed(bytes) {
+                mesh.validate().expect("a mesh that is accepted is sound");
+            }
+        });
+    }
+}

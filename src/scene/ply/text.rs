@@ -83,6 +83,9 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, candidate)| candidate)
 }
 
+/// Advice for the owner of an OBJ file with another name.
+pub(crate) const LOOKS_LIKE_OBJ: &str = "it looks like an OBJ file: give it the ending `.obj`";
+
 /// What a file might be, judged by its first bytes, with the advice that fits.
 pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
     const SIGNS: [(&[u8], &str); 15] = [
@@ -97,9 +100,9 @@ pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
         (b"\x1f\x8b", "it is compressed: unpack it with `gunzip` first"),
         (b"PK", "it is a zip archive: unpack it first"),
         (b"\x89PNG", "it is a PNG picture: the mesh is another file"),
-        (b"mtllib ", "it looks like an OBJ file: give it the ending `.obj`"),
-        (b"o ", "it looks like an OBJ file: give it the ending `.obj`"),
-        (b"v ", "it looks like an OBJ file: give it the ending `.obj`"),
+        (b"mtllib ", LOOKS_LIKE_OBJ),
+        (b"o ", LOOKS_LIKE_OBJ),
+        (b"v ", LOOKS_LIKE_OBJ),
         (b"newmtl ", "it looks like a material library: the mesh is the OBJ file that names it"),
     ];
     // OBJ files often open with comments, which tell nothing.
