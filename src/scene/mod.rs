@@ -1,6 +1,8 @@
 //! A scene that has been read and found sound: everything that a frame needs, nothing that can fail.
 
 pub mod error;
+pub mod obj;
+pub mod ply;
 
 use crate::camera::Camera;
 use crate::material::{Light, Material, Texture};

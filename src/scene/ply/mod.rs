@@ -1,0 +1,87 @@
+//! Reads PLY files (lectures "PLY Files" and "Additional Data").
+//!
+//! A PLY file describes itself: its header says which elements follow, how many of each, and which properties
+//! make one element. So a reader can pass over `fooness` and `barness` without knowing what they are.
+//!
+//! ```text
+//! ply
+//! format ascii 1.0
+//! element vertex 3
+//! property float x
+//! property float y
+//! property float z
+//! property float fooness
+//! element face 1
+//! property list uchar int vertex_indices
+//! end_header
+//! 0 0 0 0.1
+//! 1 0 0 0.2
+//! 0 1 0 0.3
+//! 3 0 1 2
+//! ```
+//!
+//! After `end_header` come numbers and nothing else. `header` reads what stands above that line, `body` hands
+//! out the numbers below it, and `tables` sorts them into a [`Mesh`].
+
+mod body;
+mod header;
+mod scalar;
+mod tables;
+#[cfg(test)]
+mod tests;
+pub(crate) mod text;
+
+use crate::mesh::Mesh;
+use crate::scene::error::LoadError;
+use body::Body;
+use glam::{Vec2, Vec3};
+use std::path::Path;
+use tables::Layout;
+
+/// Reads the mesh in a PLY file.
+pub fn read(file: &Path) -> Result<Mesh, LoadError> {
+    parse(file, &text::read_bytes(file)?)
+}
+
+/// Reads the mesh in the bytes of a PLY file; the name is for messages.
+pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
+    let header = header::read(file, bytes)?;
+    let layout = Layout::of(file, bytes, &header)?;
+
+    // Elements come in the order of the header, which may put faces before vertices.
+    let mut body = Body::new(file, bytes, &header);
+    let mut mesh = Mesh::default();
+    for element in &header.elements {
+        match element.name.as_str() {
+            "vertex" => layout.vertices(&mut body, element, &mut mesh)?,
+            "face" => layout.faces(&mut body, element, &mut mesh)?,
+            _ => body.skip_element(element)?,
+        }
+    }
+    body.finish()?;
+
+    mesh.normals = unit_normals(mesh.normals);
+    mesh.uvs = finite_uvs(mesh.uvs);
+    mesh.validate().map_err(|message| {
+        LoadError::new(file, message).help(if mesh.triangles.is_empty() {
+            "export the mesh with faces: without one there is nothing to see"
+        } else {
+            "export the mesh again: each x, y and z has to be a number below 3e38"
+        })
+    })?;
+    Ok(mesh)
+}
+
+/// The normals at length 1, or none at all if one of them has no direction.
+///
+/// Some writers leave zeros for vertices that they know no normal of. A mesh has a normal for each vertex or for
+/// none, and a made-up one would show as a dark spot that nobody finds; without the table, normals are computed
+/// from the triangles, which is right everywhere.
+pub(crate) fn unit_normals(normals: Vec<Vec3>) -> Vec<Vec3> {
+    normals.into_iter().map(Vec3::try_normalize).collect::<Option<_>>().unwrap_or_default()
+}
+
+/// The texture coordinates, or none at all if one of them names no place in an image.
+fn finite_uvs(uvs: Vec<Vec2>) -> Vec<Vec2> {
+    if uvs.iter().all(|uv| uv.is_finite()) { uvs } else { Vec::new() }
+}

@@ -1,0 +1,92 @@
+//! The eight kinds of numbers that a PLY file may hold.
+
+/// A kind of number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    Int8,
+    Uint8,
+    Int16,
+    Uint16,
+    Int32,
+    Uint32,
+    Float32,
+    Float64,
+}
+
+/// Which byte of a number comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ByteOrder {
+    LittleEndian,
+    BigEndian,
+}
+
+impl Scalar {
+    /// Both spellings of each kind: that of the first PLY files, and the later one that tells the bits.
+    pub const NAMES: [(&str, Scalar); 16] = [
+        ("char", Scalar::Int8),
+        ("uchar", Scalar::Uint8),
+        ("short", Scalar::Int16),
+        ("ushort", Scalar::Uint16),
+        ("int", Scalar::Int32),
+        ("uint", Scalar::Uint32),
+        ("float", Scalar::Float32),
+        ("double", Scalar::Float64),
+        ("int8", Scalar::Int8),
+        ("uint8", Scalar::Uint8),
+        ("int16", Scalar::Int16),
+        ("uint16", Scalar::Uint16),
+        ("int32", Scalar::Int32),
+        ("uint32", Scalar::Uint32),
+        ("float32", Scalar::Float32),
+        ("float64", Scalar::Float64),
+    ];
+
+    /// The kind with this name.
+    pub fn named(name: &str) -> Option<Scalar> {
+        Self::NAMES.iter().find(|(known, _)| *known == name).map(|&(_, scalar)| scalar)
+    }
+
+    /// Bytes that the number takes in a binary file.
+    pub fn size(self) -> usize {
+        match self {
+            Scalar::Int8 | Scalar::Uint8 => 1,
+            Scalar::Int16 | Scalar::Uint16 => 2,
+            Scalar::Int32 | Scalar::Uint32 | Scalar::Float32 => 4,
+            Scalar::Float64 => 8,
+        }
+    }
+
+    /// The number in these [`Scalar::size`] bytes. An `f64` holds each of the eight kinds exactly.
+    pub fn decode(self, bytes: &[u8], order: ByteOrder) -> f64 {
+        // Turned round, a big-endian number is a little-endian one: that leaves one way to read each kind.
+        let mut little = [0; 8];
+        let used = &mut little[..bytes.len()];
+        used.copy_from_slice(bytes);
+        if order == ByteOrder::BigEndian {
+            used.reverse();
+        }
+
+        let [b0, b1, b2, b3, ..] = little;
+        match self {
+            Scalar::Int8 => i8::from_le_bytes([b0]).into(),
+            Scalar::Uint8 => b0.into(),
+            Scalar::Int16 => i16::from_le_bytes([b0, b1]).into(),
+            Scalar::Uint16 => u16::from_le_bytes([b0, b1]).into(),
+            Scalar::Int32 => i32::from_le_bytes([b0, b1, b2, b3]).into(),
+            Scalar::Uint32 => u32::from_le_bytes([b0, b1, b2, b3]).into(),
+            Scalar::Float32 => f32::from_le_bytes([b0, b1, b2, b3]).into(),
+            Scalar::Float64 => f64::from_le_bytes(little),
+        }
+    }
+
+    /// The number that `word` spells in an ASCII file. The width of the kind does not matter there: 300 is a fine
+    /// `uchar`, since nobody packs it into a byte.
+    pub fn parse(self, word: &[u8]) -> Option<f64> {
+        let word = std::str::from_utf8(word).ok()?;
+        match self {
+            // Rounded once: by way of `f64` a number could be rounded twice and end one step off.
+            Scalar::Float32 => word.parse::<f32>().ok().map(f64::from),
+            _ => word.parse().ok(),
+        }
+    }
+}

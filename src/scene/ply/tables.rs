@@ -1,0 +1,229 @@
+//! From the elements `vertex` and `face` to the tables of a mesh.
+
+use super::body::{Body, Place};
+use super::header::{Element, Header, Kind, Property};
+use super::scalar::Scalar;
+use super::text::{nearest, trouble_at};
+use crate::mesh::Mesh;
+use crate::scene::error::LoadError;
+use glam::{Vec2, Vec3};
+use std::path::Path;
+
+/// Where the header puts the numbers that make a mesh. Everything else in the file is skipped.
+pub(super) struct Layout {
+    /// How many vertices the header promises; faces may come before them and are checked against this.
+    pub vertex_count: usize,
+    /// For each property of a vertex its number's place in the row `x y z nx ny nz u v`, if it has one there.
+    row: Vec<Option<usize>>,
+    has_normals: bool,
+    has_uvs: bool,
+    /// The property of a face that lists its corners.
+    corners: usize,
+}
+
+/// Names of texture coordinates: one pair for each tool that has written PLY files.
+const UV_NAMES: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
+const CORNER_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+impl Layout {
+    /// Finds vertices and faces in the header.
+    pub fn of(file: &Path, bytes: &[u8], header: &Header) -> Result<Layout, LoadError> {
+        let missing = Missing { file, bytes, header };
+        let vertex =
+            missing.element("vertex", "a mesh needs a line `element vertex` with its number of vertices")?;
+        let face = missing.element(
+            "face",
+            if header.elements.iter().any(|e| e.name == "tristrips") {
+                "triangle strips are not read: export the mesh with faces"
+            } else {
+                "vertices alone are a cloud of points: export the mesh with faces"
+            },
+        )?;
+        if vertex.count > u32::MAX as usize {
+            let message = format!("{} vertices are more than a mesh can number", vertex.count);
+            return Err(missing
+                .trouble(vertex.span.clone(), message)
+                .help("divide the mesh into several files"));
+        }
+
+        let names_number = |name: &str| {
+            let known = vertex.properties.iter().find(|property| property.name == name);
+            known.is_some_and(|property| matches!(property.kind, Kind::One(_)))
+        };
+        for axis in ["x", "y", "z"] {
+            if !names_number(axis) {
+                return Err(missing.axis(vertex, axis));
+            }
+        }
+        let has_normals = ["nx", "ny", "nz"].into_iter().all(names_number);
+        let uvs = UV_NAMES.into_iter().find(|pair| pair.iter().all(|name| names_number(name)));
+        let [u, v] = uvs.unwrap_or(["u", "v"]);
+        let columns = ["x", "y", "z", "nx", "ny", "nz", u, v];
+        Ok(Layout {
+            vertex_count: vertex.count,
+            row: vertex
+                .properties
+                .iter()
+                .map(|property| match property.kind {
+                    Kind::One(_) => columns.iter().position(|column| *column == property.name),
+                    Kind::List { .. } => None,
+                })
+                .collect(),
+            has_normals,
+            has_uvs: uvs.is_some(),
+            corners: missing.corners(face)?,
+        })
+    }
+
+    /// Reads all vertices.
+    pub fn vertices(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
+        let expected = body.at_most(element.count, element.properties.len());
+        mesh.positions.reserve(expected);
+        mesh.normals.reserve(if self.has_normals { expected } else { 0 });
+        mesh.uvs.reserve(if self.has_uvs { expected } else { 0 });
+
+        let mut row = [0.0; 8];
+        for number in 0..element.count {
+            for (property, column) in element.properties.iter().zip(&self.row) {
+                let place = Place { element, number, property };
+                match (*column, property.kind) {
+                    (Some(column), Kind::One(scalar)) => row[column] = body.value(scalar, place)? as f32,
+                    _ => body.skip(place)?,
+                }
+            }
+
+            let [x, y, z, nx, ny, nz, u, v] = row;
+            mesh.positions.push(Vec3::new(x, y, z));
+            if self.has_normals {
+                mesh.normals.push(Vec3::new(nx, ny, nz));
+            }
+            if self.has_uvs {
+                mesh.uvs.push(Vec2::new(u, v));
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads all faces and cuts those with more than three corners into triangles.
+    pub fn faces(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
+        mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
+        for number in 0..element.count {
+            for (index, property) in element.properties.iter().enumerate() {
+                let place = Place { element, number, property };
+                match property.kind {
+                    Kind::List { length, item } if index == self.corners => {
+                        self.face(body, place, length, item, mesh)?;
+                    }
+                    _ => body.skip(place)?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn face(
+        &self,
+        body: &mut Body,
+        place: Place,
+        length: Scalar,
+        item: Scalar,
+        mesh: &mut Mesh,
+    ) -> Result<(), LoadError> {
+        let corners = body.length(length, place)?;
+        if corners < 3 {
+            let noun = if corners == 1 { "corner" } else { "corners" };
+            let message = format!("face {} has {corners} {noun}", place.number);
+            return Err(body.trouble(place, message).help("give it at least three corners, or remove it"));
+        }
+        body.check_left(corners, item, place)?;
+
+        // A fan: the first corner sees every edge that does not touch it, and makes a triangle with each.
+        let first = self.corner(body, place, item)?;
+        let mut previous = self.corner(body, place, item)?;
+        for _ in 2..corners {
+            let next = self.corner(body, place, item)?;
+            mesh.triangles.push([first, previous, next]);
+            previous = next;
+        }
+        Ok(())
+    }
+
+    /// One index into the table of vertices.
+    fn corner(&self, body: &mut Body, place: Place, item: Scalar) -> Result<u32, LoadError> {
+        let index = body.value(item, place)?;
+        // Some writers spell indices as floats, which is fine as long as they count. False also for a NaN.
+        if 0.0 <= index && index < self.vertex_count as f64 && index.fract() == 0.0 {
+            return Ok(index as u32);
+        }
+        let there_are = match self.vertex_count {
+            0 => "there are no vertices".into(),
+            1 => "there is only vertex 0".into(),
+            count => format!("the vertices are 0 to {}", count - 1),
+        };
+        let message = format!("face {} names vertex {index}, but {there_are}", place.number);
+        Err(body.trouble(place, message).help(if index == self.vertex_count as f64 {
+            "vertices count from 0 here; if the face was written by hand, subtract 1 from each of its indices"
+        } else {
+            "correct the index, or look above it for a row with a number too few or too many"
+        }))
+    }
+}
+
+/// What to say of a header that lacks something.
+struct Missing<'a> {
+    file: &'a Path,
+    bytes: &'a [u8],
+    header: &'a Header,
+}
+
+impl<'a> Missing<'a> {
+    fn trouble(&self, span: std::ops::Range<usize>, message: String) -> LoadError {
+        trouble_at(self.file, self.bytes, span, message)
+    }
+
+    fn element(&self, name: &'static str, help: &str) -> Result<&'a Element, LoadError> {
+        let elements = &self.header.elements;
+        if let Some(element) = elements.iter().find(|element| element.name == name) {
+            return Ok(element);
+        }
+        let message = format!("the header declares no element `{name}`");
+        let near = elements.iter().find(|element| nearest(&element.name, [name]).is_some());
+        Err(match near {
+            Some(element) => {
+                self.trouble(element.span.clone(), message).help(format!("did you mean `{name}`?"))
+            }
+            None => LoadError::new(self.file, message).help(help),
+        })
+    }
+
+    fn axis(&self, vertex: &Element, axis: &str) -> LoadError {
+        let property = vertex.properties.iter().find(|property| property.name.eq_ignore_ascii_case(axis));
+        let (span, help) = match property {
+            Some(Property { kind: Kind::List { .. }, span, .. }) => {
+                (span, format!("make `{axis}` a number, not a list"))
+            }
+            Some(Property { name, span, .. }) => {
+                (span, format!("did you mean `{axis}` instead of `{name}`?"))
+            }
+            None => {
+                (&vertex.span, format!("add a line `property float {axis}` and the number to each vertex"))
+            }
+        };
+        self.trouble(span.clone(), format!("a vertex has no number `{axis}`")).help(help)
+    }
+
+    fn corners(&self, face: &Element) -> Result<usize, LoadError> {
+        let known = CORNER_NAMES.iter().find_map(|name| face.properties.iter().position(|p| p.name == *name));
+        let near = || face.properties.iter().position(|p| nearest(&p.name, CORNER_NAMES).is_some());
+        let (span, help) = match (known, near()) {
+            (Some(index), _) if matches!(face.properties[index].kind, Kind::List { .. }) => return Ok(index),
+            (Some(index), _) => (
+                &face.properties[index].span,
+                "make it a list, as in `property list uchar int vertex_indices`",
+            ),
+            (None, Some(index)) => (&face.properties[index].span, "did you mean `vertex_indices`?"),
+            (None, None) => (&face.span, "add a line `property list uchar int vertex_indices` to the faces"),
+        };
+        Err(self.trouble(span.clone(), "a face has no list `vertex_indices`".into()).help(help))
+    }
+}
