@@ -73,6 +73,8 @@ pub struct SearchAnswer {
     pub hit: Option<PrimitiveHit>,
     /// Nodes, boxes and primitives that were asked about.
     pub counts: Counts,
+    /// How many primitives were asked about after one had been reported as hit.
+    pub tests_after_hit: u64,
 }
 
 /// Answers from a [`Table`] and counts the questions.
@@ -82,12 +84,14 @@ pub struct TableProbe<'a> {
     pub counts: Counts,
     /// The last primitive that was reported as hit.
     pub last_hit: Option<PrimitiveHit>,
+    /// Primitives that were asked about after the first hit.
+    pub tests_after_hit: u64,
 }
 
 impl<'a> TableProbe<'a> {
     /// A probe that answers for `query`.
     pub fn new(query: &'a SearchQuery) -> Self {
-        TableProbe { query, counts: Counts::default(), last_hit: None }
+        TableProbe { query, counts: Counts::default(), last_hit: None, tests_after_hit: 0 }
     }
 }
 
@@ -106,6 +110,7 @@ impl Probe for TableProbe<'_> {
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.counts.note(Event::PrimitiveTest);
+        self.tests_after_hit += u64::from(self.last_hit.is_some());
         let t = self.query.table.primitives[primitive as usize];
         let hit = ray.contains(t).then_some(t);
         if hit.is_some() {

@@ -98,7 +98,7 @@ impl Method {
             }
             let broken =
                 Broken::told(query.call(self.name), told(yours), expected.words(), "double precision");
-            Err(broken.looks_like(triangle_diagnosis(query, yours, &expected)))
+            Err(broken.looks_like(triangle_diagnosis(self.name, query, yours, &expected)))
         })
     }
 
@@ -122,6 +122,7 @@ fn told(hit: Option<TriangleHit>) -> String {
 }
 
 fn triangle_diagnosis(
+    method: &str,
     query: &TriangleQuery,
     yours: Option<TriangleHit>,
     expected: &double::TriangleExpected,
@@ -149,9 +150,10 @@ fn triangle_diagnosis(
         {
             "your t counts world units; it must count lengths of dir"
         }
-        (None, Expected::Hit { .. }) if slide_determinant_is_off(query) => {
+        (_, Expected::Hit { .. }) if method == CRAMER.name && slide_determinant_is_off(query) => {
             "the determinant as the slide prints it: it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
         }
+        (None, Expected::Hit { .. }) => "a hit was lost: is the triangle tested from one side only?",
         _ => return None,
     })
 }
@@ -673,14 +675,14 @@ fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome {
             let found = yours.hit.map(|hit| (hit.primitive, hit.t));
             if found != expected {
                 let diagnosis = match (found, expected) {
+                    (_, Some((primitive, _))) if u64::from(primitive) + 1 == n => {
+                        "the last primitive is left out"
+                    }
                     (Some((_, yours)), Some((_, expected))) if yours == expected => {
                         "of two hits at one t the smaller number wins"
                     }
                     (Some((_, yours)), Some((_, expected))) if yours > expected => {
                         "the closest hit is not kept (is it assigned to another name?)"
-                    }
-                    (None, Some((primitive, _))) if u64::from(primitive) + 1 == n => {
-                        "the last primitive is left out"
                     }
                     _ => "",
                 };
