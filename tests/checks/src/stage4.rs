@@ -484,6 +484,9 @@ fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Outcome> {
             () if same(ambient + (expected - ambient) * query.material.diffuse.as_dvec3()) => {
                 "the light is multiplied by kd twice"
             }
+            () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
+                "too bright: is the cosine left out, or a light counted that is behind the surface?"
+            }
             () => "",
         };
         Err(Broken::new(describe(query), yours.color, expected.as_vec3(), "the formula in double precision")
@@ -572,12 +575,12 @@ fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
     for (linear, yours) in between.iter().zip(trial.kit.encode_gamma(&between)) {
         let exact = 255.0 * f64::from(*linear).sqrt();
         if (f64::from(yours) - exact).abs() > 0.501 {
-            return Err(Broken::new(
-                format!("encode_gamma({linear:?})"),
-                yours,
-                exact.round() as u8,
-                "255 √linear, rounded",
-            ));
+            let input = format!("encode_gamma({linear:?})");
+            let down =
+                (f64::from(yours) == exact.floor()).then_some("rounded down: add one half before the cast");
+            return Err(
+                Broken::new(input, yours, exact.round() as u8, "255 √linear, rounded").looks_like(down)
+            );
         }
     }
     Ok(())
