@@ -60,13 +60,18 @@ pub fn receive<T: DeserializeOwned>(pipe: &mut impl Read) -> io::Result<T> {
 
 /// Answers requests with `kit` until the pipe closes. The whole of a worker's `main`.
 pub fn serve(kit: &dyn Kit) {
+    serve_with(&|request, watch| request.answer(kit, watch));
+}
+
+/// The same with any function in place of a kit.
+pub fn serve_with(answer: &Answering<'_>) {
     let served = std::thread::scope(|scope| {
         std::thread::Builder::new()
             .name("exercise".into())
             .stack_size(STACK_BYTES)
             .spawn_scoped(scope, || {
                 let (reader, writer) = pipes()?;
-                answer_all(kit, reader, writer)
+                answer_all(answer, reader, writer)
             })
             .map(|thread| thread.join())
     });
@@ -80,7 +85,10 @@ pub fn serve(kit: &dyn Kit) {
     }
 }
 
-fn answer_all(kit: &dyn Kit, mut reader: impl Read, writer: impl Write + Send) -> io::Result<()> {
+/// Something that answers requests.
+pub type Answering<'a> = dyn Fn(&Request, &dyn Watch) -> Answer + Sync + 'a;
+
+fn answer_all(answer: &Answering<'_>, mut reader: impl Read, writer: impl Write + Send) -> io::Result<()> {
     let writer = Mutex::new(writer);
     let say = |reply: &Reply| match writer.lock() {
         Ok(mut writer) => send(&mut *writer, reply),
@@ -88,7 +96,7 @@ fn answer_all(kit: &dyn Kit, mut reader: impl Read, writer: impl Write + Send) -
     };
     loop {
         let request: Request = receive(&mut reader)?;
-        let reply = match mishap::catch(|| request.answer(kit, &Relay(&say))) {
+        let reply = match mishap::catch(|| answer(&request, &Relay(&say))) {
             Ok(answer) => Reply::Answer(Box::new(answer)),
             Err(mishap) => Reply::Mishap(mishap),
         };

@@ -1,16 +1,9 @@
 //! `raykata`: renders scenes, checks exercises, gives hints, and keeps exercises in step with solutions.
 
-mod check;
-mod generate;
-mod kits;
-mod render;
-mod report;
-mod sync;
-mod worker;
-
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-use kits::{Source, Which, root};
+use grader::kits::{Source, Which, root};
+use grader::{check, generate, render, sync};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

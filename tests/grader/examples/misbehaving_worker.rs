@@ -1,0 +1,29 @@
+//! A worker that does everything wrong, for `tests/workers.rs`. The radius of the first sphere says what.
+
+use raykata::kit::{Answer, Request};
+use std::hint::black_box;
+
+fn recurse(depth: u64) -> u64 {
+    if black_box(depth) == u64::MAX { 0 } else { 1 + black_box(recurse(depth + 1)) }
+}
+
+fn main() {
+    raykata::worker::serve_with(&|request, watch| {
+        if let Request::SphereAlgebraic(queries) = request {
+            match queries[0].sphere.radius as u32 {
+                1 => panic!("on purpose"),
+                2 => std::process::exit(0),
+                3 => std::process::abort(),
+                4 => println!("{}", recurse(0)),
+                5 => loop {
+                    std::hint::spin_loop();
+                },
+                6 => println!("test result: ok. 24 passed; 0 failed"),
+                7 => return Answer::SphereAlgebraic(vec![]),
+                8 => return Answer::EncodeGamma(vec![1]),
+                _ => {}
+            }
+        }
+        request.answer(&solutions::Kit, watch)
+    });
+}

@@ -1,0 +1,9 @@
+//! The parts of the tool, so that tests and benchmarks can reach them. The program is `main.rs`.
+
+pub mod check;
+pub mod generate;
+pub mod kits;
+pub mod render;
+pub mod report;
+pub mod sync;
+pub mod worker;

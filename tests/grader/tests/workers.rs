@@ -1,0 +1,100 @@
+//! Code in a worker may panic, loop, overflow its stack or end its process: that costs the call it was asked, with a
+//! message that says what happened, and the next call is answered as if nothing had been.
+
+use glam::Vec3;
+use grader::worker::Worker;
+use raykata::kit::{Door, Mishap, Shapes, SphereQuery, mishap};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The example program `misbehaving_worker`, which cargo builds before it runs this test.
+fn misbehaving() -> PathBuf {
+    let tests = std::env::current_exe().expect("this test is a program");
+    let folder = tests.parent().and_then(|deps| deps.parent()).expect("target/debug");
+    folder.join(format!("examples/misbehaving_worker{}", std::env::consts::EXE_SUFFIX))
+}
+
+fn door() -> Door<Worker> {
+    Door(Worker::new(misbehaving(), Duration::from_secs(2)))
+}
+
+fn query(radius: f32) -> SphereQuery {
+    SphereQuery {
+        ray: Ray::new(Vec3::new(-20.0, 0.0, 0.0), Vec3::X),
+        sphere: Sphere { center: Vec3::ZERO, radius },
+    }
+}
+
+fn ask(door: &Door<Worker>, radius: f32) -> Result<Vec<Option<f32>>, Mishap> {
+    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
+}
+
+fn how_it_crashed(result: Result<Vec<Option<f32>>, Mishap>) -> String {
+    match result {
+        Err(Mishap::Crashed { how }) => how,
+        other => panic!("not a crash: {other:?}"),
+    }
+}
+
+#[test]
+fn an_honest_answer_crosses_the_pipe() {
+    assert_eq!(ask(&door(), 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn a_panic_keeps_its_place() {
+    let Err(Mishap::Panicked { message, place }) = ask(&door(), 1.0) else { panic!("no panic") };
+    assert_eq!(message, "on purpose");
+    assert!(place.contains("misbehaving_worker.rs:"), "{place}");
+}
+
+#[test]
+fn each_way_to_die_is_told_and_the_next_call_is_answered() {
+    let door = door();
+    assert!(how_it_crashed(ask(&door, 2.0)).contains("exit status: 0"));
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+    how_it_crashed(ask(&door, 3.0));
+    assert_eq!(how_it_crashed(ask(&door, 4.0)), "the stack overflowed: a recursion that never ends?");
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn an_endless_loop_ends() {
+    let door = door();
+    let started = Instant::now();
+    assert_eq!(ask(&door, 5.0), Err(Mishap::TimedOut { seconds: 2 }));
+    // Not how fast it is, but that it ends at all: without the watchdog this test hangs.
+    assert!(started.elapsed() < Duration::from_secs(60));
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn what_student_code_prints_does_not_reach_the_pipe() {
+    assert_eq!(ask(&door(), 6.0), Ok(vec![Some(14.0)]));
+}
+
+#[test]
+fn an_answer_of_the_wrong_kind_or_length_is_refused() {
+    let door = door();
+    for radius in [7.0, 8.0] {
+        assert!(matches!(ask(&door, radius), Err(Mishap::Nonsense { .. })));
+    }
+}
+
+#[test]
+fn a_program_that_is_not_there_is_told() {
+    let door = Door(Worker::new("no/such/worker".into(), Duration::from_secs(2)));
+    assert!(how_it_crashed(ask(&door, 10.0)).starts_with("it cannot be started"));
+}
+
+#[test]
+fn a_worker_passes_every_check_of_the_reference() {
+    for (_, checks) in checks::STAGES {
+        for check in *checks {
+            let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(door());
+            assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
+        }
+    }
+}
