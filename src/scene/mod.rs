@@ -1,6 +1,7 @@
 //! A scene that has been read and found sound: everything that a frame needs, nothing that can fail.
 
 pub mod error;
+pub mod load;
 pub mod obj;
 pub mod ply;
 

@@ -1,0 +1,46 @@
+//! Files that a scene names: where they are, and what to say when they are not there.
+
+use super::reader::Value;
+use super::words::{nearest, quoted};
+use crate::scene::error::LoadError;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// The path of the file that `value` names, relative to the folder of the scene.
+pub(super) fn find(value: Value) -> Result<PathBuf, LoadError> {
+    let name = value.text()?;
+    let path = value.source.file.parent().unwrap_or(Path::new("")).join(name);
+    let trouble = match std::fs::metadata(&path) {
+        Ok(found) if found.is_dir() => value.error(format!("{} is a folder, not a file", quoted(name))),
+        Ok(_) => return Ok(path),
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            value.error(format!("there is no file {}", quoted(name))).help(where_it_might_be(&path))
+        }
+        Err(error) => value.error(format!("cannot read {}: {error}", quoted(name))),
+    };
+    Err(trouble)
+}
+
+/// What to say of a file that is not there: where it was looked for, and what lies there instead.
+pub(super) fn where_it_might_be(path: &Path) -> String {
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return format!("looked for {}, and there is no folder {}", path.display(), folder.display());
+    };
+    let mut names: Vec<String> =
+        entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
+    names.sort(); // folders list their files in any order
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    match nearest(&wanted, names.iter().map(String::as_str)) {
+        Some(meant) => format!("looked for {}; did you mean {}?", path.display(), quoted(meant)),
+        None => format!("looked for {}", path.display()),
+    }
+}
+
+/// The extension of `path` in lower case; empty if it has none.
+pub(super) fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}

@@ -1,0 +1,111 @@
+//! `[materials.NAME]`, and the materials that come with OBJ meshes.
+
+use super::names::Names;
+use super::reader::Value;
+use crate::material::Material;
+use crate::scene::error::LoadError;
+use crate::scene::obj::ObjMaterial;
+use glam::Vec3;
+
+const KEYS: [&str; 10] = [
+    "ambient",
+    "diffuse",
+    "specular",
+    "exponent",
+    "mirror",
+    "transmission",
+    "index_of_refraction",
+    "roughness",
+    "emission",
+    "texture",
+];
+
+/// All materials, each with its name. The first is the default.
+pub(super) struct Materials<'a> {
+    pub list: Vec<Material>,
+    pub list_names: Vec<String>,
+    /// What nodes and meshes may name: `default`, and all `[materials.NAME]`.
+    pub names: Names<'a>,
+}
+
+impl Materials<'_> {
+    /// Adds a material and says its index.
+    pub fn push(&mut self, name: impl Into<String>, material: Material) -> usize {
+        self.list.push(material);
+        self.list_names.push(name.into());
+        self.list.len() - 1
+    }
+}
+
+pub(super) fn materials<'a>(value: Option<Value<'a>>, textures: &Names) -> Result<Materials<'a>, LoadError> {
+    let mut materials = Materials { list: Vec::new(), list_names: Vec::new(), names: Names::new("material") };
+    materials.push("default", Material::default());
+    materials.names.insert("default", 0);
+    let Some(value) = value else { return Ok(materials) };
+    for entry in value.any_table()?.values() {
+        let material = material(entry, textures)?;
+        if entry.key == "default" {
+            materials.list[0] = material;
+        } else {
+            let index = materials.push(entry.key, material);
+            materials.names.insert(entry.key, index);
+        }
+    }
+    Ok(materials)
+}
+
+fn material(value: Value, textures: &Names) -> Result<Material, LoadError> {
+    let table = value.table(&KEYS)?;
+    let mut material = Material::default();
+    for value in table.values() {
+        match value.key {
+            "ambient" => material.ambient = value.color()?,
+            "diffuse" => material.diffuse = value.color()?,
+            "specular" => material.specular = value.color()?,
+            "exponent" => material.exponent = value.not_negative()?,
+            "mirror" => material.mirror = value.color()?,
+            "transmission" => material.transmission = value.color()?,
+            "index_of_refraction" => material.index_of_refraction = value.positive()?,
+            "roughness" => material.roughness = value.share()?,
+            "emission" => material.emission = value.color()?,
+            _ => material.texture = Some(textures.find(value)?),
+        }
+    }
+    if table.get("ambient").is_none() {
+        material.ambient = material.diffuse;
+    }
+    Ok(material)
+}
+
+/// The material that an MTL file describes, without its texture; on failure says what is wrong.
+pub(super) fn from_obj(obj: &ObjMaterial) -> Result<Material, String> {
+    let default = Material::default();
+    let color = |name: &str, color: Option<Vec3>, otherwise: Vec3| match color.unwrap_or(otherwise) {
+        color if color.is_finite() && color.min_element() >= 0.0 => Ok(color),
+        color => Err(format!("its {name} colour is {color}, and must be at least 0")),
+    };
+    let number = |name: &str, number: Option<f32>, otherwise: f32, least: f32, most: f32| match number {
+        Some(number) if !(least <= number && number <= most) => {
+            Err(format!("its {name} is {number}, and must be from {least} to {most}"))
+        }
+        _ => Ok(number.unwrap_or(otherwise)),
+    };
+    let diffuse = color("diffuse", obj.diffuse, default.diffuse)?;
+    Ok(Material {
+        ambient: color("ambient", obj.ambient, diffuse)?,
+        diffuse,
+        specular: color("specular", obj.specular, default.specular)?,
+        exponent: number("shininess", obj.shininess, default.exponent, 0.0, f32::MAX)?,
+        transmission: Vec3::splat(1.0 - number("dissolve", obj.dissolve, 1.0, 0.0, 1.0)?),
+        // Nothing in nature bends light like 0.001 or 1000: the bounds only keep out what is no index at all.
+        index_of_refraction: number(
+            "index of refraction",
+            obj.index_of_refraction,
+            default.index_of_refraction,
+            0.001,
+            1000.0,
+        )?,
+        emission: color("emission", obj.emission, default.emission)?,
+        ..default
+    })
+}

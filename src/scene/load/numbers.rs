@@ -1,0 +1,138 @@
+//! Numbers, vectors and colours of a scene file. TOML has 64-bit numbers, `nan` and `inf`; a scene has finite `f32`.
+
+use super::reader::Value;
+use crate::scene::error::LoadError;
+use glam::{DVec3, Vec3};
+use std::ops::RangeInclusive;
+use toml::de::DeValue;
+
+impl<'a> Value<'a> {
+    /// A whole number in `range`.
+    pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32, LoadError> {
+        let DeValue::Integer(integer) = self.item() else { return Err(self.wrong("a whole number")) };
+        // A number that does not even fit into 128 bits is out of any range.
+        let wide = i128::from_str_radix(integer.as_str(), integer.radix()).unwrap_or(i128::MAX);
+        u32::try_from(wide)
+            .ok()
+            .filter(|number| range.contains(number))
+            .ok_or_else(|| self.wrong(&format!("a whole number from {} to {}", range.start(), range.end())))
+    }
+
+    /// A finite number.
+    pub fn number(&self) -> Result<f32, LoadError> {
+        let exact: f64 = match self.item() {
+            DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
+            DeValue::Integer(integer) if integer.radix() == 10 => {
+                integer.as_str().parse().unwrap_or(f64::NAN)
+            }
+            DeValue::Integer(integer) => {
+                i128::from_str_radix(integer.as_str(), integer.radix()).map_or(f64::INFINITY, |n| n as f64)
+            }
+            _ => return Err(self.wrong("a number")),
+        };
+        let number = exact as f32;
+        let spelled = self.spelled();
+        if exact.is_nan() || (exact.is_infinite() && spelled.contains("inf")) {
+            return Err(self.wrong("a finite number"));
+        }
+        let limit = match number {
+            _ if number.is_infinite() => "too large: the largest number is 3.4e38",
+            _ if number == 0.0 && exact != 0.0 => "too close to zero: the smallest number is 1.4e-45",
+            _ => return Ok(number),
+        };
+        Err(self.error(format!("{} is {spelled}, which is {limit}", self.name())))
+    }
+
+    /// A number of which `holds`; `condition` says so in words.
+    pub fn number_that(&self, condition: &str, holds: impl Fn(f32) -> bool) -> Result<f32, LoadError> {
+        match self.number()? {
+            number if holds(number) => Ok(number),
+            _ => Err(self.wrong(condition)),
+        }
+    }
+
+    /// A number above 0.
+    pub fn positive(&self) -> Result<f32, LoadError> {
+        self.number_that("above 0", |number| number > 0.0)
+    }
+
+    /// A number of 0 or more.
+    pub fn not_negative(&self) -> Result<f32, LoadError> {
+        self.number_that("at least 0", |number| number >= 0.0)
+    }
+
+    /// A number from 0 to 1.
+    pub fn share(&self) -> Result<f32, LoadError> {
+        self.number_that("from 0 to 1", |number| (0.0..=1.0).contains(&number))
+    }
+
+    /// A point or an offset: three numbers.
+    pub fn vector(&self) -> Result<Vec3, LoadError> {
+        Ok(Vec3::from_array(self.numbers("three numbers")?))
+    }
+
+    /// A direction: three numbers that are not all zero, brought to unit length.
+    pub fn direction(&self) -> Result<Vec3, LoadError> {
+        Ok(self.direction_f64()?.as_vec3())
+    }
+
+    /// The same in double precision, in which the square of no `f32` overflows or vanishes.
+    pub fn direction_f64(&self) -> Result<DVec3, LoadError> {
+        let vector = self.vector()?.as_dvec3();
+        vector.try_normalize().ok_or_else(|| {
+            self.error(format!("{} has no length, so it points nowhere", self.name()))
+                .help("give a direction, for example `[0, 1, 0]`")
+        })
+    }
+
+    /// A colour: a number for a grey or three for red, green and blue, none below 0.
+    pub fn color(&self) -> Result<Vec3, LoadError> {
+        let color = self.one_or_three("a colour, that is one number or three")?;
+        self.each_component(color, "at least 0", |number| number >= 0.0)
+    }
+
+    /// Factors along the axes: one number for all three, or three; none is 0.
+    pub fn factors(&self) -> Result<Vec3, LoadError> {
+        let factors = self.one_or_three("one number or three")?;
+        self.each_component(factors, "other than 0", |number| number != 0.0)
+    }
+
+    /// A list of exactly `N` numbers.
+    pub fn numbers<const N: usize>(&self, wanted: &str) -> Result<[f32; N], LoadError> {
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(self.list_of(N, wanted)?) {
+            *number = item.number()?;
+        }
+        Ok(numbers)
+    }
+
+    /// A list of exactly `count` values.
+    pub fn list_of(&self, count: usize, wanted: &str) -> Result<Vec<Value<'a>>, LoadError> {
+        let items = self.list(wanted)?;
+        match items.len() {
+            length if length == count => Ok(items),
+            length => Err(self.error(format!("{} must be {wanted}, and has {length}", self.name()))),
+        }
+    }
+
+    fn one_or_three(&self, wanted: &str) -> Result<Vec3, LoadError> {
+        match self.item() {
+            DeValue::Integer(_) | DeValue::Float(_) => Ok(Vec3::splat(self.number()?)),
+            _ => Ok(Vec3::from_array(self.numbers(wanted)?)),
+        }
+    }
+
+    /// `vector`, which was read from this value, if all components are as they should be.
+    fn each_component(
+        &self,
+        vector: Vec3,
+        condition: &str,
+        holds: fn(f32) -> bool,
+    ) -> Result<Vec3, LoadError> {
+        let Some(bad) = vector.to_array().iter().position(|&component| !holds(component)) else {
+            return Ok(vector);
+        };
+        let items = self.list("").unwrap_or_default();
+        Err(items.get(bad).unwrap_or(self).wrong(condition))
+    }
+}

@@ -1,0 +1,71 @@
+//! `polygon = { corners = [ … ] }`: flat, convex, and once around.
+
+use super::reader::Value;
+use crate::scene::error::LoadError;
+use glam::{DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// How far corners may stray from a plane, as a share of the polygon's size: written with five digits, they do.
+const FLATNESS: f64 = 1e-5;
+
+/// The corners of a sound polygon.
+pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
+    let list = value.table(&["corners"])?.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
+    let items = list.list("a list of points")?;
+    if items.len() < 3 {
+        return Err(
+            list.error(format!("a polygon has three corners or more, and this one has {}", items.len()))
+        );
+    }
+    let corners: Vec<Vec3> = items.iter().map(Value::vector).collect::<Result<_, _>>()?;
+    let exact: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
+    let after = |index: usize| (index + 1) % corners.len();
+    if let Some(index) = (0..corners.len()).find(|&index| corners[index] == corners[after(index)]) {
+        let message = format!("corners {} and {} are the same point", index + 1, after(index) + 1);
+        return Err(items[after(index)].error(message));
+    }
+
+    let Some(normal) = area_vector(&exact).try_normalize() else {
+        return Err(list.error("the corners lie on one line, so no ray can hit the polygon"));
+    };
+    if let Some(index) = strays(&exact, normal) {
+        return Err(items[index]
+            .error(format!("corner {} does not lie in the plane of the polygon", index + 1))
+            .help("divide the polygon into triangles"));
+    }
+    if let Some(index) = turns_back(&exact, normal) {
+        return Err(items[index]
+            .error(format!("the polygon is not convex at corner {}", index + 1))
+            .help("divide it into convex parts, and give the corners in order"));
+    }
+    Ok(corners)
+}
+
+/// The sum over all edges of the areas that they sweep around the first corner: the normal, as long as twice the area.
+fn area_vector(corners: &[DVec3]) -> DVec3 {
+    corners.windows(2).map(|edge| (edge[0] - corners[0]).cross(edge[1] - corners[0])).sum()
+}
+
+/// The first corner that lies too far from the plane through the middle.
+fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    let size = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
+    // Far from the origin, the rounding of the coordinates to `f32` moves corners as well.
+    let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
+    let tolerance = FLATNESS * size + f64::from(f32::EPSILON) * largest;
+    corners.iter().position(|corner| (corner - middle).dot(normal).abs() > tolerance)
+}
+
+/// The first corner at which the outline turns the wrong way, or by which it has gone around more than once.
+fn turns_back(corners: &[DVec3], normal: DVec3) -> Option<usize> {
+    let count = corners.len();
+    let edge = |index: usize| (corners[(index + 1) % count] - corners[index % count]).normalize_or_zero();
+    let mut turned = 0.0;
+    (0..count).find(|&index| {
+        let (before, after) = (edge(index + count - 1), edge(index));
+        let angle = before.cross(after).dot(normal).atan2(before.dot(after));
+        turned += angle;
+        // Corners in the middle of a straight edge are allowed, with the roundings of their coordinates.
+        !(-FLATNESS..PI - FLATNESS).contains(&angle) || turned > TAU + 1e-3
+    })
+}

@@ -1,0 +1,163 @@
+//! The tables of which a scene has one: `film`, `camera`, `environment` and `quality`.
+
+use super::reader::Value;
+use crate::camera::{Camera, Lens, Shutter};
+use crate::scene::error::LoadError;
+use crate::scene::{Accelerator, Encoding, FilmSettings, Quality, Split, TriangleMethod};
+use glam::Vec3;
+
+/// The longest side of a picture, in pixels.
+const MAX_SIDE: u32 = 65_536;
+/// The most pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
+const MAX_PIXELS: u64 = 1 << 28;
+/// Beyond a million samples, the rounding of their sum in `f32` outweighs what another one adds.
+const MAX_SAMPLES: u32 = 1 << 20;
+/// Each bounce is a call within a call, and a thread has a stack of 2 MiB.
+const MAX_DEPTH: u32 = 1000;
+/// 1024^3 cells of 4 bytes fill 4 GiB.
+const MAX_GRID: u32 = 1024;
+
+pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
+    let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
+    let Some(value) = value else { return Ok(film) };
+    let table = value.table(&["width", "height", "encoding"])?;
+    if let Some(width) = table.get("width") {
+        film.width = width.whole(1..=MAX_SIDE)?;
+    }
+    if let Some(height) = table.get("height") {
+        film.height = height.whole(1..=MAX_SIDE)?;
+    }
+    if let Some(encoding) = table.get("encoding") {
+        film.encoding = encoding.choice(&[("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)])?;
+    }
+    let pixels = u64::from(film.width) * u64::from(film.height);
+    match pixels <= MAX_PIXELS {
+        true => Ok(film),
+        false => Err(table
+            .error(format!("the picture has {pixels} pixels, and the most is {MAX_PIXELS}"))
+            .help("make `width` or `height` smaller")),
+    }
+}
+
+pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
+    let table =
+        value.table(&["position", "look_at", "direction", "up", "vertical_fov", "lens", "shutter"])?;
+    let position = table.need("position", "[0, 1, 5]")?.vector()?;
+    let aim = table.one_of(&["look_at", "direction"])?;
+    let direction = match aim.key {
+        "direction" => aim.direction()?,
+        // In double precision, the difference of two points neither overflows nor vanishes unless they are equal.
+        _ => {
+            (aim.vector()?.as_dvec3() - position.as_dvec3()).try_normalize().map(|d| d.as_vec3()).ok_or_else(
+                || aim.error("`look_at` and `position` are the same point, so the camera looks nowhere"),
+            )?
+        }
+    };
+    let up_value = table.get("up");
+    let up = up_value.map_or(Ok(Vec3::Y), |up| up.direction())?;
+    let below_180 = |angle| 0.0 < angle && angle < 180.0;
+    let vertical_fov = table
+        .get("vertical_fov")
+        .map_or(Ok(40.0), |angle| angle.number_that("above 0 and below 180 degrees", below_180))?;
+
+    let camera = Camera::new(position, direction, up, vertical_fov, aspect).map_err(|error| {
+        // All that is left to go wrong: up and the view direction are parallel. Any other axis than the one along
+        // which the camera looks will do.
+        let other = if direction.y.abs() > 0.5 { "[0, 0, -1]" } else { "[0, 1, 0]" };
+        up_value.unwrap_or(aim).error(error.to_string()).help(format!("write, for example, `up = {other}`"))
+    })?;
+    Ok(Camera {
+        lens: table.get("lens").map(lens).transpose()?,
+        shutter: table.get("shutter").map(shutter).transpose()?,
+        ..camera
+    })
+}
+
+fn lens(value: Value) -> Result<Lens, LoadError> {
+    let table = value.table(&["aperture", "focal_distance"])?;
+    Ok(Lens {
+        aperture: table.need("aperture", "0.1")?.not_negative()?,
+        focal_distance: table.need("focal_distance", "5.0")?.positive()?,
+    })
+}
+
+fn shutter(value: Value) -> Result<Shutter, LoadError> {
+    let table = value.table(&["open", "close"])?;
+    let open = table.get("open").map_or(Ok(0.0), |open| open.share())?;
+    let close = table.get("close").map_or(Ok(1.0), |close| {
+        close.number_that(&format!("from {open}, where `open` is, to 1"), |time| (open..=1.0).contains(&time))
+    })?;
+    Ok(Shutter { open, close })
+}
+
+/// Light that comes from no lamp.
+#[derive(Default)]
+pub(super) struct Environment {
+    pub background: Vec3,
+    pub ambient: Vec3,
+    pub indirect_light: bool,
+}
+
+pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError> {
+    let Some(value) = value else { return Ok(Environment::default()) };
+    let table = value.table(&["background", "ambient", "indirect_light"])?;
+    Ok(Environment {
+        background: table.get("background").map_or(Ok(Vec3::ZERO), |color| color.color())?,
+        ambient: table.get("ambient").map_or(Ok(Vec3::ZERO), |color| color.color())?,
+        indirect_light: table.get("indirect_light").map_or(Ok(false), |wanted| wanted.truth())?,
+    })
+}
+
+const QUALITY_KEYS: [&str; 10] = [
+    "samples_per_pixel",
+    "light_samples",
+    "gloss_samples",
+    "max_depth",
+    "min_contribution",
+    "accelerator",
+    "split",
+    "leaf_size",
+    "triangle_method",
+    "grid_resolution",
+];
+
+pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
+    let mut quality = Quality::default();
+    let Some(value) = value else { return Ok(quality) };
+    for value in value.table(&QUALITY_KEYS)?.values() {
+        match value.key {
+            "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
+            "light_samples" => quality.light_samples = value.whole(1..=MAX_SAMPLES)?,
+            "gloss_samples" => quality.gloss_samples = value.whole(1..=MAX_SAMPLES)?,
+            "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
+            "min_contribution" => quality.min_contribution = value.share()?,
+            "accelerator" => quality.accelerator = value.choice(&ACCELERATORS)?,
+            "split" => quality.split = value.choice(&SPLITS)?,
+            "leaf_size" => quality.leaf_size = value.whole(1..=u32::MAX)?,
+            "triangle_method" => quality.triangle_method = value.choice(&TRIANGLE_METHODS)?,
+            _ => quality.grid_resolution = value.whole(0..=MAX_GRID)?,
+        }
+    }
+    Ok(quality)
+}
+
+const ACCELERATORS: [(&str, Accelerator); 6] = [
+    ("brute_force", Accelerator::BruteForce),
+    ("bvh", Accelerator::Bvh),
+    ("grid", Accelerator::Grid),
+    ("octree", Accelerator::Octree),
+    ("kd_tree", Accelerator::KdTree),
+    ("bsp", Accelerator::Bsp),
+];
+
+const SPLITS: [(&str, Split); 3] = [
+    ("object_median", Split::ObjectMedian),
+    ("spatial_median", Split::SpatialMedian),
+    ("surface_area", Split::SurfaceArea),
+];
+
+const TRIANGLE_METHODS: [(&str, TriangleMethod); 3] = [
+    ("cramer", TriangleMethod::Cramer),
+    ("gram", TriangleMethod::Gram),
+    ("watertight", TriangleMethod::Watertight),
+];

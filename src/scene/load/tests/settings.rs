@@ -1,0 +1,192 @@
+//! `film`, `camera`, `environment`, `quality`.
+
+use super::{check_refused, check_refused_with, scene, scene_with};
+use crate::camera::{Lens, Shutter};
+use crate::scene::{Accelerator, Encoding, FilmSettings, Quality, Split, TriangleMethod};
+use glam::Vec3;
+
+#[test]
+fn a_scene_of_only_a_camera_is_its_background() {
+    let scene = scene_with("");
+    assert_eq!(scene.film, FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb });
+    assert_eq!(scene.camera.position, Vec3::new(0.0, 0.0, 5.0));
+    assert_eq!(scene.camera.towards, Vec3::NEG_Z);
+    assert_eq!(scene.camera.aspect, 640.0 / 360.0);
+    assert_eq!(scene.camera.half_height, 20f32.to_radians().tan());
+    assert_eq!((scene.camera.lens, scene.camera.shutter), (None, None));
+    assert_eq!((scene.background, scene.ambient, scene.indirect_light), (Vec3::ZERO, Vec3::ZERO, false));
+    assert_eq!(scene.material_names, ["default"]);
+    assert_eq!(scene.quality, Quality::default());
+    assert!(scene.nodes.is_empty() && scene.roots.is_empty() && scene.lights.is_empty());
+}
+
+#[test]
+fn every_setting_arrives() {
+    let scene = scene(
+        "[film]\nwidth = 0x20\nheight = 16\nencoding = 'gamma2'\n\
+         [camera]\nposition = [1, 0, 0]\ndirection = [3, 0, 0]\nup = [0, 0, 2]\nvertical_fov = 90\n\
+         lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
+         [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
+         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\ngloss_samples = 7\nmax_depth = 0\n\
+         min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\n\
+         triangle_method = 'gram'\ngrid_resolution = 3\n",
+    );
+    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2 });
+    assert_eq!((scene.camera.towards, scene.camera.up), (Vec3::X, Vec3::Z));
+    assert_eq!((scene.camera.half_height, scene.camera.aspect), (1.0, 2.0));
+    assert_eq!(scene.camera.lens, Some(Lens { aperture: 0.1, focal_distance: 5.0 }));
+    assert_eq!(scene.camera.shutter, Some(Shutter { open: 0.25, close: 1.0 }));
+    assert_eq!((scene.background, scene.ambient), (Vec3::new(0.0, 0.5, 2.0), Vec3::splat(0.25)));
+    assert!(scene.indirect_light);
+    let expected = Quality {
+        samples_per_pixel: 9,
+        light_samples: 8,
+        gloss_samples: 7,
+        max_depth: 0,
+        min_contribution: 0.0,
+        accelerator: Accelerator::KdTree,
+        split: Split::ObjectMedian,
+        leaf_size: 1,
+        triangle_method: TriangleMethod::Gram,
+        grid_resolution: 3,
+    };
+    assert_eq!(scene.quality, expected);
+}
+
+#[test]
+fn a_film_has_pixels_and_not_too_many() {
+    check_refused(
+        "film = { width = 0 }",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is 0",
+    );
+    check_refused(
+        "film = { width = -1 }",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is -1",
+    );
+    check_refused(
+        "film = { width = 99999999999999999999999999999999999999999 }",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is 99999999999999999999999999999999999999999",
+    );
+    check_refused("film = { width = 'wide' }", "s.toml:1:18: `width` must be a whole number, and is text");
+    check_refused("film = { width = 640.0 }", "s.toml:1:18: `width` must be a whole number, and is 640.0");
+    check_refused(
+        "[film]\nwidth = 65536\nheight = 65536",
+        "s.toml:1:1: the picture has 4294967296 pixels, and the most is 268435456\n\
+         help: make `width` or `height` smaller",
+    );
+    check_refused(
+        "film = { encoding = 'srbg' }",
+        "s.toml:1:21: unknown value of `encoding`: `srbg`; did you mean `srgb`?",
+    );
+}
+
+#[test]
+fn a_camera_stands_somewhere_and_looks_somewhere() {
+    check_refused(
+        "",
+        "s.toml:1:1: the scene lacks `[camera]`\n\
+         help: add `[camera]` with, for example, `position = [0, 1, 5]` and `look_at = [0, 0, 0]`",
+    );
+    check_refused(
+        "[camera]",
+        "s.toml:1:1: `camera` lacks `position`\nhelp: add it, for example `position = [0, 1, 5]`",
+    );
+    check_refused(
+        "\n[camera]\nposition = [0, 0, 5]",
+        "s.toml:2:1: `camera` needs one of `look_at`, `direction`, and has none",
+    );
+    check_refused(
+        "[camera]\nposition = [0, 0, 5]\ndirection = [0, 0, 1]\nlook_at = [0, 0, 0]",
+        "s.toml:3:1: `camera` has both `look_at` and `direction`\nhelp: delete one of the two",
+    );
+    check_refused(
+        "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 5]",
+        "s.toml:3:11: `look_at` and `position` are the same point, so the camera looks nowhere",
+    );
+    check_refused(
+        "[camera]\nposition = [0, 0, 5]\ndirection = [0, 0, 0]",
+        "s.toml:3:13: `direction` has no length, so it points nowhere\n\
+         help: give a direction, for example `[0, 1, 0]`",
+    );
+    check_refused(
+        "[camera]\nposition = [0, 9, 0]\nlook_at = [0, 0, 0]",
+        "s.toml:3:11: `up` runs along the view direction, so the picture could be turned any way\n\
+         help: write, for example, `up = [0, 0, -1]`",
+    );
+    check_refused(
+        "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]",
+        "s.toml:4:6: `up` runs along the view direction, so the picture could be turned any way\n\
+         help: write, for example, `up = [0, 1, 0]`",
+    );
+    // Far apart, the difference of the points overflows single precision; close by, it is all that counts.
+    scene("camera = { position = [-3e38, 0, 0], look_at = [3e38, 0, 0] }");
+    scene("camera = { position = [1e-45, 0, 0], look_at = [0, 0, 0] }");
+}
+
+#[test]
+fn lens_and_angle_and_shutter_have_limits() {
+    let camera = |rest: &str| format!("[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{rest}");
+    check_refused(
+        &camera("vertical_fov = 180"),
+        "s.toml:4:16: `vertical_fov` must be above 0 and below 180 degrees, and is 180",
+    );
+    check_refused(
+        &camera("lens = { aperture = 0.1 }"),
+        "s.toml:4:8: `lens` lacks `focal_distance`\nhelp: add it, for example `focal_distance = 5.0`",
+    );
+    check_refused(
+        &camera("lens = { aperture = -1, focal_distance = 0 }"),
+        "s.toml:4:21: `aperture` must be at least 0, and is -1",
+    );
+    check_refused(
+        &camera("lens = { aperture = 1, focal_distance = 0 }"),
+        "s.toml:4:41: `focal_distance` must be above 0, and is 0",
+    );
+    check_refused(
+        &camera("shutter = { open = 0.5, close = 0.4 }"),
+        "s.toml:4:33: `close` must be from 0.5, where `open` is, to 1, and is 0.4",
+    );
+    check_refused(&camera("shutter = { open = 2 }"), "s.toml:4:20: `open` must be from 0 to 1, and is 2");
+}
+
+#[test]
+fn qualities_have_limits() {
+    check_refused_with(
+        "[quality]\nsamples_per_pixel = 0",
+        "s.toml:3:21: `samples_per_pixel` must be a whole number from 1 to 1048576, and is 0",
+    );
+    check_refused_with(
+        "[quality]\nleaf_size = 0",
+        "s.toml:3:13: `leaf_size` must be a whole number from 1 to 4294967295, and is 0",
+    );
+    check_refused_with(
+        "[quality]\nmin_contribution = nan",
+        "s.toml:3:20: `min_contribution` must be a finite number, and is nan",
+    );
+    check_refused_with(
+        "[quality]\naccelerator = 'magic'",
+        "s.toml:3:15: unknown value of `accelerator`: `magic`\n\
+         help: known are `brute_force`, `bvh`, `grid`, `octree`, `kd_tree`, `bsp`",
+    );
+    check_refused_with(
+        "[quality]\nmax_deph = 3",
+        "s.toml:3:1: unknown key `max_deph`; did you mean `max_depth`?",
+    );
+}
+
+#[test]
+fn an_environment_has_colours() {
+    check_refused_with(
+        "[environment]\nambient = [0.1, -0.5, 0]",
+        "s.toml:3:17: entry 2 of `ambient` must be at least 0, and is -0.5",
+    );
+    check_refused_with("[environment]\nambient = -1", "s.toml:3:11: `ambient` must be at least 0, and is -1");
+    check_refused_with(
+        "[environment]\nbackground = 'blue'",
+        "s.toml:3:14: `background` must be a colour, that is one number or three, and is text",
+    );
+    check_refused_with(
+        "[environment]\nindirect_light = 1",
+        "s.toml:3:18: `indirect_light` must be true or false, and is 1",
+    );
+}

@@ -1,0 +1,70 @@
+//! `[textures.NAME]`: images, decoded to linear light.
+
+use super::files;
+use super::names::Names;
+use super::reader::Value;
+use crate::material::{Texture, Wrap};
+use crate::scene::error::LoadError;
+use glam::Vec3;
+use image::{DynamicImage, ImageReader};
+use std::path::Path;
+use std::sync::Arc;
+
+const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
+
+/// All `[textures.NAME]`, with their names.
+pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Names<'a>), LoadError> {
+    let (mut textures, mut names) = (Vec::new(), Names::new("texture"));
+    let Some(value) = value else { return Ok((textures, names)) };
+    for entry in value.any_table()?.values() {
+        let table = entry.table(&["file", "wrap"])?;
+        let wrap = table.get("wrap").map_or(Ok(Wrap::Repeat), |wrap| wrap.choice(&WRAPS))?;
+        let file = table.need("file", "\"wood.png\"")?;
+        let path = files::find(file)?;
+        names.insert(entry.key, textures.len());
+        textures.push(read(&path, wrap).map_err(|message| {
+            file.error(format!("cannot use {} as a texture: {message}", file.spelled()))
+                .help("textures are PNG or Radiance HDR files")
+        })?);
+    }
+    Ok((textures, names))
+}
+
+/// Reads an image; on failure says why.
+pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
+    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
+    let image = reader.map_err(|error| error.to_string())?.decode().map_err(|error| error.to_string())?;
+    let (width, height) = (image.width(), image.height());
+    if width == 0 || height == 0 {
+        return Err("the image has no pixels".into());
+    }
+    Ok(Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap })
+}
+
+/// The pixels row by row, in linear light; transparency is left out.
+fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
+    match image {
+        // High dynamic range files store linear light already.
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
+            image.to_rgb32f().pixels().map(|pixel| Vec3::from_array(pixel.0)).collect()
+        }
+        DynamicImage::ImageLuma16(_)
+        | DynamicImage::ImageLumaA16(_)
+        | DynamicImage::ImageRgb16(_)
+        | DynamicImage::ImageRgba16(_) => {
+            let decode = |code: u16| srgb_to_linear(f32::from(code) / 65_535.0);
+            image.to_rgb16().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
+        }
+        // 256 codes need 256 powers, not three for every pixel.
+        _ => {
+            let table: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
+            let decode = |code: u8| table[usize::from(code)];
+            image.to_rgb8().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
+        }
+    }
+}
+
+/// The sRGB curve backwards (IEC 61966-2-1): a line near black, a power above.
+fn srgb_to_linear(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
