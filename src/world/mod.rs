@@ -8,7 +8,7 @@ mod facets;
 
 use crate::camera::Camera;
 use crate::kit::LightSample;
-use crate::material::{Emitter, Falloff, Light, Material};
+use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
 use crate::mesh::Mesh;
 use crate::scene::{Node, Scene, SceneMesh};
 use crate::shape::{Plane, Shape, Sphere, Triangle};
@@ -198,9 +198,10 @@ fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
 }
 
 impl Light {
-    /// The light that would arrive at `point` if nothing stood in its way. An area light counts as its middle.
+    /// The light that would arrive at `point` if nothing stood in its way. An area light shines from its middle; the
+    /// way to a ball ends at its surface, so that a ball that is seen as well does not stand in its own light.
     pub fn sample(&self, point: Vec3) -> LightSample {
-        let from = |position: Vec3, falloff: Falloff| {
+        let from = |position: Vec3, radius: f32, falloff: Falloff| {
             let to_light = position - point;
             let distance = to_light.length();
             let weakened = match falloff {
@@ -209,13 +210,16 @@ impl Light {
             };
             LightSample {
                 direction: to_light.normalize_or(Vec3::Y),
-                distance,
+                distance: (distance - radius).max(0.0),
                 radiance: weakened * self.radiance(),
             }
         };
         match &self.emitter {
-            Emitter::Point { position, falloff } => from(*position, *falloff),
-            Emitter::Area { shape, falloff } => from(shape.center(), *falloff),
+            Emitter::Point { position, falloff } => from(*position, 0.0, *falloff),
+            Emitter::Area { shape: AreaShape::Sphere(ball), falloff } => {
+                from(ball.center, ball.radius, *falloff)
+            }
+            Emitter::Area { shape, falloff } => from(shape.center(), 0.0, *falloff),
             Emitter::Directional { direction } => {
                 LightSample { direction: -*direction, distance: f32::INFINITY, radiance: self.radiance() }
             }

@@ -10,8 +10,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A check and how it ended.
 pub struct Graded {
+    /// The check.
     pub check: &'static Check,
+    /// How it ended.
     pub verdict: Verdict,
+    /// What it is worth.
     pub points: u32,
 }
 

@@ -30,7 +30,7 @@ impl Source {
     pub fn prepare(which: Which, root: &Path) -> Result<Source> {
         match which {
             Which::Solutions => Ok(Source::Solutions),
-            Which::Exercises => build_worker(root).map(Source::Worker),
+            Which::Exercises => build_worker(root, "exercises").map(Source::Worker),
         }
     }
 
@@ -43,14 +43,21 @@ impl Source {
     }
 }
 
-/// Builds the worker of the exercises in the profile of this program, and says where it is.
-fn build_worker(root: &Path) -> Result<PathBuf> {
+/// Builds the worker of a package, `exercises` or `solutions`, in the profile of this program, and says where it is.
+pub fn build_worker(root: &Path, package: &str) -> Result<PathBuf> {
     let here = std::env::current_exe().context("this program cannot find itself")?;
     let folder = here.parent().context("this program lies nowhere")?;
     let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
     let release = folder.ends_with("release");
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root).args(["build", "--quiet", "--package", "exercises", "--bin", "exercises-worker"]);
+    cargo.current_dir(root).args([
+        "build",
+        "--quiet",
+        "--package",
+        package,
+        "--bin",
+        &format!("{package}-worker"),
+    ]);
     if release {
         cargo.arg("--release");
     }
@@ -59,9 +66,9 @@ fn build_worker(root: &Path) -> Result<PathBuf> {
     }
     let status = cargo.status().context("cargo, which builds your exercises, cannot be started")?;
     if !status.success() {
-        bail!("your exercises do not compile yet: the compiler's words are above");
+        bail!("{package} does not compile yet: the compiler says above what is wrong");
     }
-    Ok(folder.join(format!("exercises-worker{}", std::env::consts::EXE_SUFFIX)))
+    Ok(folder.join(format!("{package}-worker{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// The folder of the kit: the one with `exercises/` at or above the current folder.
