@@ -47,7 +47,6 @@ impl<'a> Source<'a> {
 }
 
 /// A table whose keys are all known.
-#[derive(Clone)]
 pub(super) struct Table<'a> {
     source: &'a Source<'a>,
     name: String,
