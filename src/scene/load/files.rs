@@ -34,6 +34,9 @@ pub(super) fn where_it_might_be(path: &Path) -> String {
         entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
     names.sort(); // folders list their files in any order
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    // Without extensions, which make any two short names look alike.
+    let stem = |name: &str| Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    names.retain(|name| nearest(&stem(&wanted), [stem(name).as_str()]).is_some());
     match nearest(&wanted, names.iter().map(String::as_str)) {
         Some(meant) => format!("looked for {}; did you mean {}?", path.display(), quoted(meant)),
         None => format!("looked for {}", path.display()),

@@ -12,6 +12,7 @@ mod polygon;
 mod reader;
 mod settings;
 mod shapes;
+mod syntax;
 #[cfg(test)]
 mod tests;
 mod textures;

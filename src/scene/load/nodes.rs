@@ -7,6 +7,7 @@ use super::words::quoted;
 use super::{graph, transform};
 use crate::scene::Node;
 use crate::scene::error::LoadError;
+use std::collections::BTreeSet;
 
 const KEYS: [&str; 6] = ["name", "material", "shape", "children", "transform", "transform_end"];
 
@@ -71,10 +72,10 @@ fn names<'a>(tables: &[Table<'a>]) -> Result<Names<'a>, LoadError> {
 }
 
 fn children(listed: &[Value], names: &Names) -> Result<Vec<usize>, LoadError> {
-    let mut children = Vec::new();
+    let (mut children, mut seen) = (Vec::new(), BTreeSet::new());
     for value in listed {
         let child = names.find(*value)?;
-        if children.contains(&child) {
+        if !seen.insert(child) {
             return Err(value.error(format!("{} is listed twice", value.spelled())).help(
                 "both would stand in the same place; for another place, add a node with a `transform` around it",
             ));

@@ -1,6 +1,7 @@
 //! A small typed reader over TOML values. It knows where each value stands, so that every message is in the words of
 //! scenes and points at what is to blame. Numbers are read in `numbers`.
 
+use super::syntax;
 use super::words::{listed, nearest, one_line, quoted};
 use crate::scene::error::LoadError;
 use std::ops::Range;
@@ -17,17 +18,7 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     /// All tables of the file.
     pub fn document(&self) -> Result<DeTable<'a>, LoadError> {
-        DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| {
-            let end = self.text.len();
-            let span = error.span().map_or(end..end, |span| span.start.min(end)..span.end.min(end));
-            match error.message() {
-                "duplicate key" => {
-                    let key = quoted(self.text.get(span.clone()).unwrap_or_default());
-                    self.error(span, format!("{key} is given twice")).help("delete one of the two")
-                }
-                message => self.error(span, format!("this is not TOML: {}", one_line(message))),
-            }
-        })
+        DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| syntax::explain(self, &error))
     }
 
     /// Trouble at the bytes `span`.
@@ -47,7 +38,6 @@ impl<'a> Source<'a> {
 }
 
 /// A table whose keys are all known.
-#[derive(Clone)]
 pub(super) struct Table<'a> {
     source: &'a Source<'a>,
     name: String,

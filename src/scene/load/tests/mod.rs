@@ -1,6 +1,7 @@
 //! Facts about scene files: what they say when they are right, and what is said of them when they are wrong.
 
-mod assets;
+mod files;
+mod materials;
 mod mutants;
 mod nodes;
 mod settings;

@@ -20,7 +20,30 @@ fn scene_error(text: &str) -> String {
 #[test]
 fn what_is_not_toml_says_where() {
     check_refused_with("[film\nwidth = 3", "s.toml:2:6: this is not TOML: unclosed table, expected `]`");
-    check_refused_with("[film]\nwidth 3", "s.toml:3:7: this is not TOML: key with no value, expected `=`");
+    check_refused_with(
+        "[film]\nwidth 3",
+        "s.toml:3:7: a key has no value\nhelp: write the key, `=` and the value",
+    );
+    check_refused_with(
+        "a = [0 0, 0]",
+        "s.toml:2:6: `0 0` is not a number\nhelp: put commas between numbers, as in `[0, 1, 5]`",
+    );
+    check_refused_with(
+        "a = 0, 1, 5",
+        "s.toml:2:6: the line goes on after its value\nhelp: put lists between brackets, as in `[0, 1, 5]`",
+    );
+    check_refused_with(
+        "a = red",
+        "s.toml:2:5: `red` stands without quotes\nhelp: put text between quotes, as in `\"red\"`",
+    );
+    check_refused_with(
+        "a = .5",
+        "s.toml:2:5: a number has no digits on one side of its point\nhelp: write `0.5` and `5.0`",
+    );
+    check_refused_with(
+        "a = 5.",
+        "s.toml:2:7: a number has no digits on one side of its point\nhelp: write `0.5` and `5.0`",
+    );
     check_refused_with(
         "[film]\nwidth = 3\nwidth = 4",
         "s.toml:4:1: `width` is given twice\nhelp: delete one of the two",
@@ -90,7 +113,7 @@ fn nesting_has_a_bottom() {
 
 #[test]
 fn a_scene_that_is_not_there_is_missed_by_name() {
-    let folder = super::assets::Folder::new("syntax");
+    let folder = super::files::Folder::new("syntax");
     folder.write("room.toml", CAMERA);
     assert!(load(&folder.path("room.toml")).is_ok());
     let error = load(&folder.path("rom.toml")).unwrap_err();

@@ -1,13 +1,12 @@
-//! Materials, textures, meshes and lights.
+//! Textures and meshes: whatever needs a second file.
 
-use super::{CAMERA, check_refused_with, scene_with};
-use crate::material::{AreaShape, Emitter, Falloff, Light, Material, Wrap};
+use super::CAMERA;
+use crate::material::{Material, Wrap};
 use crate::scene::Scene;
 use crate::scene::error::LoadError;
 use crate::scene::load::parse;
-use crate::shape::{Disk, Sphere};
 use glam::Vec3;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// A folder that goes away with its value.
 pub(super) struct Folder(PathBuf);
@@ -46,46 +45,6 @@ fn trouble(result: Result<Scene, LoadError>) -> (Option<(usize, usize)>, String,
 }
 
 #[test]
-fn materials_keep_their_order_and_default_comes_first() {
-    let scene = scene_with(
-        "[materials.red]\ndiffuse = [1, 0, 0]\nexponent = 5\n\
-         [materials.glass]\ntransmission = 0.9\nindex_of_refraction = 1.5\nambient = 0\nroughness = 1\n\
-         mirror = 0.1\nspecular = 2\nemission = 3\n\
-         [materials.default]\ndiffuse = 0.25\n",
-    );
-    assert_eq!(scene.material_names, ["default", "red", "glass"]);
-    let grey = Vec3::splat(0.25);
-    assert_eq!(scene.materials[0], Material { ambient: grey, diffuse: grey, ..Material::default() });
-    assert_eq!(
-        scene.materials[1],
-        Material { ambient: Vec3::X, diffuse: Vec3::X, exponent: 5.0, ..Material::default() }
-    );
-    let glass = Material {
-        ambient: Vec3::ZERO,
-        transmission: Vec3::splat(0.9),
-        index_of_refraction: 1.5,
-        roughness: 1.0,
-        mirror: Vec3::splat(0.1),
-        specular: Vec3::splat(2.0),
-        emission: Vec3::splat(3.0),
-        ..Material::default()
-    };
-    assert_eq!(scene.materials[2], glass);
-}
-
-#[test]
-fn materials_have_limits() {
-    let red = |rest: &str, message: &str| {
-        check_refused_with(&format!("[materials.red]\n{rest}"), &format!("s.toml:{message}"));
-    };
-    red("index_of_refraction = 0", "3:23: `index_of_refraction` must be above 0, and is 0");
-    red("roughness = 1.5", "3:13: `roughness` must be from 0 to 1, and is 1.5");
-    red("exponent = -1", "3:12: `exponent` must be at least 0, and is -1");
-    red("diffuse = [inf, 0, 0]", "3:12: entry 1 of `diffuse` must be a finite number, and is inf");
-    red("texture = 'wood'", "3:11: unknown texture `wood`\nhelp: the scene defines none");
-}
-
-#[test]
 fn an_image_is_decoded_to_linear_light() {
     let folder = Folder::new("textures");
     let pixels = image::RgbImage::from_raw(2, 1, vec![0, 255, 188, 10, 0, 0]).expect("six bytes");
@@ -99,6 +58,22 @@ fn an_image_is_decoded_to_linear_light() {
     assert!((texture.pixels[0] - Vec3::new(0.0, 1.0, 0.502_886)).abs().max_element() < 1e-6);
     assert!((texture.pixels[1].x - 0.003_035_27).abs() < 1e-8);
     assert_eq!(scene.materials[1].texture, Some(0));
+}
+
+#[test]
+fn finer_images_keep_their_fineness() {
+    let folder = Folder::new("fine");
+    let code = |code: u16| image::ImageBuffer::from_pixel(1, 1, image::Luma([code]));
+    code(32_768).save(folder.path("grey.png")).expect("a texture");
+    let bright = image::Rgb32FImage::from_pixel(1, 1, image::Rgb([4.0, 0.5, 0.0]));
+    bright.save(folder.path("sky.hdr")).expect("a texture");
+    let scene = folder
+        .parse("[textures]\ngrey.file = 'grey.png'\nsky = { file = 'sky.hdr', wrap = 'clamp' }")
+        .expect("a scene");
+    // ((32768/65535 + 0.055) / 1.055)^2.4; 8 bits would give 0.2159 for code 128.
+    assert!((scene.textures[0].pixels[0] - Vec3::splat(0.214_053)).abs().max_element() < 1e-5);
+    assert_eq!(scene.textures[1].pixels[0], Vec3::new(4.0, 0.5, 0.0)); // powers of two are exact in RGBE
+    assert_eq!(scene.textures[1].wrap, Wrap::Clamp);
 }
 
 #[test]
@@ -125,6 +100,8 @@ fn files_that_cannot_be_used_say_why() {
         (message.as_str(), help.as_str()),
         ("'bunny.stl' is no mesh that can be read", "meshes are `.ply` or `.obj` files")
     );
+    let (_, message, _) = trouble(folder.parse("meshes.bunny.file = \"\\u0000\""));
+    assert!(message.starts_with("cannot read `\\u{0}`: "), "{message}");
     let (_, message, _) = trouble(folder.parse("meshes.bunny.file = ''"));
     assert_eq!(message, "`` is a folder, not a file");
     let (_, message, help) = trouble(folder.parse("[meshes.bunny]"));
@@ -168,66 +145,46 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
 }
 
 #[test]
-fn lamps_arrive_as_written() {
-    let scene = scene_with(
-        "[[lights]]\npoint = { position = [1, 2, 3], falloff = 'inverse_square' }\nintensity = 2\n\
-         [[lights]]\ndirectional = { direction = [0, -5, 0] }\ncolor = [1, 0, 0]\n\
-         [[lights]]\narea = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [0, 0, 1]] } }\n\
-         [[lights]]\narea = { disk = { center = [0, 1, 0], normal = [0, 0, 2], radius = 3 } }\n\
-         [[lights]]\narea = { sphere = { center = [0, 1, 0], radius = 3 }, falloff = 'inverse_square' }\n",
-    );
-    let lamp = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0 };
-    let (center, radius, none, square) = (Vec3::Y, 3.0, Falloff::None, Falloff::InverseSquare);
-    let point = Emitter::Point { position: Vec3::new(1.0, 2.0, 3.0), falloff: square };
-    assert_eq!(scene.lights[0], Light { intensity: 2.0, ..lamp(point) });
-    let directional = Emitter::Directional { direction: Vec3::NEG_Y };
-    assert_eq!(scene.lights[1], Light { color: Vec3::X, ..lamp(directional) });
-    let shape = AreaShape::Rectangle { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Z) };
-    assert_eq!(scene.lights[2], lamp(Emitter::Area { shape, falloff: none }));
-    let shape = AreaShape::Disk(Disk { center, normal: Vec3::Z, radius });
-    assert_eq!(scene.lights[3], lamp(Emitter::Area { shape, falloff: none }));
-    let shape = AreaShape::Sphere(Sphere { center, radius });
-    assert_eq!(scene.lights[4], lamp(Emitter::Area { shape, falloff: square }));
+fn an_obj_material_brings_its_image() {
+    let folder = Folder::new("images");
+    folder.write("m.obj", OBJ);
+    folder.write("m.mtl", format!("{MTL}map_Kd wood.png\n"));
+    let text = "[meshes.o]\nfile = 'm.obj'\n";
+    let (place, message, help) = trouble(folder.parse(text));
+    assert_eq!(place, Some((2, 1)));
+    assert!(message.starts_with("cannot use the texture of mesh `o`: "), "{message}");
+    assert_eq!(help, format!("looked for {}", folder.path("wood.png").display()));
+    image::RgbImage::new(3, 2).save(folder.path("wood.png")).expect("a texture");
+    let scene = folder.parse(text).expect("a scene");
+    assert_eq!((scene.materials[1].texture, scene.textures[0].width), (Some(0), 3));
 }
 
 #[test]
-fn lamps_have_limits() {
-    let light = |rest: &str, message: &str| {
-        check_refused_with(&format!("[[lights]]\n{rest}"), &format!("s.toml:{message}"));
-    };
-    light("", "2:1: entry 1 of `lights` needs one of `point`, `directional`, `area`, and has none");
-    light(
-        "point = { position = [0, 0, 0] }\narea = {}",
-        "4:1: entry 1 of `lights` has both `point` and `area`\nhelp: delete one of the two",
-    );
-    light(
-        "intensity = -1\npoint = { position = [0, 0, 0] }",
-        "3:13: `intensity` must be at least 0, and is -1",
-    );
-    light("point = {}", "3:9: `point` lacks `position`\nhelp: add it, for example `position = [0, 5, 0]`");
-    light(
-        "area = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] } }",
-        "3:52: the edges run along one line, so the lamp has no area",
-    );
-    light(
-        "area = { sphere = { center = [0, 0, 0], radius = 0 } }",
-        "3:50: `radius` must be above 0, and is 0",
-    );
-    light(
-        "point = { position = [0, 0, 0], falloff = 'linear' }",
-        "3:43: unknown value of `falloff`: `linear`\nhelp: known are `none`, `inverse_square`",
-    );
+fn mesh_materials_that_cannot_be_used_say_what_to_do() {
+    let folder = Folder::new("mtl");
+    let remedy = "define `[materials.red]`, or write `materials = false` to have the whole mesh in the material of \
+        its node";
+    folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    let text = "[meshes.o]\nfile = 'm.obj'\n";
+    let (place, message, help) = trouble(folder.parse(text));
+    assert_eq!((place, help.as_str()), (Some((2, 1)), remedy));
+    assert_eq!(message, "mesh `o` uses material `red`, and nothing defines it");
+
+    folder.write("m.obj", OBJ);
+    folder.write("m.mtl", "newmtl red\nd 1.5\n");
+    let (_, message, help) = trouble(folder.parse(text));
+    let path = folder.path("m.obj");
+    let expected = "its dissolve is 1.5, and must be from 0 to 1";
+    assert_eq!(message, format!("material `red` of {} cannot be used: {expected}", path.display()));
+    assert_eq!(help, remedy);
+    folder.parse(&format!("{text}materials = false")).expect("a scene");
+    folder.parse(&format!("{text}[materials.red]")).expect("a scene");
 }
 
 #[test]
-fn the_examples_of_the_reference_can_be_read() {
-    let reference = include_str!("../format.md");
-    let examples: Vec<&str> =
-        reference.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
-    assert!(!examples.is_empty());
-    for example in examples {
-        if let Err(error) = parse(Path::new("format.md"), example) {
-            panic!("{error}");
-        }
-    }
+fn a_mesh_has_triangles() {
+    let folder = Folder::new("empty");
+    folder.write("m.ply", PLY.replace("element face 1", "element face 0").replace("3 0 1 2\n", ""));
+    let error = folder.parse("[meshes.p]\nfile = 'm.ply'\n").expect_err("an empty mesh");
+    assert!(error.message.contains("no triangles"), "{error}");
 }

@@ -1,0 +1,113 @@
+//! Materials and lights, and the examples of the reference.
+
+use super::{check_refused_with, scene_with};
+use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
+use crate::scene::load::parse;
+use crate::shape::{Disk, Sphere};
+use glam::Vec3;
+use std::path::Path;
+
+#[test]
+fn materials_keep_their_order_and_default_comes_first() {
+    let scene = scene_with(
+        "[materials.red]\ndiffuse = [1, 0, 0]\nexponent = 5\n\
+         [materials.glass]\ntransmission = 0.9\nindex_of_refraction = 1.5\nambient = 0\nroughness = 1\n\
+         mirror = 0.1\nspecular = 2\nemission = 3\n\
+         [materials.default]\ndiffuse = 0.25\n",
+    );
+    assert_eq!(scene.material_names, ["default", "red", "glass"]);
+    let grey = Vec3::splat(0.25);
+    assert_eq!(scene.materials[0], Material { ambient: grey, diffuse: grey, ..Material::default() });
+    assert_eq!(
+        scene.materials[1],
+        Material { ambient: Vec3::X, diffuse: Vec3::X, exponent: 5.0, ..Material::default() }
+    );
+    let glass = Material {
+        ambient: Vec3::ZERO,
+        transmission: Vec3::splat(0.9),
+        index_of_refraction: 1.5,
+        roughness: 1.0,
+        mirror: Vec3::splat(0.1),
+        specular: Vec3::splat(2.0),
+        emission: Vec3::splat(3.0),
+        ..Material::default()
+    };
+    assert_eq!(scene.materials[2], glass);
+}
+
+#[test]
+fn materials_have_limits() {
+    let red = |rest: &str, message: &str| {
+        check_refused_with(&format!("[materials.red]\n{rest}"), &format!("s.toml:{message}"));
+    };
+    red("index_of_refraction = 0", "3:23: `index_of_refraction` must be above 0, and is 0");
+    red("roughness = 1.5", "3:13: `roughness` must be from 0 to 1, and is 1.5");
+    red("exponent = -1", "3:12: `exponent` must be at least 0, and is -1");
+    red("diffuse = [inf, 0, 0]", "3:12: entry 1 of `diffuse` must be a finite number, and is inf");
+    red("texture = 'wood'", "3:11: unknown texture `wood`\nhelp: the scene defines none");
+}
+
+#[test]
+fn lamps_arrive_as_written() {
+    let scene = scene_with(
+        "[[lights]]\npoint = { position = [1, 2, 3], falloff = 'inverse_square' }\nintensity = 2\n\
+         [[lights]]\ndirectional = { direction = [0, -5, 0] }\ncolor = [1, 0, 0]\n\
+         [[lights]]\narea = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [0, 0, 1]] } }\n\
+         [[lights]]\narea = { disk = { center = [0, 1, 0], normal = [0, 0, 2], radius = 3 } }\n\
+         [[lights]]\narea = { sphere = { center = [0, 1, 0], radius = 3 }, falloff = 'inverse_square' }\n",
+    );
+    let lamp = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0 };
+    let (center, radius, none, square) = (Vec3::Y, 3.0, Falloff::None, Falloff::InverseSquare);
+    let point = Emitter::Point { position: Vec3::new(1.0, 2.0, 3.0), falloff: square };
+    assert_eq!(scene.lights[0], Light { intensity: 2.0, ..lamp(point) });
+    let directional = Emitter::Directional { direction: Vec3::NEG_Y };
+    assert_eq!(scene.lights[1], Light { color: Vec3::X, ..lamp(directional) });
+    let shape = AreaShape::Rectangle { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Z) };
+    assert_eq!(scene.lights[2], lamp(Emitter::Area { shape, falloff: none }));
+    let shape = AreaShape::Disk(Disk { center, normal: Vec3::Z, radius });
+    assert_eq!(scene.lights[3], lamp(Emitter::Area { shape, falloff: none }));
+    let shape = AreaShape::Sphere(Sphere { center, radius });
+    assert_eq!(scene.lights[4], lamp(Emitter::Area { shape, falloff: square }));
+}
+
+#[test]
+fn lamps_have_limits() {
+    let light = |rest: &str, message: &str| {
+        check_refused_with(&format!("[[lights]]\n{rest}"), &format!("s.toml:{message}"));
+    };
+    light("", "2:1: entry 1 of `lights` needs one of `point`, `directional`, `area`, and has none");
+    light(
+        "point = { position = [0, 0, 0] }\narea = {}",
+        "4:1: entry 1 of `lights` has both `point` and `area`\nhelp: delete one of the two",
+    );
+    light(
+        "intensity = -1\npoint = { position = [0, 0, 0] }",
+        "3:13: `intensity` must be at least 0, and is -1",
+    );
+    light("point = {}", "3:9: `point` lacks `position`\nhelp: add it, for example `position = [0, 5, 0]`");
+    light(
+        "area = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] } }",
+        "3:52: the edges run along one line, so the lamp has no area",
+    );
+    light(
+        "area = { sphere = { center = [0, 0, 0], radius = 0 } }",
+        "3:50: `radius` must be above 0, and is 0",
+    );
+    light(
+        "point = { position = [0, 0, 0], falloff = 'linear' }",
+        "3:43: unknown value of `falloff`: `linear`\nhelp: known are `none`, `inverse_square`",
+    );
+}
+
+#[test]
+fn the_examples_of_the_reference_can_be_read() {
+    let reference = include_str!("../format.md");
+    let examples: Vec<&str> =
+        reference.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!examples.is_empty());
+    for example in examples {
+        if let Err(error) = parse(Path::new("format.md"), example) {
+            panic!("{error}");
+        }
+    }
+}
