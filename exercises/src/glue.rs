@@ -139,7 +139,7 @@ fn search(
 ) -> (Option<PrimitiveHit>, SearchAnswer) {
     let mut probe = TableProbe::new(query);
     let hit = find(&mut probe);
-    (probe.last_hit, SearchAnswer { hit, counts: probe.counts })
+    (probe.last_hit, SearchAnswer { hit, counts: probe.counts, tests_after_hit: probe.tests_after_hit })
 }
 
 impl Shading for Kit {

@@ -1,0 +1,192 @@
+//! Whole frames of the reference: whatever finds the hits, on however many threads, the picture is the same; nothing
+//! is traced in vain; and no surface shadows itself at any size.
+
+use glam::Vec3;
+use raykata::count::Counts;
+use raykata::film::Film;
+use raykata::frame::Unwatched;
+use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::scene::{Accelerator, Scene, Split, load};
+use std::path::Path;
+
+fn scene(text: &str) -> Scene {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/test.toml"));
+    load::parse(folder, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
+    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };
+    solutions::Kit.render(&job, &Unwatched).expect("nobody cancels")
+}
+
+fn render(scene: &Scene) -> Rendering {
+    render_with(scene, 1, true)
+}
+
+const VASES: &str = r#"
+[film]
+width = 72
+height = 54
+[camera]
+position = [0, 2.4, 6]
+look_at = [0, 1, 0]
+[environment]
+background = 0.3
+ambient = 0.1
+[[lights]]
+point = { position = [4, 6, 5] }
+[[lights]]
+point = { position = [-4, 3, -5] }
+color = [0.5, 0.7, 1]
+[meshes.vase]
+file = "meshes/vase.ply"
+[[nodes]]
+shape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }
+[[nodes]]
+shape = { mesh = "vase" }
+transform = [{ translate = [-1.2, 0, 0] }]
+[[nodes]]
+shape = { sphere = { center = [1.2, 1, 0], radius = 1 } }
+"#;
+
+#[test]
+fn every_search_and_every_number_of_threads_makes_the_same_picture() {
+    let mut scene = scene(VASES);
+    scene.quality.accelerator = Accelerator::BruteForce;
+    let expected = render(&scene);
+    scene.quality.accelerator = Accelerator::Bvh;
+    for split in Split::ALL {
+        for leaf_size in [1, 4, 16] {
+            (scene.quality.split, scene.quality.leaf_size) = (split, leaf_size);
+            let found = render(&scene);
+            assert_eq!(found.film, expected.film, "{split:?}, leaves of {leaf_size}");
+            assert_eq!(rays(&found.counts), rays(&expected.counts));
+            assert!(found.counts.primitive_tests * 20 < expected.counts.primitive_tests);
+        }
+    }
+    let one = render(&scene);
+    for threads in [2, 5] {
+        let many = render_with(&scene, threads, true);
+        assert_eq!((many.film, many.counts), (one.film.clone(), one.counts));
+    }
+}
+
+fn rays(counts: &Counts) -> (u64, u64) {
+    (counts.primary, counts.shadow)
+}
+
+#[test]
+fn counting_changes_no_pixel() {
+    let scene = scene(VASES);
+    let (counted, uncounted) = (render_with(&scene, 1, true), render_with(&scene, 1, false));
+    assert_eq!(counted.film, uncounted.film);
+    assert_eq!(uncounted.counts, Counts::default());
+}
+
+#[test]
+fn all_three_triangle_tests_make_nearly_the_same_picture() {
+    use raykata::scene::TriangleMethod::{Cramer, Gram, Watertight};
+    let mut scene = scene(VASES);
+    let picture = |method, scene: &mut Scene| {
+        scene.quality.triangle_method = method;
+        render(scene).film
+    };
+    let watertight = picture(Watertight, &mut scene);
+    for method in [Cramer, Gram] {
+        let film = picture(method, &mut scene);
+        let off =
+            film.pixels.iter().zip(&watertight.pixels).filter(|(p, q)| (**p - **q).length() > 0.02).count();
+        // They may disagree about rays that pass within a rounding of an edge: a few of 3,888.
+        assert!(off <= 8, "{method:?}: {off} pixels differ");
+    }
+}
+
+#[test]
+fn a_plain_scene_costs_one_ray_a_pixel_and_one_a_lamp_that_matters() {
+    let scene = scene(
+        r#"
+[film]
+width = 40
+height = 30
+[camera]
+position = [0, 5, 0]
+direction = [0, -1, 0]
+up = [0, 0, -1]
+[[lights]]
+point = { position = [0, 8, 3] }
+[[lights]]
+point = { position = [0, -3, 0] }
+[[lights]]
+point = { position = [3, 8, 3] }
+intensity = 0
+[[nodes]]
+shape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }
+"#,
+    );
+    // Every pixel sees the floor. One lamp shines on it, one is below it, one is switched off.
+    assert_eq!(rays(&render(&scene).counts), (1200, 1200));
+}
+
+/// A scene of this size, with `offset` from the origin, in which every surface that is seen is fully lit.
+fn lit_scene(size: f32, offset: f32) -> String {
+    let at = |x: f32, y: f32, z: f32| {
+        format!("[{}, {}, {}]", offset + size * x, offset + size * y, offset + size * z)
+    };
+    format!(
+        r#"
+[film]
+width = 60
+height = 45
+[camera]
+position = {eye}
+look_at = {center}
+[environment]
+background = 1
+[[lights]]
+point = {{ position = {lamp} }}
+[[nodes]]
+shape = {{ sphere = {{ center = {center}, radius = {radius} }} }}
+[[nodes]]
+shape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}
+[[nodes]]
+shape = {{ box = {{ min = {low}, max = {high} }} }}
+"#,
+        // The lamp sits just behind the eye, so nothing that is seen lies in shadow.
+        eye = at(0.3, 0.5, 6.0),
+        lamp = at(0.3, 0.5, 6.1),
+        center = at(0.0, 0.0, 0.0),
+        radius = size,
+        a = at(-3.0, -2.0, -2.0),
+        b = at(3.0, -2.0, -2.0),
+        c = at(0.0, 3.0, -2.5),
+        low = at(1.2, -1.5, -0.5),
+        high = at(2.0, -0.5, 0.5),
+    )
+}
+
+fn dark_pixels(film: &Film) -> usize {
+    film.pixels.iter().filter(|pixel| pixel.x <= 0.0).count()
+}
+
+#[test]
+fn no_surface_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
+    for size in [1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3, 1e5] {
+        for offset in [0.0, 30.0 * size] {
+            let film = render(&scene(&lit_scene(size, offset))).film;
+            assert_eq!(film.not_a_number(), 0);
+            // Lamp and eye are a little apart: along outlines a pixel or two are seen and not lit.
+            let dark = dark_pixels(&film);
+            assert!(dark <= 6, "size {size}, offset {offset}: {dark} of 2700 pixels are dark");
+        }
+    }
+}
+
+#[test]
+fn a_film_of_one_pixel_and_an_empty_scene_are_frames_too() {
+    let mut scene =
+        scene("[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[environment]\nbackground = 0.25\n");
+    (scene.film.width, scene.film.height) = (1, 1);
+    let rendering = render(&scene);
+    assert_eq!(rendering.film.pixels, [Vec3::splat(0.25)]);
+    assert_eq!(rendering.counts, Counts { primary: 1, ..Counts::default() });
+}

@@ -1,0 +1,152 @@
+//! The program as its users run it.
+
+use raykata::scene::load;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn raykata(arguments: &[&str]) -> Output {
+    let program = Command::new(env!("CARGO_BIN_EXE_raykata")).current_dir(root()).args(arguments).output();
+    program.expect("the program starts")
+}
+
+fn told(output: &Output) -> (String, String) {
+    (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
+}
+
+fn scene_files() -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
+    let files = folder.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")).collect()
+}
+
+#[test]
+fn every_scene_of_the_kit_renders() {
+    let files = scene_files();
+    assert!(files.len() >= 10);
+    let out = tempfile::tempdir().expect("a folder");
+    for file in files {
+        load::load(&file).unwrap_or_else(|error| panic!("{error}"));
+        let picture = out.path().join("picture.png");
+        let output = raykata(&[
+            "render",
+            &file.to_string_lossy(),
+            "--size",
+            "48x30",
+            "--out",
+            &picture.to_string_lossy(),
+        ]);
+        let (said, complained) = told(&output);
+        assert!(output.status.success(), "{}: {complained}", file.display());
+        assert!(said.contains("primary rays"), "{said}");
+        assert!(!said.contains("NaN"), "{said}");
+        std::fs::remove_file(picture).expect("a picture was written");
+    }
+}
+
+#[test]
+fn each_kind_of_picture_is_written_and_others_are_refused() {
+    let out = tempfile::tempdir().expect("a folder");
+    for (name, magic) in
+        [("a.png", &b"\x89PNG"[..]), ("a.hdr", b"#?RADIANCE"), ("a.exr", b"\x76\x2f\x31\x01")]
+    {
+        let picture = out.path().join(name);
+        let output =
+            raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
+        assert!(output.status.success(), "{}", told(&output).1);
+        assert!(std::fs::read(&picture).expect("a picture").starts_with(magic), "{name}");
+    }
+    let output = raykata(&["render", "scenes/gamma.toml", "--out", "picture.jpg"]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = told(&output).1;
+    assert!(complaint.contains("let it end in .png, .hdr or .exr"), "{complaint}");
+}
+
+#[test]
+fn a_mistake_in_a_scene_is_drawn_and_nothing_is_written() {
+    let out = tempfile::tempdir().expect("a folder");
+    let file = out.path().join("typo.toml");
+    std::fs::write(&file, "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n\n[fil]\nwidth = 3\n")
+        .expect("written");
+    let output =
+        raykata(&["render", &file.to_string_lossy(), "--out", &out.path().join("a.png").to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = told(&output).1;
+    for part in ["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"] {
+        assert!(complaint.contains(part), "no `{part}` in\n{complaint}");
+    }
+    assert!(!out.path().join("a.png").exists());
+    let missing = raykata(&["render", "scenes/showcas.toml"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(told(&missing).1.contains("showcase.toml"), "{}", told(&missing).1);
+}
+
+#[test]
+fn the_reference_has_all_points() {
+    let output = raykata(&["check", "--kit", "solutions"]);
+    let said = told(&output).0;
+    assert!(output.status.success(), "{said}");
+    assert!(said.trim_end().ends_with("passed, 0 failed"), "{said}");
+}
+
+#[test]
+fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
+    let said = told(&raykata(&["check", "1", "--kit", "solutions"])).0;
+    assert!(said.contains("stage 1 ·") && !said.contains("stage 2 ·"), "{said}");
+    let output = raykata(&["check", "77", "--kit", "solutions"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).1.contains("there is no stage 77"));
+}
+
+#[test]
+fn hints_come_in_three_steps_and_near_names_are_suggested() {
+    let name = "triangle_cramer_agrees_with_double_precision";
+    let hints: Vec<String> = ["1", "2", "3"].map(|level| told(&raykata(&["hint", name, level])).0).to_vec();
+    assert!(hints[0] != hints[1] && hints[1] != hints[2] && hints[0].contains("hint triangle_cramer"));
+    let output = raykata(&["hint", "triangle_cramer_agree"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).1.contains(name));
+}
+
+#[test]
+fn the_command_line_says_when_it_does_not_understand() {
+    assert_eq!(raykata(&["rendr"]).status.code(), Some(2));
+    assert_eq!(raykata(&["render", "scenes/gamma.toml", "--size", "0x9"]).status.code(), Some(2));
+    assert_eq!(raykata(&["hint", "anything", "4"]).status.code(), Some(2));
+    assert!(told(&raykata(&["--help"])).0.contains("Exit codes"));
+}
+
+/// Answers are what is between the marks; no line of them may be left in an exercise.
+#[test]
+fn no_line_of_an_answer_is_in_an_exercise() {
+    for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
+        let solution = root().join("solutions/src").join(exercise.path.file_name().expect("a name"));
+        let text = std::fs::read_to_string(&solution).expect("a solution");
+        let mut inside = false;
+        for line in text.lines().map(str::trim) {
+            match line {
+                "// <solution>" => inside = true,
+                "// </solution>" => inside = false,
+                // Short lines are brackets and such, which are nobody's answer.
+                _ if inside && line.len() > 12 && !line.starts_with("// <stub>") => {
+                    let left = exercise.stub.lines().any(|stub| stub.trim() == line);
+                    assert!(!left, "{}: {line}", exercise.path.display());
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn sync_is_the_same_every_time() {
+    for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
+        assert!(!exercise.stub.contains("<solution>") && !exercise.stub.contains("<stub>"));
+        // A file without marks is its own stub: generating twice changes nothing.
+        let again = grader::sync::stub(&exercise.stub, &exercise.path).expect("no marks are left");
+        assert_eq!(again, exercise.stub);
+    }
+}
