@@ -85,11 +85,41 @@ pub enum TriangleMethod {
     Watertight,
 }
 
+/// Where the samples of a pixel lie (stage 6).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sampler {
+    /// In its centre, all of them.
+    Center,
+    /// Anywhere.
+    Random,
+    /// Anywhere in cells of a grid, one a cell.
+    Jittered,
+    /// Around the centre, weighted by a Gaussian.
+    Gaussian,
+    /// Spread as evenly as can be.
+    #[default]
+    LowDiscrepancy,
+}
+
+/// How many digits ray/shape tests work with (stage 10).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Precision {
+    /// 24 bits.
+    #[default]
+    Single,
+    /// 53 bits.
+    Double,
+}
+
 /// Every knob that trades accuracy for time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
     /// Samples a pixel, at least 1.
     pub samples_per_pixel: u32,
+    /// Where they lie (stage 6).
+    pub sampler: Sampler,
     /// Samples of an area light a hit, at least 1 (stage 6).
     pub light_samples: u32,
     /// Rays of a rough mirror a hit, at least 1 (stage 6).
@@ -106,6 +136,8 @@ pub struct Quality {
     pub leaf_size: u32,
     /// The ray/triangle test.
     pub triangle_method: TriangleMethod,
+    /// Digits of ray/shape tests (stage 10).
+    pub precision: Precision,
     /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
     pub grid_resolution: u32,
 }
@@ -114,6 +146,7 @@ impl Default for Quality {
     fn default() -> Self {
         Quality {
             samples_per_pixel: 1,
+            sampler: Sampler::default(),
             light_samples: 1,
             gloss_samples: 1,
             max_depth: 5,
@@ -122,6 +155,7 @@ impl Default for Quality {
             split: Split::default(),
             leaf_size: 4,
             triangle_method: TriangleMethod::default(),
+            precision: Precision::default(),
             grid_resolution: 0,
         }
     }

@@ -10,7 +10,7 @@ use crate::camera::Camera;
 use crate::kit::LightSample;
 use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
 use crate::mesh::Mesh;
-use crate::scene::{Node, Scene, SceneMesh};
+use crate::scene::{Node, Precision, Sampler, Scene, SceneMesh};
 use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3A, Vec3};
 
@@ -190,6 +190,12 @@ fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
         "area lights shine from their middle",
         6,
     );
+    missing(
+        scene.quality.sampler != Sampler::LowDiscrepancy,
+        "the samples of a pixel lie on an even lattice, whatever the sampler",
+        6,
+    );
+    missing(scene.quality.precision == Precision::Double, "rays are tested in single precision", 10);
     missing(scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0), "the lens is a pinhole", 6);
     missing(scene.nodes.iter().any(|node| node.transform_end.is_some()), "moving nodes stand still", 6);
     missing(any(|m| m.texture.is_some()), "textures are left out", 7);

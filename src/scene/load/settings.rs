@@ -3,7 +3,7 @@
 use super::reader::Value;
 use crate::camera::{Camera, Lens, Shutter};
 use crate::scene::error::LoadError;
-use crate::scene::{Accelerator, Encoding, FilmSettings, Quality, Split, TriangleMethod};
+use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
 
 /// The longest side of a picture, in pixels.
@@ -108,8 +108,9 @@ pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError
     })
 }
 
-const QUALITY_KEYS: [&str; 10] = [
+const QUALITY_KEYS: [&str; 12] = [
     "samples_per_pixel",
+    "sampler",
     "light_samples",
     "gloss_samples",
     "max_depth",
@@ -118,6 +119,7 @@ const QUALITY_KEYS: [&str; 10] = [
     "split",
     "leaf_size",
     "triangle_method",
+    "precision",
     "grid_resolution",
 ];
 
@@ -132,6 +134,8 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
             "accelerator" => quality.accelerator = value.choice(&ACCELERATORS)?,
+            "sampler" => quality.sampler = value.choice(&SAMPLERS)?,
+            "precision" => quality.precision = value.choice(&PRECISIONS)?,
             "split" => quality.split = value.choice(&SPLITS)?,
             "leaf_size" => quality.leaf_size = value.whole(1..=u32::MAX)?,
             "triangle_method" => quality.triangle_method = value.choice(&TRIANGLE_METHODS)?,
@@ -140,6 +144,16 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
     }
     Ok(quality)
 }
+
+const SAMPLERS: [(&str, Sampler); 5] = [
+    ("center", Sampler::Center),
+    ("random", Sampler::Random),
+    ("jittered", Sampler::Jittered),
+    ("gaussian", Sampler::Gaussian),
+    ("low_discrepancy", Sampler::LowDiscrepancy),
+];
+
+const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
 const ACCELERATORS: [(&str, Accelerator); 6] = [
     ("brute_force", Accelerator::BruteForce),

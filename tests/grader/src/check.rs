@@ -85,7 +85,7 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
         }
     }
     for (place, (task, waiting)) in gaps(&graded) {
-        println!("not written yet: {place}\n  {task} ({} wait for it)", count(waiting, "check"));
+        println!("not written yet: {place}\n  {task} ({})", wait_for_it(waiting));
     }
     let passed = graded.iter().filter(|one| one.passed()).count();
     let (earned, all) = points(graded.iter());
@@ -93,16 +93,19 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     Ok(passed == graded.len())
 }
 
-fn count(n: usize, what: &str) -> String {
-    if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") }
+fn wait_for_it(checks: usize) -> String {
+    if checks == 1 { "1 check waits for it".into() } else { format!("{checks} checks wait for it") }
 }
 
-/// `place → (task, checks that wait for it)`.
-fn gaps(graded: &[Graded]) -> BTreeMap<String, (String, usize)> {
-    let mut gaps: BTreeMap<String, (String, usize)> = BTreeMap::new();
+/// `(place, (task, checks that wait for it))`, in the order of the lecture.
+fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
+    let mut gaps: Vec<(String, (String, usize))> = Vec::new();
     for one in graded {
         if let Verdict::NotWritten { task, place } = &one.verdict {
-            gaps.entry(place.clone()).or_insert((task.clone(), 0)).1 += 1;
+            match gaps.iter_mut().find(|(known, _)| known == place) {
+                Some((_, (_, waiting))) => *waiting += 1,
+                None => gaps.push((place.clone(), (task.clone(), 1))),
+            }
         }
     }
     gaps

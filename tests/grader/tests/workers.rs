@@ -6,18 +6,10 @@ use grader::worker::Worker;
 use raykata::kit::{Door, Mishap, Shapes, SphereQuery, mishap};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The example program `misbehaving_worker`, which cargo builds before it runs this test.
-fn misbehaving() -> PathBuf {
-    let tests = std::env::current_exe().expect("this test is a program");
-    let folder = tests.parent().and_then(|deps| deps.parent()).expect("target/debug");
-    folder.join(format!("examples/misbehaving_worker{}", std::env::consts::EXE_SUFFIX))
-}
-
 fn door() -> Door<Worker> {
-    Door(Worker::new(misbehaving(), Duration::from_secs(2)))
+    Door(Worker::new(env!("CARGO_BIN_EXE_misbehaving-worker").into(), Duration::from_secs(2)))
 }
 
 fn query(radius: f32) -> SphereQuery {
@@ -47,7 +39,7 @@ fn an_honest_answer_crosses_the_pipe() {
 fn a_panic_keeps_its_place() {
     let Err(Mishap::Panicked { message, place }) = ask(&door(), -1.0) else { panic!("no panic") };
     assert_eq!(message, "on purpose");
-    assert!(place.contains("misbehaving_worker.rs:"), "{place}");
+    assert!(place.contains("misbehaving/worker.rs:"), "{place}");
 }
 
 #[test]

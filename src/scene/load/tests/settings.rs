@@ -2,7 +2,7 @@
 
 use super::{check_refused, check_refused_with, scene, scene_with};
 use crate::camera::{Lens, Shutter};
-use crate::scene::{Accelerator, Encoding, FilmSettings, Quality, Split, TriangleMethod};
+use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
 
 #[test]
@@ -29,7 +29,8 @@ fn every_setting_arrives() {
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\ngloss_samples = 7\nmax_depth = 0\n\
          min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\n\
-         triangle_method = 'gram'\ngrid_resolution = 3\n",
+         triangle_method = 'gram'\ngrid_resolution = 3\n\
+         sampler = 'jittered'\nprecision = 'double'\n",
     );
     assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2 });
     assert_eq!((scene.camera.towards, scene.camera.up), (Vec3::X, Vec3::Z));
@@ -40,6 +41,7 @@ fn every_setting_arrives() {
     assert!(scene.indirect_light);
     let expected = Quality {
         samples_per_pixel: 9,
+        sampler: Sampler::Jittered,
         light_samples: 8,
         gloss_samples: 7,
         max_depth: 0,
@@ -48,6 +50,7 @@ fn every_setting_arrives() {
         split: Split::ObjectMedian,
         leaf_size: 1,
         triangle_method: TriangleMethod::Gram,
+        precision: Precision::Double,
         grid_resolution: 3,
     };
     assert_eq!(scene.quality, expected);

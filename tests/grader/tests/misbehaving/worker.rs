@@ -1,4 +1,4 @@
-//! A worker that does everything wrong, for `tests/workers.rs`. The radius of the first sphere says what, if it is
+//! A worker that does everything wrong, for `workers.rs`. The radius of the first sphere says what, if it is
 //! below zero; other questions are answered as the reference would.
 
 use raykata::kit::{Answer, Request};
