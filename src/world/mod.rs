@@ -51,10 +51,13 @@ pub struct World {
     pub notes: Vec<String>,
 }
 
+/// Gives a mesh one unit normal a vertex.
+pub type VertexNormals<'a> = dyn Fn(&Mesh) -> Vec<Vec3> + 'a;
+
 impl World {
     /// Flattens `scene`. Meshes that are to be smooth and have no normals get them from `vertex_normals`; without
     /// it they stay flat.
-    pub fn new(scene: &Scene, vertex_normals: Option<&dyn Fn(&Mesh) -> Vec<Vec3>>) -> World {
+    pub fn new(scene: &Scene, vertex_normals: Option<&VertexNormals<'_>>) -> World {
         let mut flattener = Flattener {
             scene,
             mesh_normals: scene.meshes.iter().map(|mesh| normals_of(mesh, vertex_normals)).collect(),
@@ -72,7 +75,7 @@ impl World {
     }
 }
 
-fn normals_of(mesh: &SceneMesh, vertex_normals: Option<&dyn Fn(&Mesh) -> Vec<Vec3>>) -> Vec<Vec3> {
+fn normals_of(mesh: &SceneMesh, vertex_normals: Option<&VertexNormals<'_>>) -> Vec<Vec3> {
     match vertex_normals {
         _ if !mesh.smooth => Vec::new(),
         _ if !mesh.mesh.normals.is_empty() => mesh.mesh.normals.clone(),
