@@ -146,3 +146,44 @@ pub(crate) fn bounds_of_points(points: &[Vec3]) -> Aabb {
     let max = points.iter().fold(Vec3::NEG_INFINITY, |high, p| high.max(*p));
     Aabb::new(min, max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::vec3;
+
+    fn check(shape: Shape, min: Vec3, max: Vec3) {
+        let bounds = shape.bounds(&[]).expect("only planes have none");
+        // A few roundings of numbers up to 4.
+        let near = |p: Vec3, q: Vec3| (p - q).abs().max_element() < 2e-6;
+        assert!(near(bounds.min, min) && near(bounds.max, max), "{shape:?}: {bounds:?}");
+    }
+
+    #[test]
+    fn boxes_are_tight_around_every_shape() {
+        let (a, b, c) = (vec3(1.0, -1.0, 0.0), vec3(2.0, 3.0, 0.5), vec3(0.0, 0.0, -2.0));
+        check(Shape::Sphere(Sphere { center: b, radius: 0.5 }), b - 0.5, b + 0.5);
+        check(Shape::Triangle(Triangle { a, b, c }), vec3(0.0, -1.0, -2.0), vec3(2.0, 3.0, 0.5));
+        check(Shape::Polygon(Polygon { corners: vec![a, b, c] }), vec3(0.0, -1.0, -2.0), vec3(2.0, 3.0, 0.5));
+        check(Shape::Cuboid(Cuboid { min: c, max: b }), c, b);
+        check(
+            Shape::Disk(Disk { center: a, normal: 3.0 * Vec3::Y, radius: 2.0 }),
+            a - vec3(2.0, 0.0, 2.0),
+            a + vec3(2.0, 0.0, 2.0),
+        );
+        // Leaning 45° in the xy plane, a disk of radius 1 reaches √½ along x and y and 1 along z.
+        let reach = vec3(0.5f32.sqrt(), 0.5f32.sqrt(), 1.0);
+        let leaning = vec3(2.0, 2.0, 0.0);
+        check(
+            Shape::Cylinder(Cylinder { base: Vec3::ZERO, top: leaning, radius: 1.0 }),
+            -reach,
+            leaning + reach,
+        );
+        check(
+            Shape::Cone(Cone { base: Vec3::ZERO, apex: leaning, radius: 1.0 }),
+            -reach,
+            vec3(2.0, 2.0, 1.0),
+        );
+        assert_eq!(Shape::Plane(Plane { point: a, normal: b }).bounds(&[]), None);
+    }
+}

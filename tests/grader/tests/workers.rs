@@ -3,9 +3,12 @@
 
 use glam::Vec3;
 use grader::worker::Worker;
-use raykata::kit::{Door, Mishap, Shapes, SphereQuery, mishap};
+use raykata::frame::{Unwatched, Watch};
+use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 fn door() -> Door<Worker> {
@@ -89,4 +92,42 @@ fn a_worker_passes_every_check_of_the_reference() {
             assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
         }
     }
+}
+
+#[test]
+fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
+    let mut scene = raykata::scene::load::load(file).expect("the scene");
+    (scene.film.width, scene.film.height) = (40, 25);
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
+
+    struct Seen(AtomicU64);
+    impl Watch for Seen {
+        fn progress(&self, done: u64, total: u64) {
+            assert_eq!(total, 1000);
+            self.0.fetch_max(done, Ordering::Relaxed);
+        }
+    }
+    let seen = Seen(AtomicU64::new(0));
+    let piped = door().render(&job, &seen).expect("nobody cancels");
+    let linked = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+    assert_eq!((piped.film, piped.counts, piped.notes), (linked.film, linked.counts, linked.notes));
+    assert_eq!(seen.0.load(Ordering::Relaxed), 1000);
+}
+
+#[test]
+fn a_frame_that_is_no_longer_wanted_ends() {
+    struct Unwanted;
+    impl Watch for Unwanted {
+        fn progress(&self, _: u64, _: u64) {}
+        fn cancelled(&self) -> bool {
+            true
+        }
+    }
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage1.toml"));
+    let scene = raykata::scene::load::load(file).expect("the scene");
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: false };
+    let door = door();
+    assert_eq!(door.render(&job, &Unwanted), None);
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
 }
