@@ -69,6 +69,7 @@ impl Bvh {
     ///
     /// When there are more nodes than any tree over these primitives can have: then some split has put all
     /// primitives on one side, and the recursion would never end.
+    #[track_caller]
     pub fn add_node(&mut self, bounds: Aabb) -> u32 {
         assert!(
             self.nodes.len() < self.most_nodes,

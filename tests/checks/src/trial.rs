@@ -9,8 +9,8 @@ use raykata::kit::{Kit, Mishap, mishap};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-/// A check that takes longer hangs. The slowest takes a second in a development build on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// A check that takes longer hangs. The slowest takes a third of a second in a development build.
+const PATIENCE: Duration = Duration::from_secs(15);
 
 /// How many smaller inputs are tried once a law is broken.
 const SHRINK_STEPS: usize = 400;
