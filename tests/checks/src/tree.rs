@@ -6,6 +6,7 @@ use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, INTERSECTION_COST, PrimitiveHit, PrimitiveRef, Probe, TRAVERSAL_COST};
 use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
+use raykata::scene::Split;
 use raykata::shape::Sphere;
 
 /// The smallest box around all of `boxes`.
@@ -83,6 +84,40 @@ fn subdivide(bvh: &mut Bvh, primitives: &[PrimitiveRef], leaf_size: usize) -> u3
         let right = subdivide(bvh, &sorted[middle..], leaf_size);
         bvh.set_children(node, left, right);
     }
+    node
+}
+
+/// The axes on which a box is longest: several if they are alike to a rounding.
+pub fn longest_axes(bounds: &Aabb) -> Vec<usize> {
+    let size = bounds.max - bounds.min;
+    (0..3).filter(|&axis| size[axis] >= size.max_element() * (1.0 - 1e-6)).collect()
+}
+
+/// Builds a tree by one of the two medians.
+pub fn build_by_median(boxes: &[Aabb], leaf_size: usize, split: Split) -> Bvh {
+    let mut bvh = Bvh::for_primitives(boxes.len());
+    halve(&mut bvh, references(boxes), leaf_size, split);
+    bvh
+}
+
+fn halve(bvh: &mut Bvh, mut primitives: Vec<PrimitiveRef>, leaf_size: usize, split: Split) -> u32 {
+    let all = around(primitives.iter().map(|p| &p.bounds));
+    let node = bvh.add_node(all);
+    if primitives.len() <= leaf_size {
+        bvh.set_leaf(node, &primitives);
+        return node;
+    }
+    let axis = longest_axes(&all)[0];
+    primitives.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
+    let half = primitives.len() / 2;
+    let cut = 0.5 * (all.min[axis] + all.max[axis]);
+    let middle = match split {
+        Split::SpatialMedian => primitives.partition_point(|p| p.centroid[axis] < cut),
+        _ => half,
+    };
+    let right = primitives.split_off(if middle == 0 || middle == primitives.len() { half } else { middle });
+    let (left, right) = (halve(bvh, primitives, leaf_size, split), halve(bvh, right, leaf_size, split));
+    bvh.set_children(node, left, right);
     node
 }
 
