@@ -2,6 +2,7 @@
 //! out, and the picture says so: without stage 4 it shows normals, without stage 3 every ray tests every primitive,
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
+use crate::fallbacks::{Search, choose_search, choose_view, written};
 use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading};
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -9,11 +10,11 @@ use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, FrameSettings, Watch};
-use raykata::kit::{LightSample, Mishap, RenderJob, Rendering, Surface, View, mishap};
+use raykata::kit::{LightSample, RenderJob, Rendering, Surface, View};
 use raykata::material::Material;
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
-use raykata::scene::{Accelerator, Quality, TriangleMethod};
+use raykata::scene::{Quality, TriangleMethod};
 use raykata::shape::{Plane, Triangle};
 use raykata::world::{Geometry, Primitive, World, camera_for};
 use std::time::Instant;
@@ -37,15 +38,6 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         render_seconds: started.elapsed().as_secs_f64(),
         notes: tracer.world.notes,
     })
-}
-
-/// How the closest hit is sought.
-#[derive(Clone, Copy, PartialEq)]
-enum Search {
-    Hierarchy,
-    BruteForce,
-    /// The last primitive that the ray meets, near or far.
-    Painter,
 }
 
 struct Tracer<'a> {
@@ -287,63 +279,4 @@ fn point_on_plane(ray: &Ray, t: f32, plane: &Plane) -> (Vec3, Vec3) {
 fn rounding(n: u32) -> f32 {
     let nu = n as f32 * f32::EPSILON / 2.0;
     nu / (1.0 - nu)
-}
-
-fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let hierarchy = written(|| stage3_bvh::build(&[], quality.split, 1))
-        && written(|| stage3_bvh::closest_hit(&Bvh::default(), &mut Nothing, &ray))
-        && written(|| stage3_bvh::any_hit(&Bvh::default(), &mut Nothing, &ray))
-        && written(|| stage3_bvh::slab(&ray, Vec3::X, &Aabb::EMPTY));
-    let brute_force = written(|| stage2_triangles::brute_force(0, &mut Nothing, &ray));
-    match quality.accelerator {
-        Accelerator::BruteForce | Accelerator::Bvh => {}
-        other => notes.push(format!("a hierarchy stands in for {other:?}: stage 9, not built yet")),
-    }
-    if quality.accelerator != Accelerator::BruteForce && hierarchy {
-        return Search::Hierarchy;
-    }
-    if quality.accelerator != Accelerator::BruteForce {
-        notes.push("every ray tests every primitive: stage 3 is not written yet".into());
-    }
-    if brute_force {
-        return Search::BruteForce;
-    }
-    notes.push(
-        "later shapes are painted over earlier ones, near or far: `brute_force` of stage 2 is not written yet".into(),
-    );
-    Search::Painter
-}
-
-fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {
-    let nowhere =
-        Surface { point: Vec3::ZERO, error: Vec3::ZERO, geometric_normal: Vec3::Z, shading_normal: Vec3::Z };
-    let material = Material::default();
-    let shades =
-        written(|| stage4_shading::shade(&nowhere, Vec3::Z, &material, Vec3::ONE, &[], |_, _| false));
-    if wanted == View::Shaded && !shades {
-        notes.push("normals are shown as colours: stage 4 is not written yet".into());
-        return View::Normals;
-    }
-    wanted
-}
-
-/// Whether a function does more than say `todo!`.
-fn written<T>(call: impl FnOnce() -> T) -> bool {
-    !matches!(mishap::catch(call), Err(Mishap::NotWritten { .. }))
-}
-
-/// A world without anything in it.
-struct Nothing;
-
-impl Probe for Nothing {
-    fn open(&mut self, _: u32) -> Contents {
-        Contents::Leaf { first: 0, count: 0 }
-    }
-    fn enter(&mut self, _: u32, _: &Ray) -> Option<f32> {
-        None
-    }
-    fn hit(&mut self, _: u32, _: &Ray) -> Option<f32> {
-        None
-    }
 }

@@ -7,6 +7,7 @@ pub mod broken;
 pub mod double;
 pub mod generate;
 pub mod golden;
+pub mod judge;
 pub mod paste;
 pub mod picture;
 pub mod rubric;
