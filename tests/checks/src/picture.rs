@@ -4,6 +4,7 @@
 //! share of pixels may differ, because correct methods round differently along outlines; the rest may not.
 
 use crate::broken::{Broken, Outcome};
+use crate::paste::Paste;
 use glam::Vec3;
 use image::RgbImage;
 use raykata::camera::Camera;
@@ -41,9 +42,9 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
     0.5 * normal + 0.5
 }
 
-/// Compares `film` with the golden picture `name`, of which a share of `may_differ` pixels may differ.
+/// Compares `film`, whose pixels were asked for along `rays`, with the golden picture `name`, of which a share of `may_differ` pixels may differ.
 /// `INSTA_UPDATE=always cargo test -p solutions` writes it anew.
-pub fn compare(name: &str, film: &Film, may_differ: f64) -> Outcome {
+pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcome {
     let golden_file =
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
     let yours = film.to_bytes(gamma);
@@ -80,7 +81,7 @@ pub fn compare(name: &str, film: &Film, may_differ: f64) -> Outcome {
         n => format!(", and {n} are not numbers"),
     };
     Err(Broken::told(
-        format!("{input}\n{side_by_side}"),
+        format!("{input}\n{side_by_side}\nthe ray of the worst pixel: {}", rays[worst].paste()),
         format!(
             "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
             off.len(),

@@ -29,8 +29,8 @@ pub struct Options {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
     spp: Option<u32>,
     /// Threads; 0 takes one a core.
-    #[arg(long, default_value_t = 0)]
-    threads: usize,
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
     /// Picks the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -74,13 +74,17 @@ enum TriangleName {
     Watertight,
 }
 
+/// As in scene files: 2²⁸, three gigabytes of film.
+const MOST_PIXELS: u64 = 1 << 28;
+
 fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let parsed = text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let parsed: Option<(u32, u32)> =
+        text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match parsed {
-        Some((width, height)) if (1..=65_536).contains(&width) && (1..=65_536).contains(&height) => {
+        Some((width, height)) if (1..=MOST_PIXELS).contains(&(u64::from(width) * u64::from(height))) => {
             Ok((width, height))
         }
-        _ => Err("a size is two numbers from 1 to 65536 with an x between them, such as 640x360".into()),
+        _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
     }
 }
 
@@ -127,8 +131,13 @@ pub fn run(options: &Options) -> Result<()> {
     };
     let kit = source.fresh();
     let view = if options.normals { View::Normals } else { View::Shaded };
-    let job =
-        RenderJob { scene, view, seed: options.seed, threads: options.threads, count: !options.no_counts };
+    let job = RenderJob {
+        scene,
+        view,
+        seed: options.seed,
+        threads: usize::from(options.threads),
+        count: !options.no_counts,
+    };
     let bar = Bar::new();
     let rendering = mishap::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
     bar.0.finish_and_clear();

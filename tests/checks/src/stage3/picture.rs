@@ -19,5 +19,5 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
         .into_iter()
         .map(|answer| answer.hit.map_or(0.0, |hit| 1.0 / (1.0 + 0.05 * hit.t * hit.t)));
     // The answers come from a table, so no pixel may differ.
-    picture::compare("stage3_depth", &picture::develop(depths.map(Vec3::splat).collect()), 0.0)
+    picture::compare("stage3_depth", &picture::develop(depths.map(Vec3::splat).collect()), &rays, 0.0)
 }
