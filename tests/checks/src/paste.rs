@@ -2,7 +2,11 @@
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
-use raykata::kit::{InsideQuery, PlaneQuery, RootQuery, SlabQuery, SphereQuery, TriangleQuery};
+use raykata::kit::{
+    BuildQuery, InsideQuery, LightSample, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery, SlabQuery,
+    SphereQuery, Surface, TriangleQuery,
+};
+use raykata::material::Material;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
@@ -59,6 +63,49 @@ impl Paste for Aabb {
     }
 }
 
+impl Paste for Surface {
+    fn paste(&self) -> String {
+        format!(
+            "&Surface {{ point: {}, error: {}, geometric_normal: {}, shading_normal: {} }}",
+            self.point.paste(),
+            self.error.paste(),
+            self.geometric_normal.paste(),
+            self.shading_normal.paste()
+        )
+    }
+}
+
+impl Paste for LightSample {
+    fn paste(&self) -> String {
+        format!(
+            "LightSample {{ direction: {}, distance: {}, radiance: {} }}",
+            self.direction.paste(),
+            self.distance.paste(),
+            self.radiance.paste()
+        )
+    }
+}
+
+/// What stage 4 uses of a material.
+impl Paste for Material {
+    fn paste(&self) -> String {
+        format!(
+            "&Material {{ ambient: {}, diffuse: {}, specular: {}, exponent: {}, ..Material::default() }}",
+            self.ambient.paste(),
+            self.diffuse.paste(),
+            self.specular.paste(),
+            self.exponent.paste()
+        )
+    }
+}
+
+/// `[a, b, c]`.
+pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String {
+    let items: Vec<String> =
+        items.into_iter().map(|item| item.paste().trim_start_matches('&').to_owned()).collect();
+    format!("[{}]", items.join(", "))
+}
+
 /// The arguments of the call that a query makes.
 pub trait Arguments {
     /// `function(arguments)`.
@@ -99,5 +146,50 @@ impl Arguments for InsideQuery {
 impl Arguments for SlabQuery {
     fn call(&self, function: &str) -> String {
         call(function, &[&self.ray, &self.ray.dir.recip(), &self.bounds])
+    }
+}
+
+impl Arguments for ShadowQuery {
+    fn call(&self, function: &str) -> String {
+        format!("{function}({},\n&{})", self.surface.paste(), self.light.paste())
+    }
+}
+
+impl Arguments for ShadeQuery {
+    fn call(&self, function: &str) -> String {
+        format!(
+            "{function}({}, {},\n{}, {},\n&{}, |i, _| {:?}[i])",
+            self.surface.paste(),
+            self.to_viewer.paste(),
+            self.material.paste(),
+            self.ambient.paste(),
+            list(&self.lights),
+            self.visible
+        )
+    }
+}
+
+impl Arguments for BuildQuery {
+    fn call(&self, function: &str) -> String {
+        format!("{function}(&{}, Split::{:?}, {})", list(&self.bounds), self.split, self.leaf_size)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_pasted_is_rust_with_every_digit() {
+        let ray = Ray::new(Vec3::new(0.1, -0.0, f32::INFINITY), Vec3::X).with_range(1e-7, 3.0);
+        assert_eq!(
+            ray.paste(),
+            "&Ray::new(vec3(0.1, -0.0, f32::INFINITY), vec3(1.0, 0.0, 0.0)).with_range(1e-7, 3.0)"
+        );
+        let boxes = [Aabb::new(Vec3::ZERO, Vec3::ONE); 2];
+        assert_eq!(list(&boxes[..1]), "[Aabb::new(vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0))]");
+        let query =
+            BuildQuery { bounds: boxes.to_vec(), split: raykata::scene::Split::SurfaceArea, leaf_size: 2 };
+        assert!(query.call("build").ends_with("vec3(1.0, 1.0, 1.0))], Split::SurfaceArea, 2)"));
     }
 }

@@ -1,9 +1,10 @@
 //! Whole trees.
 
-use super::divided::{boxes, list};
+use super::divided::boxes;
 use super::slabs::UNIT_BOX;
 use crate::broken::{Broken, Outcome};
 use crate::judge::compare;
+use crate::paste::Arguments;
 use crate::{Trial, golden, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -16,20 +17,10 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Out
         match tree::fault(&yours, &query.bounds, query.leaf_size) {
             None => Ok(()),
             Some((yours, expected)) => {
-                Err(Broken::told(describe(query), yours, expected, "what makes a hierarchy"))
+                Err(Broken::told(query.call("build"), yours, expected, "what makes a hierarchy"))
             }
         }
     })
-}
-
-pub(super) fn describe(query: &BuildQuery) -> String {
-    format!(
-        "build of {} boxes, {:?}, leaf_size {}\n{}",
-        query.bounds.len(),
-        query.split,
-        query.leaf_size,
-        list(query.bounds.iter())
-    )
 }
 
 pub(super) fn split() -> impl Strategy<Value = Split> + Clone {

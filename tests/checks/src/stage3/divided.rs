@@ -3,6 +3,7 @@
 use crate::broken::{Broken, Outcome};
 use crate::generate::{point, rough_point};
 use crate::judge::{compare, known};
+use crate::paste::list;
 use crate::{Trial, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -73,10 +74,6 @@ pub(super) fn judge_splits(
             }
         }
     })
-}
-
-pub(super) fn list<'a>(boxes: impl Iterator<Item = &'a Aabb>) -> String {
-    boxes.map(|b| format!("{}..{}", b.min, b.max)).collect::<Vec<_>>().join(" ")
 }
 
 /// Whether all centroids before `middle` are at or before all others, along `axis`.

@@ -5,6 +5,7 @@ use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::generate::{point, unit};
 use crate::judge::{compare, known};
+use crate::paste::Arguments;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use raykata::kit::{LightSample, ShadeQuery, Surface, TermQuery};
@@ -65,29 +66,6 @@ pub(super) fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool)
         + ambient
 }
 
-pub(super) fn describe(query: &ShadeQuery) -> String {
-    let material = &query.material;
-    let lights: Vec<String> = query
-        .lights
-        .iter()
-        .zip(&query.visible)
-        .map(|(light, visible)| {
-            format!("{} from {}{}", light.radiance, light.direction, if *visible { "" } else { " (hidden)" })
-        })
-        .collect();
-    format!(
-        "n {} v {} ka {} kd {} ks {} n {} A {}\nlights: {}",
-        query.surface.shading_normal,
-        query.to_viewer,
-        material.ambient,
-        material.diffuse,
-        material.specular,
-        material.exponent,
-        query.ambient,
-        lights.join("; ")
-    )
-}
-
 pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.shade(queries), |query, yours| {
         let color = yours.color.as_dvec3();
@@ -116,8 +94,13 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Out
             }
             () => "",
         };
-        Err(Broken::new(describe(query), yours.color, expected.as_vec3(), "the formula in double precision")
-            .looks_like(known(diagnosis)))
+        Err(Broken::new(
+            query.call("shade"),
+            yours.color,
+            expected.as_vec3(),
+            "the formula in double precision",
+        )
+        .looks_like(known(diagnosis)))
     })
 }
 
@@ -164,7 +147,7 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
                 () => return Ok(()),
             };
             let told = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-            Err(Broken::told(describe(query), told(&traced), told(&needed), "counted")
+            Err(Broken::told(query.call("shade"), told(&traced), told(&needed), "counted")
                 .looks_like(Some(diagnosis)))
         })
     })

@@ -4,7 +4,7 @@ use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::generate::{magnitude, point, rough_point, unit};
 use crate::judge::{compare, known};
-use crate::paste::Paste;
+use crate::paste::Arguments;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{LightSample, ShadowQuery, Surface};
@@ -14,19 +14,6 @@ pub(super) fn shadow(point: Vec3, normal: Vec3, direction: Vec3, distance: f32, 
     let surface =
         Surface { point, error: Vec3::splat(error), geometric_normal: normal, shading_normal: normal };
     ShadowQuery { surface, light: LightSample { direction, distance, radiance: Vec3::ONE } }
-}
-
-pub(super) fn paste_shadow(query: &ShadowQuery) -> String {
-    let ShadowQuery { surface, light } = query;
-    format!(
-        "shadow_ray from {} (error {}), normal {}\nto a light in direction {}, {:?} away, of radiance {}",
-        surface.point.paste(),
-        surface.error.paste(),
-        surface.geometric_normal.paste(),
-        light.direction.paste(),
-        light.distance,
-        light.radiance.paste()
-    )
 }
 
 /// Points at coordinates of this size, on surfaces in any position, with lights well above the horizon.
@@ -47,7 +34,7 @@ pub(super) fn judge_shadow_rays(
 ) -> Vec<Outcome> {
     compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
         None => Err(Broken::told(
-            paste_shadow(query),
+            query.call("shadow_ray"),
             "None",
             "a ray: the light is in front of the surface",
             "the definition",
@@ -55,7 +42,7 @@ pub(super) fn judge_shadow_rays(
         Some(ray) => match law(query, &ray) {
             None => Ok(()),
             Some((yours, expected, diagnosis)) => {
-                Err(Broken::told(paste_shadow(query), yours, expected, "closed form")
+                Err(Broken::told(query.call("shadow_ray"), yours, expected, "closed form")
                     .looks_like(known(diagnosis)))
             }
         },
@@ -164,7 +151,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
         compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
             None => Ok(()),
             Some(ray) => Err(Broken::told(
-                paste_shadow(query),
+                query.call("shadow_ray"),
                 format!("a ray along {}", ray.dir),
                 "None",
                 "the definition",
@@ -178,7 +165,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
     let dark = ShadowQuery { light: LightSample { radiance: Vec3::ZERO, ..lit.light }, ..lit };
     match trial.kit.shadow_ray(&[dark])[0] {
         None => Ok(()),
-        Some(_) => Err(Broken::told(paste_shadow(&dark), "a ray", "None", "the definition")
+        Some(_) => Err(Broken::told(dark.call("shadow_ray"), "a ray", "None", "the definition")
             .looks_like(Some("a light that is switched off needs no ray"))),
     }
 }
