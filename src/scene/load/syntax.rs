@@ -15,6 +15,9 @@ pub(super) fn explain(source: &Source, error: &toml::de::Error) -> LoadError {
         message if message.starts_with("string values must be quoted") && starts_a_number => {
             (format!("{} is not a number", quoted(blamed)), "put commas between numbers, as in `[0, 1, 5]`")
         }
+        message if message.starts_with("string values must be quoted") && blamed.trim().is_empty() => {
+            ("a value is missing after `=`".into(), "write it, as in `width = 640`")
+        }
         message if message.starts_with("string values must be quoted") => {
             (format!("{} stands without quotes", quoted(blamed)), "put text between quotes, as in `\"red\"`")
         }

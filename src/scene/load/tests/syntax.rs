@@ -25,6 +25,10 @@ fn what_is_not_toml_says_where() {
         "s.toml:3:7: a key has no value\nhelp: write the key, `=` and the value",
     );
     check_refused_with(
+        "[film]\nwidth = \nheight = 3",
+        "s.toml:3:9: a value is missing after `=`\nhelp: write it, as in `width = 640`",
+    );
+    check_refused_with(
         "a = [0 0, 0]",
         "s.toml:2:6: `0 0` is not a number\nhelp: put commas between numbers, as in `[0, 1, 5]`",
     );
