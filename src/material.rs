@@ -21,6 +21,8 @@ pub struct Material {
     pub transmission: Vec3,
     /// Index of refraction inside, above 0; 1 bends nothing (stage 5).
     pub index_of_refraction: f32,
+    /// Whether what is seen through gives way to the mirror image at flat angles (stage 5).
+    pub fresnel: Fresnel,
     /// Blur of mirror images and of what is seen through, `0..=1`; 0 is sharp (stage 6).
     pub roughness: f32,
     /// Light that the surface gives off by itself (stage 11).
@@ -40,11 +42,26 @@ impl Default for Material {
             mirror: Vec3::ZERO,
             transmission: Vec3::ZERO,
             index_of_refraction: 1.0,
+            fresnel: Fresnel::None,
+
             roughness: 0.0,
             emission: Vec3::ZERO,
             texture: None,
         }
     }
+}
+
+/// How the mirrored share of light depends on the angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fresnel {
+    /// Not at all: constant weights, as in the lecture notes.
+    #[default]
+    None,
+    /// By Schlick's formula.
+    Schlick,
+    /// By Fresnel's equations.
+    Exact,
 }
 
 /// What happens to texture coordinates outside `0..1`.

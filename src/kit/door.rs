@@ -21,8 +21,8 @@ pub trait Transport: Sync {
 pub struct Door<T>(pub T);
 
 /// Everything that students write.
-pub trait Kit: Shapes + Triangles + Hierarchies + Shading + Frames + Sync {}
-impl<T: Shapes + Triangles + Hierarchies + Shading + Frames + Sync> Kit for T {}
+pub trait Kit: Shapes + Triangles + Hierarchies + Shading + Recursion + Frames + Sync {}
+impl<T: Shapes + Triangles + Hierarchies + Shading + Recursion + Frames + Sync> Kit for T {}
 
 /// Whole frames, rendered where the student's code lives, so that no ray crosses a process boundary.
 pub trait Frames {
@@ -169,5 +169,19 @@ door! {
         EncodeGamma fn encode_gamma(f32) -> u8;
         /// A byte to linear light with gamma 2.
         DecodeGamma fn decode_gamma(u8) -> f32;
+    }
+
+    /// Stage 5: mirrors and glass.
+    trait Recursion {
+        /// The mirrored direction: `(direction, normal)`.
+        Mirror fn mirror((Vec3, Vec3)) -> Vec3;
+        /// The refracted direction, unless all light is mirrored.
+        Refract fn refract(RefractQuery) -> Option<Vec3>;
+        /// The mirrored share by Schlick's formula.
+        FresnelSchlick fn fresnel_schlick(FresnelQuery) -> f32;
+        /// The mirrored share by Fresnel's equations.
+        FresnelExact fn fresnel_exact(FresnelQuery) -> f32;
+        /// The rays that go on from a surface.
+        Children fn children(ChildrenQuery) -> Vec<Child>;
     }
 }

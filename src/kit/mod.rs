@@ -6,13 +6,17 @@
 
 pub mod door;
 pub mod mishap;
+mod recursion;
 mod shading;
 mod shapes;
 mod table;
 mod triangles;
 
-pub use door::{Answer, Door, Frames, Hierarchies, Kit, Request, Shading, Shapes, Transport, Triangles};
+pub use door::{
+    Answer, Door, Frames, Hierarchies, Kit, Recursion, Request, Shading, Shapes, Transport, Triangles,
+};
 pub use mishap::Mishap;
+pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
 pub use table::{

@@ -186,8 +186,9 @@ fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
         }
     };
     let any = |wants: fn(&Material) -> bool| scene.materials.iter().any(wants);
-    missing(any(|m| m.mirror != Vec3::ZERO), "mirrors are drawn without their mirror image", 5);
-    missing(any(|m| m.transmission != Vec3::ZERO), "glass is drawn opaque", 5);
+    let rough = |m: &Material| m.roughness > 0.0 && (m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO);
+    missing(any(rough), "rough mirrors and glass are sharp", 6);
+
     missing(
         scene.lights.iter().any(|light| matches!(light.emitter, Emitter::Area { .. })),
         "area lights shine from their middle",

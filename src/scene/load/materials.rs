@@ -2,12 +2,15 @@
 
 use super::names::Names;
 use super::reader::Value;
-use crate::material::Material;
+use crate::material::{Fresnel, Material};
 use crate::scene::error::LoadError;
 use crate::scene::obj::ObjMaterial;
 use glam::Vec3;
 
-const KEYS: [&str; 10] = [
+const FRESNEL: [(&str, Fresnel); 3] =
+    [("none", Fresnel::None), ("schlick", Fresnel::Schlick), ("exact", Fresnel::Exact)];
+
+const KEYS: [&str; 11] = [
     "ambient",
     "diffuse",
     "specular",
@@ -15,6 +18,7 @@ const KEYS: [&str; 10] = [
     "mirror",
     "transmission",
     "index_of_refraction",
+    "fresnel",
     "roughness",
     "emission",
     "texture",
@@ -66,6 +70,7 @@ fn material(value: Value, textures: &Names) -> Result<Material, LoadError> {
             "mirror" => material.mirror = value.color()?,
             "transmission" => material.transmission = value.color()?,
             "index_of_refraction" => material.index_of_refraction = value.positive()?,
+            "fresnel" => material.fresnel = value.choice(&FRESNEL)?,
             "roughness" => material.roughness = value.share()?,
             "emission" => material.emission = value.color()?,
             _ => material.texture = Some(textures.find(value)?),

@@ -15,6 +15,7 @@ pub mod stage1;
 pub mod stage2;
 pub mod stage3;
 pub mod stage4;
+pub mod stage5;
 pub mod tree;
 pub mod trial;
 
@@ -22,8 +23,13 @@ pub use broken::{Broken, Outcome};
 pub use trial::{Check, Trial, Verdict, grade, run};
 
 /// All checks of all stages that are built, in order.
-pub const STAGES: &[(u8, &[Check])] =
-    &[(1, stage1::CHECKS), (2, stage2::CHECKS), (3, stage3::CHECKS), (4, stage4::CHECKS)];
+pub const STAGES: &[(u8, &[Check])] = &[
+    (1, stage1::CHECKS),
+    (2, stage2::CHECKS),
+    (3, stage3::CHECKS),
+    (4, stage4::CHECKS),
+    (5, stage5::CHECKS),
+];
 
 /// Lists the checks of a stage, and makes the macro that turns them into tests of a kit: `checks::stage1!(kit)`.
 ///

@@ -1,0 +1,91 @@
+//! How much of the light is mirrored.
+
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use crate::judge::{compare, known};
+use crate::paste::call;
+use proptest::prelude::*;
+use raykata::kit::FresnelQuery;
+
+fn queries() -> impl Strategy<Value = FresnelQuery> + Clone {
+    (0..=64i32, 8..=24i32, 8..=24i32).prop_map(|(cosine, n1, n2)| FresnelQuery {
+        cos_theta: cosine as f32 / 64.0,
+        n1: n1 as f32 / 8.0,
+        n2: n2 as f32 / 8.0,
+    })
+}
+
+/// `cos θ2`; `None` beyond the critical angle. The second number says how far from that the answer is.
+fn behind(query: &FresnelQuery) -> (Option<f64>, f64) {
+    let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
+    let squared = 1.0 - (n1 / n2).powi(2) * (1.0 - cosine * cosine);
+    ((squared >= 0.0).then(|| squared.sqrt()), squared)
+}
+
+/// Schlick's formula in double precision.
+pub(super) fn schlick(query: &FresnelQuery) -> f64 {
+    let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
+    let r0 = ((n1 - n2) / (n1 + n2)).powi(2);
+    let cosine = match behind(query).0 {
+        _ if n1 <= n2 => cosine,
+        Some(cos_2) => cos_2,
+        None => return 1.0,
+    };
+    r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
+}
+
+/// Fresnel's equations in double precision.
+pub(super) fn exact(query: &FresnelQuery) -> f64 {
+    let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
+    let Some(cos_2) = behind(query).0 else { return 1.0 };
+    let ratio = |p: f64, q: f64| if p + q > 0.0 { ((p - q) / (p + q)).powi(2) } else { 1.0 };
+    0.5 * (ratio(n1 * cosine, n2 * cos_2) + ratio(n1 * cos_2, n2 * cosine))
+}
+
+fn judge(
+    name: &str,
+    queries: &[FresnelQuery],
+    answers: Vec<f32>,
+    reference: fn(&FresnelQuery) -> f64,
+) -> Vec<Outcome> {
+    compare(queries, answers, |query, yours| {
+        let expected = reference(query);
+        // Near the critical angle the share rises with the root of the distance to it, and with it the rounding.
+        let tolerance = 1e-5 + 4e-6 / behind(query).1.abs().sqrt().max(1e-3);
+        // Equal indices at cos θ = 0: 0/0, and any share is right.
+        let nothing = query.n1 == query.n2 && query.cos_theta == 0.0;
+        if nothing || (f64::from(yours) - expected).abs() <= tolerance {
+            return Ok(());
+        }
+        let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
+        let diagnosis = match () {
+            () if yours.is_nan() => {
+                "NaN beyond the critical angle: all light is mirrored there, the share is 1"
+            }
+            () if behind(query).0.is_none() => {
+                "beyond the critical angle all light is mirrored: the share is 1"
+            }
+            () if (f64::from(yours) - swapped).abs() <= tolerance => {
+                "n1 and n2 are exchanged, or the cosine is that of the wrong side: it must be the one in the thinner medium"
+            }
+            () if (f64::from(1.0 - yours) - expected).abs() <= tolerance => {
+                "that is what goes through; asked is what is mirrored"
+            }
+            () => "",
+        };
+        let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
+        Err(Broken::new(input, yours, expected as f32, "double precision").looks_like(known(diagnosis)))
+    })
+}
+
+pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+    trial.forall(3000, queries(), |queries| {
+        judge("fresnel_schlick", queries, trial.kit.fresnel_schlick(queries), schlick)
+    })
+}
+
+pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+    trial.forall(3000, queries(), |queries| {
+        judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact)
+    })
+}
