@@ -1,13 +1,14 @@
 //! Nothing to do here: what a picture leaves out while exercises are not written yet.
 
-use crate::{stage2_triangles, stage3_bvh, stage4_shading};
+use crate::{stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
-use raykata::kit::{Mishap, Surface, View, mishap};
+use raykata::kit::{Limits, Mishap, Surface, View, mishap};
 use raykata::material::Material;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality};
+use raykata::world::World;
 
 /// How the closest hit is sought.
 #[derive(Clone, Copy, PartialEq)]
@@ -55,6 +56,19 @@ pub fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {
         return View::Normals;
     }
     wanted
+}
+
+/// Whether mirrors and glass send rays on; says so if the scene has any and they do not.
+pub fn follows_mirrors(world: &mut World) -> bool {
+    let wanted = world.materials.iter().any(|m| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO);
+    let limits = Limits { max_depth: 0, min_contribution: 0.0 };
+    let material = Material::default();
+    let follows =
+        written(|| stage5_recursion::children(Vec3::NEG_Z, Vec3::Z, true, &material, Vec3::ONE, 0, &limits));
+    if wanted && !follows {
+        world.notes.push("mirrors and glass send no ray on: stage 5 is not written yet".into());
+    }
+    follows
 }
 
 /// Whether a function does more than say `todo!`.

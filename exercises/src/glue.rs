@@ -1,6 +1,6 @@
 //! Nothing to do here: this connects the functions of the stage files with the door through which the kit calls them.
 
-use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, tracer};
+use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, tracer};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
@@ -172,6 +172,26 @@ impl Shading for Kit {
     }
     fn decode_gamma(&self, queries: &[u8]) -> Vec<f32> {
         each(queries, |byte| stage4_shading::decode_gamma(*byte))
+    }
+}
+
+impl Recursion for Kit {
+    fn mirror(&self, queries: &[(Vec3, Vec3)]) -> Vec<Vec3> {
+        each(queries, |(dir, normal)| stage5_recursion::mirror(*dir, *normal))
+    }
+    fn refract(&self, queries: &[RefractQuery]) -> Vec<Option<Vec3>> {
+        each(queries, |q| stage5_recursion::refract(q.dir, q.normal, q.n1, q.n2))
+    }
+    fn fresnel_schlick(&self, queries: &[FresnelQuery]) -> Vec<f32> {
+        each(queries, |q| stage5_recursion::fresnel_schlick(q.cos_theta, q.n1, q.n2))
+    }
+    fn fresnel_exact(&self, queries: &[FresnelQuery]) -> Vec<f32> {
+        each(queries, |q| stage5_recursion::fresnel_exact(q.cos_theta, q.n1, q.n2))
+    }
+    fn children(&self, queries: &[ChildrenQuery]) -> Vec<Vec<Child>> {
+        each(queries, |q| {
+            stage5_recursion::children(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
+        })
     }
 }
 

@@ -7,6 +7,7 @@ pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_bvh;
 pub mod stage4_shading;
+pub mod stage5_recursion;
 mod tracer; // nothing to do here
 
 pub use glue::Kit;

@@ -2,15 +2,15 @@
 //! out, and the picture says so: without stage 4 it shows normals, without stage 3 every ray tests every primitive,
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
-use crate::fallbacks::{Search, choose_search, choose_view, written};
-use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading};
+use crate::fallbacks::{Search, choose_search, choose_view, follows_mirrors, written};
+use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, FrameSettings, Watch};
-use raykata::kit::{LightSample, RenderJob, Rendering, Surface, View};
+use raykata::kit::{Bounce, Child, LightSample, Limits, RenderJob, Rendering, Surface, View};
 use raykata::material::Material;
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
@@ -47,6 +47,8 @@ struct Tracer<'a> {
     view: View,
     /// Whether normals are interpolated over smooth meshes.
     smooth: bool,
+    /// Whether mirrors and glass send rays on.
+    recursion: bool,
     quality: &'a Quality,
     ambient: Vec3,
     background: Vec3,
@@ -61,12 +63,13 @@ impl<'a> Tracer<'a> {
         let search = choose_search(quality, &mut world.notes);
         let view = choose_view(job.view, &mut world.notes);
         let smooth = written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X));
+        let recursion = follows_mirrors(&mut world);
         let bvh = (search == Search::Hierarchy).then(|| {
             let bounds: Vec<Aabb> = world.primitives.iter().map(bounds_of).collect();
             stage3_bvh::build(&bounds, quality.split, quality.leaf_size as usize)
         });
         let (ambient, background) = (job.scene.ambient, job.scene.background);
-        Tracer { world, bvh, search, view, smooth, quality, ambient, background }
+        Tracer { world, bvh, search, view, smooth, recursion, quality, ambient, background }
     }
 
     fn frame<T: Tally>(&self, job: &RenderJob, watch: &dyn Watch) -> Option<(Film, Counts)> {
@@ -84,29 +87,56 @@ impl<'a> Tracer<'a> {
         })
     }
 
-    /// The light that comes back along `ray`.
+    /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
+    /// times its weight.
     fn radiance<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec3 {
-        let Some(hit) = self.closest_hit(ray, tally) else { return self.background };
-        let (surface, material) = self.surface(ray, &hit);
-        match self.view {
-            View::Normals => 0.5 * surface.shading_normal + 0.5,
-            View::Shaded => {
-                let lights: Vec<LightSample> =
-                    self.world.lights.iter().map(|light| light.sample(surface.point)).collect();
-                let to_viewer = -ray.dir.normalize();
-                stage4_shading::shade(
-                    &surface,
-                    to_viewer,
-                    material,
-                    self.ambient,
-                    &lights,
-                    |_, shadow_ray| {
-                        tally.note(Event::Shadow);
-                        !self.any_hit(shadow_ray, tally)
-                    },
-                )
+        let limits =
+            Limits { max_depth: self.quality.max_depth, min_contribution: self.quality.min_contribution };
+        let mut color = Vec3::ZERO;
+        let mut waiting = Vec::new();
+        let mut next = Some((*ray, Vec3::ONE, 0));
+        while let Some((ray, weight, depth)) = next {
+            match self.closest_hit(&ray, tally) {
+                None => color += weight * self.background,
+                Some(hit) => {
+                    let (surface, entering, material) = self.surface(&ray, &hit);
+                    let dir = ray.dir.normalize();
+                    color += weight * self.shade(&surface, -dir, material, tally);
+                    if self.recursion && self.view == View::Shaded && sends_on(material) {
+                        let normal = surface.shading_normal;
+                        for child in stage5_recursion::children(
+                            dir, normal, entering, material, weight, depth, &limits,
+                        ) {
+                            tally.note(match child.bounce {
+                                Bounce::Reflection => Event::Reflection,
+                                Bounce::Transmission => Event::Transmission,
+                            });
+                            waiting.push((leave(&surface, &child), child.weight, depth + 1));
+                        }
+                    }
+                }
             }
+            next = waiting.pop();
         }
+        color
+    }
+
+    fn shade<T: Tally>(
+        &self,
+        surface: &Surface,
+        to_viewer: Vec3,
+        material: &Material,
+        tally: &mut T,
+    ) -> Vec3 {
+        if self.view == View::Normals {
+            return 0.5 * surface.shading_normal + 0.5;
+        }
+        let lights: Vec<LightSample> =
+            self.world.lights.iter().map(|light| light.sample(surface.point)).collect();
+        stage4_shading::shade(surface, to_viewer, material, self.ambient, &lights, |_, shadow_ray| {
+            tally.note(Event::Shadow);
+            !self.any_hit(shadow_ray, tally)
+        })
     }
 
     fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
@@ -143,8 +173,9 @@ impl<'a> Tracer<'a> {
             }
     }
 
-    /// The point that was hit, with a bound on its error, its normals, and what the surface is made of.
-    fn surface(&self, ray: &Ray, hit: &Hit) -> (Surface, &Material) {
+    /// The point that was hit, with a bound on its error and its normals; whether the ray comes from outside; and what
+    /// the surface is made of.
+    fn surface(&self, ray: &Ray, hit: &Hit) -> (Surface, bool, &Material) {
         let (point, error, geometric, smooth, material) = match *hit {
             Hit::Plane { t, index } => {
                 let (plane, material) = &self.world.planes[index];
@@ -163,7 +194,8 @@ impl<'a> Tracer<'a> {
         } else {
             geometric_normal
         };
-        (Surface { point, error, geometric_normal, shading_normal }, &self.world.materials[material as usize])
+        let surface = Surface { point, error, geometric_normal, shading_normal };
+        (surface, geometric.dot(ray.dir) < 0.0, &self.world.materials[material as usize])
     }
 
     fn on_primitive(&self, ray: &Ray, t: f32, primitive: &Primitive) -> (Vec3, Vec3, Vec3, Option<Vec3>) {
@@ -207,6 +239,23 @@ impl<'a> Tracer<'a> {
         };
         hit.map(|hit| (hit.t, hit.beta, hit.gamma))
     }
+}
+
+/// Whether a surface can send rays on at all: most cannot, and need not be asked.
+fn sends_on(material: &Material) -> bool {
+    material.mirror != Vec3::ZERO || material.transmission != Vec3::ZERO
+}
+
+/// A ray that goes on, starting as far from the surface as a shadow ray does.
+fn leave(surface: &Surface, child: &Child) -> Ray {
+    let side = match child.bounce {
+        Bounce::Reflection => surface.geometric_normal,
+        Bounce::Transmission => -surface.geometric_normal,
+    };
+    let from = Surface { geometric_normal: side, shading_normal: side, ..*surface };
+    let ahead = LightSample { direction: side, distance: f32::INFINITY, radiance: Vec3::ONE };
+    let start = stage4_shading::shadow_ray(&from, &ahead).map_or(surface.point, |ray| ray.at(ray.t_min));
+    Ray::new(start, child.direction)
 }
 
 enum Hit {

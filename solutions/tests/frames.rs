@@ -190,3 +190,71 @@ fn a_film_of_one_pixel_and_an_empty_scene_are_frames_too() {
     assert_eq!(rendering.film.pixels, [Vec3::splat(0.25)]);
     assert_eq!(rendering.counts, Counts { primary: 1, ..Counts::default() });
 }
+
+/// A floor and a wall in ambient light, with a ball of this material before them.
+fn ball_of(material: &str) -> Scene {
+    scene(&format!(
+        r#"
+[film]
+width = 60
+height = 45
+[camera]
+position = [0, 1, 6]
+look_at = [0, 1, 0]
+[environment]
+background = [0.2, 0.4, 0.8]
+ambient = 1
+[materials.ball]
+diffuse = 0
+{material}
+[materials.wall]
+diffuse = [0.7, 0.3, 0.1]
+[[nodes]]
+shape = {{ plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
+[[nodes]]
+material = "wall"
+shape = {{ box = {{ min = [-1, 0, -4], max = [0.3, 2, -3] }} }}
+[[nodes]]
+material = "ball"
+shape = {{ sphere = {{ center = [0, 1, 0], radius = 1 }} }}
+"#
+    ))
+}
+
+#[test]
+fn glass_that_bends_nothing_is_not_seen() {
+    let empty = {
+        let mut scene = ball_of("");
+        scene.roots.pop();
+        render(&scene)
+    };
+    let glass = render(&ball_of("transmission = 1"));
+    let off =
+        empty.film.pixels.iter().zip(&glass.film.pixels).filter(|(p, q)| (**p - **q).length() > 1e-3).count();
+    // Where the ball is entered its surface moves the ray by a rounding, which an outline behind it may notice.
+    assert!(off <= 3, "{off} of 2700 pixels differ");
+    assert_eq!(empty.counts.transmission, 0);
+    assert!(glass.counts.transmission > 0 && glass.counts.reflection == 0);
+}
+
+#[test]
+fn a_mirror_traces_one_ray_for_each_ray_that_meets_it() {
+    let mirror = render(&ball_of("mirror = 0.5"));
+    let dull = render(&ball_of("mirror = 0"));
+    assert_eq!(dull.counts.reflection, 0);
+    // The ball is convex: no mirrored ray meets it again, so there are as many as pixels that show it.
+    let shown = mirror.film.pixels.iter().zip(&dull.film.pixels).filter(|(p, q)| p != q).count();
+    assert_eq!(mirror.counts.reflection, shown as u64);
+}
+
+#[test]
+fn deeper_glass_adds_rays_up_to_the_depth_and_then_none() {
+    let rays = |depth: u32| {
+        let mut scene = ball_of("transmission = 1\nindex_of_refraction = 1.5\nfresnel = \"exact\"");
+        (scene.quality.max_depth, scene.quality.min_contribution) = (depth, 0.0);
+        let counts = render(&scene).counts;
+        counts.reflection + counts.transmission
+    };
+    assert_eq!(rays(0), 0);
+    assert!(rays(1) < rays(2) && rays(2) < rays(3));
+}
