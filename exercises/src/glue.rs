@@ -199,4 +199,7 @@ impl Frames for Kit {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         tracer::render(job, watch)
     }
+    fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
+        tracer::trace(job, x, y)
+    }
 }

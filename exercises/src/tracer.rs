@@ -3,6 +3,7 @@
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
 use crate::fallbacks::{Search, choose_search, choose_view, follows_mirrors, written};
+use crate::surfaces::{self, Hit, Place, meet_triangle};
 use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion};
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -10,12 +11,13 @@ use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, FrameSettings, Watch};
-use raykata::kit::{Bounce, Child, LightSample, Limits, RenderJob, Rendering, Surface, View};
+use raykata::kit::{
+    Bounce, Child, LightSample, Limits, RayKind, RenderJob, Rendering, Surface, TracedRay, View,
+};
 use raykata::material::Material;
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
-use raykata::scene::{Quality, TriangleMethod};
-use raykata::shape::{Plane, Triangle};
+use raykata::scene::Quality;
 use raykata::world::{Geometry, Primitive, World, camera_for};
 use std::time::Instant;
 
@@ -38,6 +40,21 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         render_seconds: started.elapsed().as_secs_f64(),
         notes: tracer.world.notes,
     })
+}
+
+pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
+    let tracer = Tracer::new(job);
+    let film = &job.scene.film;
+    let ray = camera_for(&job.scene)
+        .ray((x as f32 + 0.5) / film.width as f32, (y as f32 + 0.5) / film.height as f32);
+    let mut rays = Vec::new();
+    tracer.radiance(&ray, &mut Uncounted, &mut |mut ray, material| {
+        if let (Some(hit), Some(material)) = (&mut ray.hit, material) {
+            hit.1 = job.scene.material_names.get(material).cloned().unwrap_or_default();
+        }
+        rays.push(ray);
+    });
+    rays
 }
 
 struct Tracer<'a> {
@@ -83,35 +100,65 @@ impl<'a> Tracer<'a> {
         };
         frame::render::<T>(&settings, watch, |x, y, _, tally| {
             tally.note(Event::Primary);
-            self.radiance(&camera.ray(x, y), tally)
+            self.radiance(&camera.ray(x, y), tally, &mut |_, _| {})
         })
     }
 
     /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
-    /// times its weight.
-    fn radiance<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Vec3 {
+    /// times its weight. `record` is told of each ray, and of the material that it hit.
+    fn radiance<T: Tally>(
+        &self,
+        ray: &Ray,
+        tally: &mut T,
+        record: &mut impl FnMut(TracedRay, Option<usize>),
+    ) -> Vec3 {
         let limits =
             Limits { max_depth: self.quality.max_depth, min_contribution: self.quality.min_contribution };
         let mut color = Vec3::ZERO;
         let mut waiting = Vec::new();
-        let mut next = Some((*ray, Vec3::ONE, 0));
-        while let Some((ray, weight, depth)) = next {
-            match self.closest_hit(&ray, tally) {
-                None => color += weight * self.background,
-                Some(hit) => {
-                    let (surface, entering, material) = self.surface(&ray, &hit);
-                    let dir = ray.dir.normalize();
-                    color += weight * self.shade(&surface, -dir, material, tally);
+        let mut next =
+            Some(Path { ray: *ray, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None });
+        let mut n_rays = 0;
+        while let Some(path) = next {
+            let this = n_rays;
+            n_rays += 1;
+            let hit = self.closest_hit(&path.ray, tally);
+            let found = hit.map(|hit| (hit.t(), self.surface(&path.ray, &hit)));
+            record(
+                path.told(found.as_ref().map(|found| found.0)),
+                found.as_ref().map(|found| found.1.material),
+            );
+            match found {
+                None => color += path.weight * self.background,
+                Some((_, at)) => {
+                    let material = &self.world.materials[at.material];
+                    let dir = path.ray.dir.normalize();
+                    let shadows = &mut |ray: &Ray, blocked: bool| {
+                        n_rays += 1;
+                        let shadow = Path { ray: *ray, kind: RayKind::Shadow, parent: Some(this), ..path };
+                        record(shadow.told(blocked.then_some(0.0)), None);
+                    };
+                    color += path.weight * self.shade(&at.surface, -dir, material, tally, shadows);
                     if self.recursion && self.view == View::Shaded && sends_on(material) {
-                        let normal = surface.shading_normal;
+                        let normal = at.surface.shading_normal;
+                        let Path { weight, depth, .. } = path;
                         for child in stage5_recursion::children(
-                            dir, normal, entering, material, weight, depth, &limits,
+                            dir,
+                            normal,
+                            at.entering,
+                            material,
+                            weight,
+                            depth,
+                            &limits,
                         ) {
-                            tally.note(match child.bounce {
-                                Bounce::Reflection => Event::Reflection,
-                                Bounce::Transmission => Event::Transmission,
-                            });
-                            waiting.push((leave(&surface, &child), child.weight, depth + 1));
+                            let (event, kind) = match child.bounce {
+                                Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
+                                Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
+                            };
+                            tally.note(event);
+                            let ray = leave(&at.surface, &child);
+                            let (weight, depth) = (child.weight, depth + 1);
+                            waiting.push(Path { ray, weight, depth, kind, parent: Some(this) });
                         }
                     }
                 }
@@ -127,6 +174,7 @@ impl<'a> Tracer<'a> {
         to_viewer: Vec3,
         material: &Material,
         tally: &mut T,
+        record: &mut impl FnMut(&Ray, bool),
     ) -> Vec3 {
         if self.view == View::Normals {
             return 0.5 * surface.shading_normal + 0.5;
@@ -135,8 +183,14 @@ impl<'a> Tracer<'a> {
             self.world.lights.iter().map(|light| light.sample(surface.point)).collect();
         stage4_shading::shade(surface, to_viewer, material, self.ambient, &lights, |_, shadow_ray| {
             tally.note(Event::Shadow);
-            !self.any_hit(shadow_ray, tally)
+            let blocked = self.any_hit(shadow_ray, tally);
+            record(shadow_ray, blocked);
+            !blocked
         })
+    }
+
+    fn surface(&self, ray: &Ray, hit: &Hit) -> Place {
+        surfaces::surface(&self.world, self.quality.triangle_method, self.smooth, ray, hit)
     }
 
     fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
@@ -172,73 +226,6 @@ impl<'a> Tracer<'a> {
                 None => probe.last_hit(ray).is_some(),
             }
     }
-
-    /// The point that was hit, with a bound on its error and its normals; whether the ray comes from outside; and what
-    /// the surface is made of.
-    fn surface(&self, ray: &Ray, hit: &Hit) -> (Surface, bool, &Material) {
-        let (point, error, geometric, smooth, material) = match *hit {
-            Hit::Plane { t, index } => {
-                let (plane, material) = &self.world.planes[index];
-                let (point, error) = point_on_plane(ray, t, plane);
-                (point, error, plane.normal, None, *material)
-            }
-            Hit::Primitive(hit) => {
-                let primitive = &self.world.primitives[hit.primitive as usize];
-                let (point, error, geometric, smooth) = self.on_primitive(ray, hit.t, primitive);
-                (point, error, geometric, smooth, primitive.material)
-            }
-        };
-        let geometric_normal = stage1_shapes::face_viewer(geometric, ray.dir);
-        let shading_normal = if self.smooth && smooth.is_some() {
-            stage4_shading::shading_normal(geometric_normal, smooth, ray.dir)
-        } else {
-            geometric_normal
-        };
-        let surface = Surface { point, error, geometric_normal, shading_normal };
-        (surface, geometric.dot(ray.dir) < 0.0, &self.world.materials[material as usize])
-    }
-
-    fn on_primitive(&self, ray: &Ray, t: f32, primitive: &Primitive) -> (Vec3, Vec3, Vec3, Option<Vec3>) {
-        match primitive.geometry {
-            Geometry::Sphere(sphere) => {
-                // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
-                let normal = stage1_shapes::sphere_normal(sphere.center, ray.at(t));
-                let point = sphere.center + sphere.radius * normal;
-                let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
-                (point, error, normal, None)
-            }
-            Geometry::Triangle(triangle) => {
-                let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-                let (beta, gamma) = self
-                    .meet_triangle(&unbounded, &triangle)
-                    .map_or((1.0 / 3.0, 1.0 / 3.0), |(_, beta, gamma)| (beta, gamma));
-                let weights = Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma);
-                let Triangle { a, b, c } = triangle;
-                // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far
-                // the ray came from.
-                let terms = [weights.x * a, weights.y * b, weights.z * c];
-                let point = terms[0] + terms[1] + terms[2];
-                let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
-                let flat = (b - a).cross(c - a).normalize_or(Vec3::Z);
-                let smooth = primitive.normals.map(|normals| {
-                    stage2_triangles::interpolate(weights, self.world.normals[normals as usize])
-                });
-                (point, error, flat, smooth)
-            }
-        }
-    }
-
-    /// `(t, β, γ)` by the method that the scene asks for.
-    fn meet_triangle(&self, ray: &Ray, triangle: &Triangle) -> Option<(f32, f32, f32)> {
-        let hit = match self.quality.triangle_method {
-            TriangleMethod::Watertight => stage2_triangles::triangle_choice(ray, triangle),
-            TriangleMethod::Cramer => stage2_triangles::triangle_cramer(ray, triangle),
-            TriangleMethod::Gram => {
-                stage2_triangles::triangle_gram(ray, triangle, &stage2_triangles::gram_scalars(triangle))
-            }
-        };
-        hit.map(|hit| (hit.t, hit.beta, hit.gamma))
-    }
 }
 
 /// Whether a surface can send rays on at all: most cannot, and need not be asked.
@@ -258,9 +245,22 @@ fn leave(surface: &Surface, child: &Child) -> Ray {
     Ray::new(start, child.direction)
 }
 
-enum Hit {
-    Plane { t: f32, index: usize },
-    Primitive(PrimitiveHit),
+/// A ray that is to be followed.
+#[derive(Clone, Copy)]
+struct Path {
+    ray: Ray,
+    weight: Vec3,
+    depth: u32,
+    kind: RayKind,
+    parent: Option<usize>,
+}
+
+impl Path {
+    fn told(&self, t: Option<f32>) -> TracedRay {
+        let Path { ray, weight, depth, kind, parent } = *self;
+        let hit = t.map(|t| (t, String::new()));
+        TracedRay { kind, parent, depth, weight, origin: ray.origin, dir: ray.dir, hit }
+    }
 }
 
 /// Answers the questions of a search about the world, and counts them.
@@ -303,7 +303,9 @@ impl<T: Tally> Probe for SceneProbe<'_, T> {
         self.tally.note(Event::PrimitiveTest);
         match &self.tracer.world.primitives[primitive as usize].geometry {
             Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
-            Geometry::Triangle(triangle) => self.tracer.meet_triangle(ray, triangle).map(|(t, ..)| t),
+            Geometry::Triangle(triangle) => {
+                meet_triangle(self.tracer.quality.triangle_method, ray, triangle).map(|(t, ..)| t)
+            }
         }
     }
 }
@@ -313,19 +315,4 @@ fn bounds_of(primitive: &Primitive) -> Aabb {
         Geometry::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
         Geometry::Triangle(triangle) => stage3_bvh::triangle_bounds(triangle),
     }
-}
-
-/// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.
-fn point_on_plane(ray: &Ray, t: f32, plane: &Plane) -> (Vec3, Vec3) {
-    let rough = ray.at(t);
-    let normal = plane.normal.normalize();
-    let offset = rough - plane.point;
-    let point = rough - offset.dot(normal) * normal;
-    (point, rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element())))
-}
-
-/// `γ_n`, the largest relative error that `n` roundings can add up to (Higham).
-fn rounding(n: u32) -> f32 {
-    let nu = n as f32 * f32::EPSILON / 2.0;
-    nu / (1.0 - nu)
 }

@@ -8,6 +8,7 @@ pub mod stage2_triangles;
 pub mod stage3_bvh;
 pub mod stage4_shading;
 pub mod stage5_recursion;
+mod surfaces; // nothing to do here
 mod tracer; // nothing to do here
 
 pub use glue::Kit;

@@ -28,6 +28,9 @@ impl<T: Shapes + Triangles + Hierarchies + Shading + Recursion + Frames + Sync> 
 pub trait Frames {
     /// Renders `job`. `None` if `watch` cancelled it.
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering>;
+
+    /// The rays behind the pixel in column `x` and row `y` of `job`, one sample in its centre, parents before children.
+    fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 }
 
 macro_rules! door {
@@ -42,8 +45,11 @@ macro_rules! door {
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Request {
             $($($(#[$doc])* $Message(Vec<$query>),)*)*
-            /// A whole frame.
+                        /// A whole frame.
             Render(Box<RenderJob>),
+            /// The rays behind a pixel, by column and row.
+            Trace(Box<RenderJob>, u32, u32),
+
         }
 
         /// An answer as a message.
@@ -51,7 +57,10 @@ macro_rules! door {
         pub enum Answer {
             $($($(#[$doc])* $Message(Vec<$answer>),)*)*
             /// A whole frame; `None` when it was cancelled.
-            Render(Option<Box<Rendering>>),
+                        Render(Option<Box<Rendering>>),
+            /// The rays behind a pixel.
+            Trace(Vec<TracedRay>),
+
         }
 
         impl Request {
@@ -60,6 +69,8 @@ macro_rules! door {
                 match self {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
                     Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
+                    Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
+
                 }
             }
         }
@@ -79,6 +90,13 @@ impl<T: Transport> Frames for Door<T> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         match self.0.call(Request::Render(Box::new(job.clone())), watch) {
             Answer::Render(rendering) => rendering.map(|rendering| *rendering),
+            answer => mishap::wrong_answer(&format!("{answer:?}")),
+        }
+    }
+
+    fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
+        match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
+            Answer::Trace(rays) => rays,
             answer => mishap::wrong_answer(&format!("{answer:?}")),
         }
     }

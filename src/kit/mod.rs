@@ -10,6 +10,7 @@ mod recursion;
 mod shading;
 mod shapes;
 mod table;
+mod traced;
 mod triangles;
 
 pub use door::{
@@ -22,6 +23,7 @@ pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
 };
+pub use traced::{RayKind, TracedRay};
 pub use triangles::{GramScalars, InsideQuery, InterpolateQuery, TriangleHit, TriangleQuery};
 
 use crate::count::Counts;

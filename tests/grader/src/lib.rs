@@ -6,4 +6,5 @@ pub mod kits;
 pub mod render;
 pub mod report;
 pub mod sync;
+pub mod tree;
 pub mod worker;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, generate, render, sync};
+use grader::{check, generate, render, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -25,6 +25,8 @@ struct Cli {
 enum Command {
     /// Render a scene to a picture.
     Render(render::Options),
+    /// Show the rays behind one pixel.
+    Tree(tree::Options),
     /// Grade your exercises and print the scorecard.
     Check {
         /// One stage only.
@@ -77,6 +79,7 @@ fn run(cli: Cli) -> Result<bool> {
     match cli.command {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
         Some(Command::Render(options)) => render::run(&options)?,
+        Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {
             return check::scorecard(&Source::prepare(kit, &root()?)?, stage);
         }

@@ -150,3 +150,21 @@ fn sync_is_the_same_every_time() {
         assert_eq!(again, exercise.stub);
     }
 }
+
+#[test]
+fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
+    let tree = |format: &str| {
+        told(&raykata(&["tree", "scenes/stage5.toml", "--pixel", "430,240", "--format", format])).0
+    };
+    let text = tree("text");
+    checks::golden::compare("tree_of_a_pixel", "raykata tree scenes/stage5.toml --pixel 430,240", &text)
+        .unwrap_or_else(|broken| panic!("{broken:?}"));
+    let rays: serde_json::Value = serde_json::from_str(&tree("json")).expect("JSON");
+    let rays = rays.as_array().expect("a list");
+    assert_eq!(rays.len(), text.lines().count());
+    assert_eq!(rays.iter().filter(|ray| ray["parent"].is_null()).count(), 1);
+    let dot = tree("dot");
+    assert_eq!(dot.matches(" -> ").count(), rays.len() - 1);
+    let outside = raykata(&["tree", "scenes/stage5.toml", "--pixel", "640,0"]);
+    assert!(told(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
+}
