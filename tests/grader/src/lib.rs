@@ -5,6 +5,7 @@ pub mod generate;
 pub mod kits;
 pub mod render;
 pub mod report;
+pub mod strip;
 pub mod sync;
 pub mod tree;
 pub mod worker;

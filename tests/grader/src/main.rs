@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, generate, render, sync, tree};
+use grader::{check, generate, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -25,6 +25,8 @@ struct Cli {
 enum Command {
     /// Render a scene to a picture.
     Render(render::Options),
+    /// Render a scene at growing depths of recursion, side by side.
+    Strip(strip::Options),
     /// Show the rays behind one pixel.
     Tree(tree::Options),
     /// Grade your exercises and print the scorecard.
@@ -79,6 +81,7 @@ fn run(cli: Cli) -> Result<bool> {
     match cli.command {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
         Some(Command::Render(options)) => render::run(&options)?,
+        Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {
             return check::scorecard(&Source::prepare(kit, &root()?)?, stage);

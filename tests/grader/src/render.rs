@@ -176,7 +176,7 @@ fn apply(options: &Options, scene: &mut Scene) {
 }
 
 /// Gamma 2 is an exercise, so the kit that made the picture encodes it.
-fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
+pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
     match encoding {
         Encoding::Srgb => film.write_png(out, encode_srgb)?,
         Encoding::Gamma2 => {

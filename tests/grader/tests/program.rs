@@ -168,3 +168,19 @@ fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
     let outside = raykata(&["tree", "scenes/stage5.toml", "--pixel", "640,0"]);
     assert!(told(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
 }
+
+#[test]
+fn a_strip_shows_one_picture_a_depth() {
+    let out = tempfile::tempdir().expect("a folder");
+    let file = out.path().join("strip.png");
+    let output =
+        raykata(&["strip", "scenes/heckbert.toml", "--depths", "0,1,3", "--out", &file.to_string_lossy()]);
+    let said = told(&output).0;
+    assert!(output.status.success(), "{}", told(&output).1);
+    assert_eq!(said.lines().count(), 5, "{said}");
+    let picture = std::fs::read(&file).expect("a picture");
+    // Width and height follow the first 16 bytes of a PNG.
+    let number =
+        |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
+    assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32));
+}
