@@ -3,7 +3,8 @@
 use crate::{stage1_shapes, stage2_triangles, stage4_shading};
 use glam::Vec3;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::Surface;
+use raykata::kit::{Bounce, Child, LightSample, Surface};
+use raykata::material::Material;
 use raykata::ray::Ray;
 use raykata::scene::TriangleMethod;
 use raykata::shape::{Plane, Triangle};
@@ -103,6 +104,23 @@ pub fn meet_triangle(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> 
         }
     };
     hit.map(|hit| (hit.t, hit.beta, hit.gamma))
+}
+
+/// Whether a surface can send rays on at all: most cannot, and need not be asked.
+pub fn sends_on(material: &Material) -> bool {
+    material.mirror != Vec3::ZERO || material.transmission != Vec3::ZERO
+}
+
+/// A ray that goes on, starting as far from the surface as a shadow ray does.
+pub fn leave(surface: &Surface, child: &Child) -> Ray {
+    let side = match child.bounce {
+        Bounce::Reflection => surface.geometric_normal,
+        Bounce::Transmission => -surface.geometric_normal,
+    };
+    let from = Surface { geometric_normal: side, shading_normal: side, ..*surface };
+    let ahead = LightSample { direction: side, distance: f32::INFINITY, radiance: Vec3::ONE };
+    let start = stage4_shading::shadow_ray(&from, &ahead).map_or(surface.point, |ray| ray.at(ray.t_min));
+    Ray::new(start, child.direction)
 }
 
 /// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.

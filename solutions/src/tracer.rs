@@ -3,7 +3,7 @@
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
 use crate::fallbacks::{Search, choose_search, choose_view, follows_mirrors, written};
-use crate::surfaces::{self, Hit, Place, meet_triangle};
+use crate::surfaces::{self, Hit, Place, leave, meet_triangle, sends_on};
 use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion};
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -11,9 +11,7 @@ use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, FrameSettings, Watch};
-use raykata::kit::{
-    Bounce, Child, LightSample, Limits, RayKind, RenderJob, Rendering, Surface, TracedRay, View,
-};
+use raykata::kit::{Bounce, LightSample, Limits, RayKind, RenderJob, Rendering, Surface, TracedRay, View};
 use raykata::material::Material;
 use raykata::mesh::Mesh;
 use raykata::ray::Ray;
@@ -226,23 +224,6 @@ impl<'a> Tracer<'a> {
                 None => probe.last_hit(ray).is_some(),
             }
     }
-}
-
-/// Whether a surface can send rays on at all: most cannot, and need not be asked.
-fn sends_on(material: &Material) -> bool {
-    material.mirror != Vec3::ZERO || material.transmission != Vec3::ZERO
-}
-
-/// A ray that goes on, starting as far from the surface as a shadow ray does.
-fn leave(surface: &Surface, child: &Child) -> Ray {
-    let side = match child.bounce {
-        Bounce::Reflection => surface.geometric_normal,
-        Bounce::Transmission => -surface.geometric_normal,
-    };
-    let from = Surface { geometric_normal: side, shading_normal: side, ..*surface };
-    let ahead = LightSample { direction: side, distance: f32::INFINITY, radiance: Vec3::ONE };
-    let start = stage4_shading::shadow_ray(&from, &ahead).map_or(surface.point, |ray| ray.at(ray.t_min));
-    Ray::new(start, child.direction)
 }
 
 /// A ray that is to be followed.
