@@ -72,15 +72,34 @@ impl Trial<'_> {
         let mut trees: Vec<S::Tree> = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).collect();
 
         let values: Vec<S::Value> = trees.iter().map(ValueTree::current).collect();
-        let broken =
-            judge(&values).into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)));
+        let broken = match mishap::catch(|| judge(&values)) {
+            Ok(outcomes) => {
+                outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
+            }
+            // Some input of the batch made the code panic: ask one at a time which.
+            Err(Mishap::Panicked { .. }) => {
+                values.iter().enumerate().find_map(|(i, value)| Some((i, judge_one(&judge, value)?)))
+            }
+            Err(mishap) => mishap::unwind(mishap),
+        };
         match broken {
             None => Ok(()),
             Some((index, broken)) => {
-                let judge_one = |value: S::Value| judge(&[value]).into_iter().find_map(Result::err);
-                Err(shrink(trees.swap_remove(index), broken, judge_one))
+                Err(shrink(trees.swap_remove(index), broken, |value| judge_one(&judge, &value)))
             }
         }
+    }
+}
+
+/// What is wrong with the answer to one input, a panic included.
+fn judge_one<V: Clone + std::fmt::Debug>(judge: &impl Fn(&[V]) -> Vec<Outcome>, value: &V) -> Option<Broken> {
+    match mishap::catch(|| judge(std::slice::from_ref(value))) {
+        Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
+        Err(Mishap::Panicked { message, place }) => {
+            let panic = format!("a panic at {place}: {message}");
+            Some(Broken::told(format!("{value:?}"), panic, "an answer", "the definition"))
+        }
+        Err(mishap) => mishap::unwind(mishap),
     }
 }
 
@@ -155,4 +174,56 @@ pub fn grade(stage: u8, name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     }
     // Ends the test without the words and the backtrace of a panic: everything is said.
     std::panic::resume_unwind(Box::new("the check failed"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raykata::kit::Mishap;
+
+    /// A trial whose kit is never asked: every call to it would be a mishap of its own.
+    fn with_trial<T>(check: impl FnOnce(&Trial<'_>) -> T) -> T {
+        struct Silent;
+        impl raykata::kit::Transport for Silent {
+            fn call(&self, _: raykata::kit::Request, _: &dyn raykata::frame::Watch) -> raykata::kit::Answer {
+                mishap::unwind(Mishap::Crashed { how: "nobody is there".into() })
+            }
+        }
+        check(&Trial { kit: &raykata::kit::Door(Silent), name: "a_check", seed: 1 })
+    }
+
+    fn refuse_above(limit: i32) -> impl Fn(&[i32]) -> Vec<Outcome> {
+        move |values| {
+            let judge = |value: &i32| {
+                if *value <= limit { Ok(()) } else { Err(Broken::new(format!("{value}"), "", "", "")) }
+            };
+            values.iter().map(judge).collect()
+        }
+    }
+
+    #[test]
+    fn the_smallest_input_is_found_and_the_same_every_time() {
+        let find = || with_trial(|trial| trial.forall(200, 0..1000i32, refuse_above(41))).unwrap_err().input;
+        assert_eq!(find(), "42");
+        assert_eq!(find(), "42");
+        assert_eq!(with_trial(|trial| trial.forall(200, 0..1000i32, refuse_above(1000))), Ok(()));
+    }
+
+    #[test]
+    fn a_panic_is_traced_to_the_smallest_input_that_makes_it() {
+        let law = |values: &[i32]| {
+            values.iter().map(|value| if *value < 42 { Ok(()) } else { panic!("too large") }).collect()
+        };
+        let broken = with_trial(|trial| trial.forall(200, 0..1000i32, law)).unwrap_err();
+        assert_eq!(broken.input, "42");
+        assert!(broken.yours.ends_with(": too large"), "{}", broken.yours);
+    }
+
+    #[test]
+    #[allow(clippy::todo, reason = "a gap is what this is about")]
+    fn a_gap_stays_a_gap() {
+        let law = |_: &[i32]| -> Vec<Outcome> { todo!("write it") };
+        let gap = mishap::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));
+        assert!(matches!(gap, Err(Mishap::NotWritten { .. })), "{gap:?}");
+    }
 }
