@@ -23,6 +23,10 @@ pub enum Event {
     BoxTest,
     /// A ray tested against a primitive.
     PrimitiveTest,
+    /// A random number looked up.
+    RandomNumber,
+    /// A colour read from an image.
+    TextureRead,
 }
 
 /// How often each [`Event`] happened.
@@ -42,6 +46,10 @@ pub struct Counts {
     pub box_tests: u64,
     /// Primitive tests.
     pub primitive_tests: u64,
+    /// Random numbers.
+    pub random_numbers: u64,
+    /// Colours read from images.
+    pub texture_reads: u64,
 }
 
 impl Counts {
@@ -60,6 +68,8 @@ impl AddAssign for Counts {
         self.node_visits += other.node_visits;
         self.box_tests += other.box_tests;
         self.primitive_tests += other.primitive_tests;
+        self.random_numbers += other.random_numbers;
+        self.texture_reads += other.texture_reads;
     }
 }
 
@@ -83,6 +93,8 @@ impl Tally for Counts {
             Event::NodeVisit => &mut self.node_visits,
             Event::BoxTest => &mut self.box_tests,
             Event::PrimitiveTest => &mut self.primitive_tests,
+            Event::RandomNumber => &mut self.random_numbers,
+            Event::TextureRead => &mut self.texture_reads,
         } += 1;
     }
 

@@ -1,33 +1,18 @@
-//! The frame driver: every pixel once, on all cores, with the same result for any number of them.
+//! The frame driver: every pixel once, on all cores, with the same result for any number of them; and no random number
+//! that the scene does not call for.
 
-use crate::count::{Counts, Tally};
+use crate::count::{Counts, Event, Tally};
+use crate::effects::Effects;
 use crate::film::Film;
-use crate::kit::{Mishap, mishap};
+use crate::kit::{Mishap, WeightedColor, mishap};
+use crate::random::{Points, Purpose, Stratum};
+use crate::scene::Sampler;
 use glam::Vec3;
-use rand_core::Rng;
-use rand_pcg::Pcg32;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours share caches.
 const TILE: u32 = 16;
-
-/// Random numbers of one pixel. They depend on the seed and the pixel alone, never on threads or on neighbours.
-pub struct PixelRandom(Pcg32);
-
-impl PixelRandom {
-    /// The numbers of pixel number `pixel` under `seed`.
-    pub fn new(seed: u64, pixel: u64) -> Self {
-        // The pixel picks the stream, so no two pixels share a sequence, however long.
-        PixelRandom(Pcg32::new(seed, pixel))
-    }
-
-    /// A number in `0.0..1.0`; never 1.0.
-    pub fn unit(&mut self) -> f32 {
-        // All 32 bits over 2³² would round up to 1.0 for 128 of the values (hard case D1); 24 bits fit exactly.
-        (self.0.next_u32() >> 8) as f32 * (1.0 / 16_777_216.0)
-    }
-}
 
 /// Someone who waits for a frame.
 pub trait Watch: Sync {
@@ -56,18 +41,74 @@ pub struct FrameSettings {
     pub height: u32,
     /// Rays a pixel, at least 1.
     pub samples_per_pixel: u32,
+    /// Where they lie.
+    pub sampler: Sampler,
+    /// Whether rays start at random places of a lens.
+    pub lens: bool,
+    /// Whether rays start at random times.
+    pub motion: bool,
     /// Threads; 0 takes one a core, 1 stays on the calling thread.
     pub threads: usize,
     /// Picks the random numbers.
     pub seed: u64,
 }
 
-/// Makes a picture by asking `radiance` for the colour at film positions in `0..1`, and adds up what was counted.
-/// `None` if the watch cancelled it.
+impl FrameSettings {
+    /// Draws what `effects` call for and nothing else.
+    pub fn obey(self, effects: &Effects) -> Self {
+        FrameSettings { lens: effects.lens, motion: effects.motion, ..self }
+    }
+}
+
+/// One ray from the camera: where, and what was drawn for it.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraSample {
+    /// Column of the pixel.
+    pub column: u32,
+    /// Row of the pixel.
+    pub row: u32,
+    /// Where in the pixel; `None` is its centre.
+    pub pixel: Option<Stratum>,
+    /// Where on the lens; `None` is its centre.
+    pub lens: Option<Stratum>,
+    /// When; `None` is when the shutter opens.
+    pub time: Option<Stratum>,
+    /// Where to look up what the ray needs on its way.
+    pub points: Points,
+}
+
+impl CameraSample {
+    /// Sample `sample` of the pixel in this column and row.
+    pub fn draw(settings: &FrameSettings, column: u32, row: u32, sample: u32) -> CameraSample {
+        let samples = settings.samples_per_pixel.max(1);
+        let pixel = u64::from(row) * u64::from(settings.width) + u64::from(column);
+        let points = Points::new(settings.sampler, settings.seed, pixel, sample, samples);
+        let draw = |wanted: bool, purpose| wanted.then(|| points.stratum(purpose, 0, 1));
+        CameraSample {
+            column,
+            row,
+            pixel: draw(settings.sampler.spreads(samples), Purpose::Pixel),
+            lens: draw(settings.lens, Purpose::Lens),
+            time: draw(settings.motion, Purpose::Time),
+            points,
+        }
+    }
+
+    /// How many random numbers were looked up.
+    fn random_numbers(&self) -> usize {
+        2 * usize::from(self.pixel.is_some())
+            + 2 * usize::from(self.lens.is_some())
+            + usize::from(self.time.is_some())
+    }
+}
+
+/// Makes a picture: asks `radiance` for the colour and weight of each sample, and `develop` for the colour that the
+/// samples of a pixel make; adds up what was counted. `None` if the watch cancelled it.
 pub fn render<T: Tally>(
     settings: &FrameSettings,
     watch: &dyn Watch,
-    radiance: impl Fn(f32, f32, &mut PixelRandom, &mut T) -> Vec3 + Sync,
+    radiance: impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync,
+    develop: impl Fn(&[WeightedColor]) -> Vec3 + Sync,
 ) -> Option<(Film, Counts)> {
     let FrameSettings { width, height, .. } = *settings;
     let total = u64::from(width) * u64::from(height);
@@ -78,7 +119,7 @@ pub fn render<T: Tally>(
             return Ok(None);
         }
         // Caught where it happens: a panic that crosses threads forgets its file and line.
-        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance))
+        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance, &develop))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.pixels.len() as u64;
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
@@ -125,75 +166,108 @@ struct Tile {
 fn render_tile<T: Tally>(
     settings: &FrameSettings,
     (x, y): (u32, u32),
-    radiance: &(impl Fn(f32, f32, &mut PixelRandom, &mut T) -> Vec3 + Sync),
+    radiance: &(impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync),
+    develop: &(impl Fn(&[WeightedColor]) -> Vec3 + Sync),
 ) -> Tile {
     let right = settings.width.min(x + TILE);
     let bottom = settings.height.min(y + TILE);
     let mut tally = T::default();
+    let mut samples = Vec::new();
+    let mut render_pixel = |(column, row)| {
+        samples.clear();
+        for sample in 0..settings.samples_per_pixel.max(1) {
+            let sample = CameraSample::draw(settings, column, row, sample);
+            for _ in 0..sample.random_numbers() {
+                tally.note(Event::RandomNumber);
+            }
+            samples.push(radiance(&sample, &mut tally));
+        }
+        develop(&samples)
+    };
     let pixels = (y..bottom)
         .flat_map(|row| (x..right).map(move |column| (column, row)))
-        .map(|(column, row)| render_pixel(settings, column, row, &mut tally, radiance))
+        .map(&mut render_pixel)
         .collect();
     Tile { x, y, width: right - x, pixels, counts: tally.counts() }
-}
-
-fn render_pixel<T: Tally>(
-    settings: &FrameSettings,
-    column: u32,
-    row: u32,
-    tally: &mut T,
-    radiance: &(impl Fn(f32, f32, &mut PixelRandom, &mut T) -> Vec3 + Sync),
-) -> Vec3 {
-    let pixel = u64::from(row) * u64::from(settings.width) + u64::from(column);
-    let mut random = PixelRandom::new(settings.seed, pixel);
-    let samples = settings.samples_per_pixel.max(1);
-    let mut sum = Vec3::ZERO;
-    for sample in 0..samples {
-        let (u, v) = position_in_pixel(sample, samples);
-        let film_x = (column as f32 + u) / settings.width as f32;
-        let film_y = (row as f32 + v) / settings.height as f32;
-        sum += radiance(film_x, film_y, &mut random, tally);
-    }
-    sum / samples as f32
-}
-
-/// Where sample `sample` of `samples` lies in its pixel: on a Fibonacci lattice, the centre when there is one.
-/// The patterns of the lecture (random, jittered, Gaussian) are exercises of stage 6.
-fn position_in_pixel(sample: u32, samples: u32) -> (f32, f32) {
-    const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let u = (f64::from(sample) + 0.5) / f64::from(samples);
-    let v = (0.5 + f64::from(sample) * GOLDEN).fract();
-    (u as f32, v as f32)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::count::Event;
+
+    fn settings(width: u32, height: u32, samples_per_pixel: u32, threads: usize) -> FrameSettings {
+        let sampler = Sampler::LowDiscrepancy;
+        FrameSettings {
+            width,
+            height,
+            samples_per_pixel,
+            sampler,
+            lens: false,
+            motion: false,
+            threads,
+            seed: 7,
+        }
+    }
+
+    fn mean(samples: &[WeightedColor]) -> Vec3 {
+        samples.iter().map(|sample| sample.color).sum::<Vec3>() / samples.len() as f32
+    }
 
     fn noise(threads: usize) -> (Film, Counts) {
-        let settings = FrameSettings { width: 50, height: 33, samples_per_pixel: 3, threads, seed: 7 };
-        render::<Counts>(&settings, &Unwatched, |x, y, random, tally| {
-            tally.note(Event::Primary);
-            Vec3::new(x, y, random.unit())
-        })
-        .expect("nobody cancels")
+        let frame = render::<Counts>(
+            &settings(50, 33, 3, threads),
+            &Unwatched,
+            |sample, tally| {
+                tally.note(Event::Primary);
+                let u = sample.pixel.expect("three samples are spread").u;
+                WeightedColor { color: Vec3::new(u.x, u.y, sample.column as f32), weight: 1.0 }
+            },
+            mean,
+        );
+        frame.expect("nobody cancels")
     }
 
     #[test]
-    fn any_number_of_threads_makes_the_same_picture() {
-        let one = noise(1);
-        assert_eq!(one.1.primary, 50 * 33 * 3);
-        assert!(one.0.pixels.iter().all(|p| p.z < 1.0));
-        assert_ne!(one.0.at(0, 0).z, one.0.at(1, 0).z);
+    fn every_number_of_threads_makes_the_same_picture() {
+        let (film, counts) = noise(1);
+        assert_eq!((counts.primary, counts.random_numbers), (50 * 33 * 3, 2 * 50 * 33 * 3));
         for threads in [2, 3, 8] {
-            assert_eq!(noise(threads), one);
+            let (other, other_counts) = noise(threads);
+            assert_eq!(film, other);
+            assert_eq!(counts, other_counts);
         }
     }
 
     #[test]
-    fn a_single_sample_sits_in_the_middle_of_its_pixel() {
-        assert_eq!(position_in_pixel(0, 1), (0.5, 0.5));
+    fn only_what_is_called_for_is_drawn() {
+        let plain = settings(4, 4, 1, 1);
+        let drawn = |settings: &FrameSettings| {
+            let sample = CameraSample::draw(settings, 1, 2, 0);
+            (sample.pixel.is_some(), sample.lens.is_some(), sample.time.is_some(), sample.random_numbers())
+        };
+        // One low-discrepancy sample lies in the centre.
+        assert_eq!(drawn(&plain), (false, false, false, 0));
+        assert_eq!(drawn(&FrameSettings { samples_per_pixel: 2, ..plain }), (true, false, false, 2));
+        assert_eq!(
+            drawn(&FrameSettings { samples_per_pixel: 2, sampler: Sampler::Center, ..plain }),
+            (false, false, false, 0)
+        );
+        let effects = Effects { lens: true, motion: true, ..Effects::default() };
+        assert_eq!(drawn(&plain.obey(&effects)), (false, true, true, 3));
+    }
+
+    #[test]
+    fn what_else_is_drawn_changes_no_number() {
+        for sampler in [Sampler::Random, Sampler::Jittered, Sampler::LowDiscrepancy] {
+            let plain = FrameSettings { sampler, ..settings(4, 4, 8, 1) };
+            let all = FrameSettings { lens: true, motion: true, ..plain };
+            for sample in 0..8 {
+                let [plain, all] = [plain, all].map(|settings| CameraSample::draw(&settings, 3, 1, sample));
+                assert_eq!(plain.pixel, all.pixel);
+                let light = |sample: &CameraSample| sample.points.stratum(Purpose::Light(0), 1, 4);
+                assert_eq!(light(&plain), light(&all));
+            }
+        }
     }
 
     #[test]
@@ -207,10 +281,9 @@ mod tests {
                 self.0.load(Ordering::Relaxed) > 0
             }
         }
-        let settings = FrameSettings { width: 64, height: 64, samples_per_pixel: 1, threads: 1, seed: 0 };
         let watch = Impatient(AtomicU64::new(0));
-        let frame = render::<Counts>(&settings, &watch, |_, _, _, _| Vec3::ONE);
-        assert!(frame.is_none());
+        let white = |_: &CameraSample, _: &mut Counts| WeightedColor { color: Vec3::ONE, weight: 1.0 };
+        assert!(render::<Counts>(&settings(64, 64, 1, 1), &watch, white, mean).is_none());
         assert_eq!(watch.0.load(Ordering::Relaxed), 256); // one tile and no more
     }
 }

@@ -27,7 +27,7 @@ pub struct Material {
     pub roughness: f32,
     /// Light that the surface gives off by itself (stage 11).
     pub emission: Vec3,
-    /// Index into [`crate::scene::Scene::textures`]: an image that multiplies `diffuse` (stage 7).
+    /// Index into [`crate::scene::Scene::textures`]: an image that multiplies `diffuse` and `ambient` (stage 7).
     pub texture: Option<usize>,
 }
 
@@ -43,7 +43,6 @@ impl Default for Material {
             transmission: Vec3::ZERO,
             index_of_refraction: 1.0,
             fresnel: Fresnel::None,
-
             roughness: 0.0,
             emission: Vec3::ZERO,
             texture: None,
@@ -161,6 +160,8 @@ pub struct Light {
     pub color: Vec3,
     /// A factor on the colour, at least 0.
     pub intensity: f32,
+    /// Whether things stand in its light.
+    pub shadows: bool,
 }
 
 impl Light {

@@ -1,13 +1,16 @@
 //! A ray tracer, stage by stage. The files `stage1_shapes.rs`, `stage2_triangles.rs` … hold the exercises; everything
 //! else connects them with the scaffold.
 
-mod fallbacks; // nothing to do here
+mod camera_rays; // nothing to do here
 mod glue; // nothing to do here
+mod plan; // nothing to do here
 pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_bvh;
 pub mod stage4_shading;
 pub mod stage5_recursion;
+pub mod stage6_distribution;
+pub mod stage7_effects;
 mod surfaces; // nothing to do here
 mod tracer; // nothing to do here
 

@@ -2,21 +2,29 @@
 //! out, and the picture says so: without stage 4 it shows normals, without stage 3 every ray tests every primitive,
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
-use crate::fallbacks::{Search, choose_search, choose_view, follows_mirrors, written};
-use crate::surfaces::{self, Hit, Place, leave, meet_triangle, sends_on};
-use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion};
-use glam::Vec3;
+use crate::camera_rays::{Eye, blurred, from_area, geometry_at, outline, plane_at};
+use crate::plan::{Plan, Search};
+use crate::surfaces::{self, Hit, Looks, Place, leave, meet_triangle, texture_coordinates};
+use crate::{
+    stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
+    stage7_effects,
+};
+use glam::{Vec3, uvec2};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
-use raykata::frame::{self, FrameSettings, Watch};
-use raykata::kit::{Bounce, LightSample, Limits, RayKind, RenderJob, Rendering, Surface, TracedRay, View};
+use raykata::frame::{self, CameraSample, FrameSettings, Watch};
+use raykata::kit::{
+    Bounce, LightSample, Limits, RayKind, RenderJob, Rendering, TracedRay, View, WeightedColor,
+};
 use raykata::material::Material;
 use raykata::mesh::Mesh;
+use raykata::random::Points;
 use raykata::ray::Ray;
 use raykata::scene::Quality;
 use raykata::world::{Geometry, Primitive, World, camera_for};
+use std::borrow::Cow;
 use std::time::Instant;
 
 pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
@@ -24,11 +32,8 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
     let tracer = Tracer::new(job);
     let build_seconds = started.elapsed().as_secs_f64();
     let started = Instant::now();
-    let (film, counts) = if job.count {
-        tracer.frame::<Counts>(job, watch)?
-    } else {
-        tracer.frame::<Uncounted>(job, watch)?
-    };
+    let (film, counts) =
+        if job.count { tracer.frame::<Counts>(watch)? } else { tracer.frame::<Uncounted>(watch)? };
     Some(Rendering {
         film,
         counts,
@@ -36,17 +41,18 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         hierarchy: tracer.bvh.as_ref().map(|bvh| (bvh.nodes.len() as u64, bvh.depth() as u64)),
         build_seconds,
         render_seconds: started.elapsed().as_secs_f64(),
-        notes: tracer.world.notes,
+        notes: [tracer.plan.notes, tracer.world.notes].concat(),
     })
 }
 
 pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
     let tracer = Tracer::new(job);
-    let film = &job.scene.film;
-    let ray = camera_for(&job.scene)
-        .ray((x as f32 + 0.5) / film.width as f32, (y as f32 + 0.5) / film.height as f32);
+    let pixel = u64::from(y) * u64::from(job.scene.film.width) + u64::from(x);
+    let points = Points::new(job.scene.quality.sampler, job.seed, pixel, 0, 1);
+    let sample = CameraSample { column: x, row: y, pixel: None, lens: None, time: None, points };
+    let (ray, _) = tracer.eye.ray(&sample);
     let mut rays = Vec::new();
-    tracer.radiance(&ray, &mut Uncounted, &mut |mut ray, material| {
+    tracer.radiance(&ray, points, &mut Desk::<Uncounted>::default(), &mut |mut ray, material| {
         if let (Some(hit), Some(material)) = (&mut ray.hit, material) {
             hit.1 = job.scene.material_names.get(material).cloned().unwrap_or_default();
         }
@@ -56,50 +62,82 @@ pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
 }
 
 struct Tracer<'a> {
+    job: &'a RenderJob,
+    plan: Plan,
+    eye: Eye,
     world: World,
     bvh: Option<Bvh>,
-    search: Search,
-    view: View,
-    /// Whether normals are interpolated over smooth meshes.
-    smooth: bool,
-    /// Whether mirrors and glass send rays on.
-    recursion: bool,
-    quality: &'a Quality,
-    ambient: Vec3,
-    background: Vec3,
+    looks: Looks,
+    limits: Limits,
+}
+
+/// What one thread works with: its counts, and lists that it fills anew for every hit.
+#[derive(Default)]
+struct Desk<T> {
+    tally: T,
+    lights: Vec<LightSample>,
+    /// For each of `lights`, whether it casts shadows.
+    shadows: Vec<bool>,
+    waiting: Vec<Path>,
+}
+
+impl<T: Tally> Tally for Desk<T> {
+    fn note(&mut self, event: Event) {
+        self.tally.note(event);
+    }
+    fn counts(&self) -> Counts {
+        self.tally.counts()
+    }
 }
 
 impl<'a> Tracer<'a> {
     fn new(job: &'a RenderJob) -> Self {
-        let quality = &job.scene.quality;
+        let scene = &job.scene;
+        let quality = &scene.quality;
+        let plan = Plan::new(job);
         let average = |mesh: &Mesh| stage2_triangles::vertex_normals(mesh);
-        let averages = written(|| stage2_triangles::vertex_normals(&Mesh::default()));
-        let mut world = World::new(&job.scene, averages.then_some(&average as &dyn Fn(&Mesh) -> Vec<Vec3>));
-        let search = choose_search(quality, &mut world.notes);
-        let view = choose_view(job.view, &mut world.notes);
-        let smooth = written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X));
-        let recursion = follows_mirrors(&mut world);
-        let bvh = (search == Search::Hierarchy).then(|| {
-            let bounds: Vec<Aabb> = world.primitives.iter().map(bounds_of).collect();
+        let average = plan.averages_normals.then_some(&average as &dyn Fn(&Mesh) -> Vec<Vec3>);
+        let world = World::new(scene, &plan.effects, average);
+        let bvh = (plan.search == Search::Hierarchy).then(|| {
+            let bounds: Vec<Aabb> =
+                world.primitives.iter().map(|primitive| bounds_of(&world, primitive)).collect();
             stage3_bvh::build(&bounds, quality.split, quality.leaf_size as usize)
         });
-        let (ambient, background) = (job.scene.ambient, job.scene.background);
-        Tracer { world, bvh, search, view, smooth, recursion, quality, ambient, background }
+        let eye = Eye {
+            camera: camera_for(scene),
+            sampler: quality.sampler,
+            film: uvec2(scene.film.width, scene.film.height).as_vec2(),
+            positions: plan.positions,
+            weights: plan.weights,
+        };
+        let looks = Looks { method: quality.triangle_method, smooth: plan.smooth };
+        let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
+        Tracer { job, plan, eye, world, bvh, looks, limits }
     }
 
-    fn frame<T: Tally>(&self, job: &RenderJob, watch: &dyn Watch) -> Option<(Film, Counts)> {
-        let camera = camera_for(&job.scene);
+    fn quality(&self) -> &Quality {
+        &self.job.scene.quality
+    }
+
+    fn frame<T: Tally>(&self, watch: &dyn Watch) -> Option<(Film, Counts)> {
+        let (film, quality) = (&self.job.scene.film, self.quality());
         let settings = FrameSettings {
-            width: job.scene.film.width,
-            height: job.scene.film.height,
-            samples_per_pixel: self.quality.samples_per_pixel,
-            threads: job.threads,
-            seed: job.seed,
+            width: film.width,
+            height: film.height,
+            samples_per_pixel: quality.samples_per_pixel,
+            sampler: quality.sampler,
+            lens: false,
+            motion: false,
+            threads: self.job.threads,
+            seed: self.job.seed,
         };
-        frame::render::<T>(&settings, watch, |x, y, _, tally| {
-            tally.note(Event::Primary);
-            self.radiance(&camera.ray(x, y), tally, &mut |_, _| {})
-        })
+        let radiance = |sample: &CameraSample, desk: &mut Desk<T>| {
+            desk.note(Event::Primary);
+            let (ray, weight) = self.eye.ray(sample);
+            WeightedColor { color: self.radiance(&ray, sample.points, desk, &mut |_, _| {}), weight }
+        };
+        let settings = settings.obey(&self.plan.effects);
+        frame::render(&settings, watch, radiance, |samples| self.eye.develop(samples))
     }
 
     /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
@@ -107,104 +145,164 @@ impl<'a> Tracer<'a> {
     fn radiance<T: Tally>(
         &self,
         ray: &Ray,
-        tally: &mut T,
+        points: Points,
+        desk: &mut Desk<T>,
         record: &mut impl FnMut(TracedRay, Option<usize>),
     ) -> Vec3 {
-        let limits =
-            Limits { max_depth: self.quality.max_depth, min_contribution: self.quality.min_contribution };
+        let (kind, parent) = (RayKind::Primary, None);
         let mut color = Vec3::ZERO;
-        let mut waiting = Vec::new();
-        let mut next =
-            Some(Path { ray: *ray, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None });
+        let mut next = Some(Path { ray: *ray, points, weight: Vec3::ONE, depth: 0, kind, parent });
         let mut n_rays = 0;
         while let Some(path) = next {
             let this = n_rays;
             n_rays += 1;
-            let hit = self.closest_hit(&path.ray, tally);
-            let found = hit.map(|hit| (hit.t(), self.surface(&path.ray, &hit)));
-            record(
-                path.told(found.as_ref().map(|found| found.0)),
-                found.as_ref().map(|found| found.1.material),
-            );
-            match found {
-                None => color += path.weight * self.background,
-                Some((_, at)) => {
-                    let material = &self.world.materials[at.material];
-                    let dir = path.ray.dir.normalize();
+            let hit = self.closest_hit(&path.ray, &mut desk.tally);
+            match hit {
+                None => {
+                    record(path.told(None), None);
+                    color += path.weight * self.job.scene.background;
+                }
+                Some(hit) => {
+                    let at = surfaces::surface(&self.world, self.looks, &path.ray, &hit);
+                    record(path.told(Some(hit.t())), Some(at.material));
+                    let material = self.material(&path.ray, &hit, &at, &mut desk.tally);
                     let shadows = &mut |ray: &Ray, blocked: bool| {
                         n_rays += 1;
                         let shadow = Path { ray: *ray, kind: RayKind::Shadow, parent: Some(this), ..path };
                         record(shadow.told(blocked.then_some(0.0)), None);
                     };
-                    color += path.weight * self.shade(&at.surface, -dir, material, tally, shadows);
-                    if self.recursion && self.view == View::Shaded && sends_on(material) {
-                        let normal = at.surface.shading_normal;
-                        let Path { weight, depth, .. } = path;
-                        for child in stage5_recursion::children(
-                            dir,
-                            normal,
-                            at.entering,
-                            material,
-                            weight,
-                            depth,
-                            &limits,
-                        ) {
-                            let (event, kind) = match child.bounce {
-                                Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
-                                Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
-                            };
-                            tally.note(event);
-                            let ray = leave(&at.surface, &child);
-                            let (weight, depth) = (child.weight, depth + 1);
-                            waiting.push(Path { ray, weight, depth, kind, parent: Some(this) });
-                        }
-                    }
+                    color += path.weight * self.shade(&path, &at, &material, desk, shadows);
+                    self.go_on(&path, this, &at, &material, desk);
                 }
             }
-            next = waiting.pop();
+            next = desk.waiting.pop();
         }
         color
     }
 
+    /// What the surface is made of, with its image.
+    fn material<T: Tally>(&self, ray: &Ray, hit: &Hit, at: &Place, tally: &mut T) -> Cow<'_, Material> {
+        let material = &self.world.materials[at.material];
+        let image = match material.texture {
+            Some(texture) if self.plan.effects.materials[at.material].texture => {
+                &self.world.textures[texture]
+            }
+            _ => return Cow::Borrowed(material),
+        };
+        tally.note(Event::TextureRead);
+        let uv = texture_coordinates(&self.world, self.looks.method, ray, hit, at.surface.point);
+        let color = stage7_effects::texture_color(image, uv);
+        let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
+        Cow::Owned(Material { ambient, diffuse, ..material.clone() })
+    }
+
+    /// Adds the rays that go on from a surface to those that wait.
+    fn go_on<T: Tally>(&self, path: &Path, this: usize, at: &Place, material: &Material, desk: &mut Desk<T>) {
+        let takes = &self.plan.effects.materials[at.material];
+        if !(takes.mirror || takes.transmission) || self.plan.view != View::Shaded {
+            return;
+        }
+        let dir = path.ray.dir.normalize();
+        let normal = at.surface.shading_normal;
+        let children = stage5_recursion::children(
+            dir,
+            normal,
+            at.entering,
+            material,
+            path.weight,
+            path.depth,
+            &self.limits,
+        );
+        let parts = if takes.gloss { self.quality().gloss_samples } else { 1 };
+        for child in children {
+            let (event, kind) = match child.bounce {
+                Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
+                Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
+            };
+            for part in 0..parts {
+                desk.note(event);
+                let child = if takes.gloss {
+                    desk.note(Event::RandomNumber);
+                    desk.note(Event::RandomNumber);
+                    blurred(&child, &at.surface, material.roughness, &path.points, part, parts)
+                } else {
+                    child
+                };
+                let ray = Ray { time: path.ray.time, ..leave(&at.surface, &child) };
+                let points = path.points.beyond(child.bounce, part, parts);
+                let (weight, depth) = (child.weight, path.depth + 1);
+                desk.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(this) });
+            }
+        }
+    }
+
     fn shade<T: Tally>(
         &self,
-        surface: &Surface,
-        to_viewer: Vec3,
+        path: &Path,
+        at: &Place,
         material: &Material,
-        tally: &mut T,
+        desk: &mut Desk<T>,
         record: &mut impl FnMut(&Ray, bool),
     ) -> Vec3 {
-        if self.view == View::Normals {
+        let surface = &at.surface;
+        if self.plan.view == View::Normals {
             return 0.5 * surface.shading_normal + 0.5;
         }
-        let lights: Vec<LightSample> =
-            self.world.lights.iter().map(|light| light.sample(surface.point)).collect();
-        stage4_shading::shade(surface, to_viewer, material, self.ambient, &lights, |_, shadow_ray| {
+        self.light_up(path, at, desk);
+        let Desk { tally, lights, shadows, .. } = desk;
+        let to_viewer = -path.ray.dir.normalize();
+        let ambient = self.job.scene.ambient;
+        stage4_shading::shade(surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
+            if !shadows[light] {
+                return true;
+            }
             tally.note(Event::Shadow);
-            let blocked = self.any_hit(shadow_ray, tally);
-            record(shadow_ray, blocked);
+            let ray = Ray { time: path.ray.time, ..*shadow_ray };
+            let blocked = self.any_hit(&ray, tally);
+            record(&ray, blocked);
             !blocked
         })
     }
 
-    fn surface(&self, ray: &Ray, hit: &Hit) -> Place {
-        surfaces::surface(&self.world, self.quality.triangle_method, self.smooth, ray, hit)
+    /// Puts the light that can arrive at a surface on the desk.
+    fn light_up<T: Tally>(&self, path: &Path, at: &Place, desk: &mut Desk<T>) {
+        desk.lights.clear();
+        desk.shadows.clear();
+        let effects = &self.plan.effects;
+        for &index in &effects.materials[at.material].lights {
+            let (light, takes) = (&self.world.lights[index], effects.lights[index]);
+            match outline(light) {
+                Some(shape) if takes.area => {
+                    for part in 0..takes.samples {
+                        desk.note(Event::RandomNumber);
+                        desk.note(Event::RandomNumber);
+                        let points = &path.points;
+                        let sample = from_area(light, shape, &at.surface, points, index, part, takes.samples);
+                        desk.lights.push(sample);
+                    }
+                }
+                _ if takes.samples > 0 => desk.lights.push(light.from_its_middle(at.surface.point)),
+                _ => {}
+            }
+            desk.shadows.resize(desk.lights.len(), takes.shadows);
+        }
     }
 
     fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
         let mut ray = *ray;
         let mut closest = None;
-        for (index, (plane, _)) in self.world.planes.iter().enumerate() {
+        for (index, plane) in self.world.planes.iter().enumerate() {
             tally.note(Event::PrimitiveTest);
+            let plane = plane_at(plane, ray.time).0;
             if let Some(t) = stage1_shapes::plane(&ray, plane.point, plane.normal) {
                 closest = Some(Hit::Plane { t, index });
-                if self.search != Search::Painter {
+                if self.plan.search != Search::Painter {
                     ray.t_max = t;
                 }
             }
         }
         let mut probe = SceneProbe::new(self, &ray, tally);
-        let hit = match (&self.bvh, self.search) {
+        let hit = match (&self.bvh, self.plan.search) {
             (Some(bvh), _) => stage3_bvh::closest_hit(bvh, &mut probe, &ray),
             (None, Search::Painter) => probe.last_hit(&ray),
             (None, _) => stage2_triangles::brute_force(self.world.primitives.len() as u32, &mut probe, &ray),
@@ -213,8 +311,9 @@ impl<'a> Tracer<'a> {
     }
 
     fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        let in_plane = self.world.planes.iter().any(|(plane, _)| {
+        let in_plane = self.world.planes.iter().any(|plane| {
             tally.note(Event::PrimitiveTest);
+            let plane = plane_at(plane, ray.time).0;
             stage1_shapes::plane(ray, plane.point, plane.normal).is_some()
         });
         let mut probe = SceneProbe::new(self, ray, tally);
@@ -230,6 +329,7 @@ impl<'a> Tracer<'a> {
 #[derive(Clone, Copy)]
 struct Path {
     ray: Ray,
+    points: Points,
     weight: Vec3,
     depth: u32,
     kind: RayKind,
@@ -238,7 +338,7 @@ struct Path {
 
 impl Path {
     fn told(&self, t: Option<f32>) -> TracedRay {
-        let Path { ray, weight, depth, kind, parent } = *self;
+        let Path { ray, weight, depth, kind, parent, .. } = *self;
         let hit = t.map(|t| (t, String::new()));
         TracedRay { kind, parent, depth, weight, origin: ray.origin, dir: ray.dir, hit }
     }
@@ -282,18 +382,25 @@ impl<T: Tally> Probe for SceneProbe<'_, T> {
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::PrimitiveTest);
-        match &self.tracer.world.primitives[primitive as usize].geometry {
+        let world = &self.tracer.world;
+        match geometry_at(world, &world.primitives[primitive as usize], ray.time) {
             Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
             Geometry::Triangle(triangle) => {
-                meet_triangle(self.tracer.quality.triangle_method, ray, triangle).map(|(t, ..)| t)
+                meet_triangle(self.tracer.looks.method, ray, &triangle).map(|(t, ..)| t)
             }
         }
     }
 }
 
-fn bounds_of(primitive: &Primitive) -> Aabb {
-    match &primitive.geometry {
+/// The box around all places where the primitive is.
+fn bounds_of(world: &World, primitive: &Primitive) -> Aabb {
+    let bounds = |geometry: &Geometry| match geometry {
         Geometry::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
         Geometry::Triangle(triangle) => stage3_bvh::triangle_bounds(triangle),
+    };
+    let start = bounds(&primitive.geometry);
+    match primitive.end.get() {
+        None => start,
+        Some(end) => stage6_distribution::sweep(&start, &bounds(&world.ends[end])),
     }
 }

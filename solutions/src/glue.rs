@@ -1,15 +1,20 @@
 //! Nothing to do here: this connects the functions of the stage files with the door through which the kit calls them.
 
-use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, tracer};
-use glam::Vec3;
+use crate::{
+    stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
+    stage7_effects, tracer,
+};
+use glam::{Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
+use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::frame::Watch;
 use raykata::kit::*;
 use raykata::mesh::Mesh;
+use raykata::random::Stratum;
 use raykata::ray::Ray;
-use raykata::scene::Split;
-use raykata::shape::{Sphere, Triangle};
+use raykata::scene::{Sampler, Scene, Split};
+use raykata::shape::{Disk, Sphere, Triangle};
 
 /// The code in this folder, as the kit sees it.
 pub struct Kit;
@@ -192,6 +197,78 @@ impl Recursion for Kit {
         each(queries, |q| {
             stage5_recursion::children(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
         })
+    }
+}
+
+impl Distribution for Kit {
+    fn jittered(&self, queries: &[Stratum]) -> Vec<Vec2> {
+        each(queries, stage6_distribution::jittered)
+    }
+    fn pixel_position(&self, queries: &[(Sampler, Stratum)]) -> Vec<Vec2> {
+        each(queries, |(sampler, stratum)| stage6_distribution::pixel_position(*sampler, stratum))
+    }
+    fn gaussian_weight(&self, queries: &[Vec2]) -> Vec<f32> {
+        each(queries, |offset| stage6_distribution::gaussian_weight(*offset))
+    }
+    fn develop(&self, queries: &[Vec<WeightedColor>]) -> Vec<Vec3> {
+        each(queries, |samples| stage6_distribution::develop(samples))
+    }
+    fn on_disk(&self, queries: &[Vec2]) -> Vec<Vec2> {
+        each(queries, |u| stage6_distribution::on_disk(*u))
+    }
+    fn lens_ray(&self, queries: &[LensQuery]) -> Vec<Ray> {
+        each(queries, |q| stage6_distribution::lens_ray(&q.camera, &q.pinhole, &q.lens, q.on_lens))
+    }
+    fn on_rectangle(&self, queries: &[RectangleQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage6_distribution::on_rectangle(q.corner, q.edges, q.u))
+    }
+    fn on_lamp_disk(&self, queries: &[(Disk, Vec2)]) -> Vec<Vec3> {
+        each(queries, |(disk, u)| stage6_distribution::on_lamp_disk(disk, *u))
+    }
+    fn toward_ball(&self, queries: &[BallQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage6_distribution::toward_ball(&q.ball, q.from, q.u))
+    }
+    fn gloss(&self, queries: &[GlossQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage6_distribution::gloss(q.ideal, q.normal, q.roughness, q.u))
+    }
+    fn temporal_slot(&self, queries: &[(u32, u32)]) -> Vec<u32> {
+        each(queries, |(x, y)| stage6_distribution::temporal_slot(*x, *y))
+    }
+    fn time_in_shutter(&self, queries: &[TimeQuery]) -> Vec<f32> {
+        each(queries, |q| stage6_distribution::time_in_shutter(&q.shutter, q.slot, q.slots, q.u))
+    }
+    fn between(&self, queries: &[(Vec3, Vec3, f32)]) -> Vec<Vec3> {
+        each(queries, |(start, end, time)| stage6_distribution::between(*start, *end, *time))
+    }
+    fn sweep(&self, queries: &[(Aabb, Aabb)]) -> Vec<Aabb> {
+        each(queries, |(start, end)| stage6_distribution::sweep(start, end))
+    }
+}
+
+impl Economy for Kit {
+    fn light_effects(&self, queries: &[LightQuery]) -> Vec<LightEffects> {
+        each(queries, |q| stage7_effects::light_effects(&q.light, &q.quality))
+    }
+    fn material_effects(&self, queries: &[MaterialQuery]) -> Vec<MaterialEffects> {
+        each(queries, |q| stage7_effects::material_effects(&q.material, &q.lights, &q.quality))
+    }
+    fn effects(&self, queries: &[Scene]) -> Vec<Effects> {
+        each(queries, stage7_effects::effects)
+    }
+    fn most_rays(&self, queries: &[BoundQuery]) -> Vec<RayCounts> {
+        each(queries, |q| stage7_effects::most_rays(&q.scene, &q.effects))
+    }
+    fn rays_of_hits(&self, queries: &[HitsQuery]) -> Vec<RayCounts> {
+        each(queries, |q| stage7_effects::rays_of_hits(&q.hits, &q.effects, &q.quality))
+    }
+    fn samples_for_error(&self, queries: &[(f32, f32)]) -> Vec<u32> {
+        each(queries, |(deviation, error)| stage7_effects::samples_for_error(*deviation, *error))
+    }
+    fn texel(&self, queries: &[TexelQuery]) -> Vec<u32> {
+        each(queries, |q| stage7_effects::texel(q.index, q.size, q.wrap))
+    }
+    fn texture_color(&self, queries: &[TextureQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage7_effects::texture_color(&q.texture, q.uv))
     }
 }
 

@@ -1,14 +1,15 @@
 //! Nothing to do here: from the `t` of a hit to the point that is shaded, with a bound on its rounding error.
 
+use crate::camera_rays::{geometry_at, plane_at};
 use crate::{stage1_shapes, stage2_triangles, stage4_shading};
-use glam::Vec3;
+use glam::{Vec2, Vec3, vec2};
 use raykata::bvh::PrimitiveHit;
 use raykata::kit::{Bounce, Child, LightSample, Surface};
-use raykata::material::Material;
 use raykata::ray::Ray;
 use raykata::scene::TriangleMethod;
-use raykata::shape::{Plane, Triangle};
+use raykata::shape::{Plane, Sphere, Triangle};
 use raykata::world::{Geometry, Primitive, World};
+use std::f32::consts::{PI, TAU};
 
 /// What a ray has hit.
 #[derive(Clone, Copy)]
@@ -35,61 +36,115 @@ pub struct Place {
     pub material: usize,
 }
 
+/// A point of a shape, before it is known from which side it is seen.
+struct Found {
+    point: Vec3,
+    /// How far `point` may be from the shape.
+    error: Vec3,
+    /// Unit normal, outwards.
+    normal: Vec3,
+    /// The interpolated one.
+    smooth: Option<Vec3>,
+}
+
+/// How surfaces are looked at.
+#[derive(Clone, Copy)]
+pub struct Looks {
+    pub method: TriangleMethod,
+    /// Whether normals are interpolated over smooth meshes.
+    pub smooth: bool,
+}
+
 /// The point that was hit, with a bound on its error, its normals, and what is there.
-pub fn surface(world: &World, method: TriangleMethod, smooth: bool, ray: &Ray, hit: &Hit) -> Place {
-    let (point, error, geometric, interpolated, material) = match *hit {
+pub fn surface(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Place {
+    let (found, material) = match *hit {
         Hit::Plane { t, index } => {
-            let (plane, material) = &world.planes[index];
-            let (point, error) = point_on_plane(ray, t, plane);
-            (point, error, plane.normal, None, *material)
+            let plane = &world.planes[index];
+            (point_on_plane(ray, t, &plane_at(plane, ray.time).0), plane.material)
         }
         Hit::Primitive(hit) => {
             let primitive = &world.primitives[hit.primitive as usize];
-            let (point, error, geometric, interpolated) = on_primitive(world, method, ray, hit.t, primitive);
-            (point, error, geometric, interpolated, primitive.material)
+            let found = match geometry_at(world, primitive, ray.time) {
+                Geometry::Sphere(sphere) => point_on_sphere(ray, hit.t, &sphere),
+                Geometry::Triangle(triangle) => point_on_triangle(world, looks, ray, primitive, &triangle),
+            };
+            (found, primitive.material)
         }
     };
-    let geometric_normal = stage1_shapes::face_viewer(geometric, ray.dir);
-    let shading_normal = if smooth && interpolated.is_some() {
-        stage4_shading::shading_normal(geometric_normal, interpolated, ray.dir)
-    } else {
-        geometric_normal
+    let Found { point, error, normal, smooth } = found;
+    let geometric_normal = stage1_shapes::face_viewer(normal, ray.dir);
+    let shading_normal = match smooth {
+        Some(_) => stage4_shading::shading_normal(geometric_normal, smooth, ray.dir),
+        None => geometric_normal,
     };
     let surface = Surface { point, error, geometric_normal, shading_normal };
-    Place { surface, entering: geometric.dot(ray.dir) < 0.0, material: material as usize }
+    Place { surface, entering: normal.dot(ray.dir) < 0.0, material: material as usize }
 }
 
-fn on_primitive(
+fn point_on_sphere(ray: &Ray, t: f32, sphere: &Sphere) -> Found {
+    // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
+    let normal = stage1_shapes::sphere_normal(sphere.center, ray.at(t));
+    let point = sphere.center + sphere.radius * normal;
+    let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
+    Found { point, error, normal, smooth: None }
+}
+
+fn point_on_triangle(
     world: &World,
-    method: TriangleMethod,
+    looks: Looks,
     ray: &Ray,
-    t: f32,
     primitive: &Primitive,
-) -> (Vec3, Vec3, Vec3, Option<Vec3>) {
-    match primitive.geometry {
-        Geometry::Sphere(sphere) => {
-            // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
-            let normal = stage1_shapes::sphere_normal(sphere.center, ray.at(t));
-            let point = sphere.center + sphere.radius * normal;
-            let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
-            (point, error, normal, None)
+    triangle: &Triangle,
+) -> Found {
+    let weights = barycentric(looks.method, ray, triangle);
+    let Triangle { a, b, c } = *triangle;
+    // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far the ray came
+    // from.
+    let terms = [weights.x * a, weights.y * b, weights.z * c];
+    let point = terms[0] + terms[1] + terms[2];
+    let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+    let normal = (b - a).cross(c - a).normalize_or(Vec3::Z);
+    let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
+        let at = |index: usize| stage2_triangles::interpolate(weights, world.normals[index]);
+        match primitive.end.get() {
+            None => at(index),
+            Some(_) => at(index).lerp(at(index + 1), ray.time),
         }
-        Geometry::Triangle(triangle) => {
-            let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-            let (beta, gamma) = meet_triangle(method, &unbounded, &triangle)
-                .map_or((1.0 / 3.0, 1.0 / 3.0), |(_, beta, gamma)| (beta, gamma));
-            let weights = Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma);
-            let Triangle { a, b, c } = triangle;
-            // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far
-            // the ray came from.
-            let terms = [weights.x * a, weights.y * b, weights.z * c];
-            let point = terms[0] + terms[1] + terms[2];
-            let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
-            let flat = (b - a).cross(c - a).normalize_or(Vec3::Z);
-            let smooth = primitive
-                .normals
-                .map(|normals| stage2_triangles::interpolate(weights, world.normals[normals as usize]));
-            (point, error, flat, smooth)
+    });
+    Found { point, error, normal, smooth }
+}
+
+/// `(α, β, γ)` of the point in which the ray meets the plane of the triangle, none below 0.
+fn barycentric(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> Vec3 {
+    let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+    let (beta, gamma) = meet_triangle(method, &unbounded, triangle)
+        .map_or((1.0 / 3.0, 1.0 / 3.0), |(_, beta, gamma)| (beta, gamma));
+    Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma)
+}
+
+/// The texture coordinates of a hit; the middle of the image where the shape has none.
+pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit: &Hit, at: Vec3) -> Vec2 {
+    let middle = vec2(0.5, 0.5);
+    match *hit {
+        Hit::Plane { index, .. } => {
+            let (plane, axes) = plane_at(&world.planes[index], ray.time);
+            let along = |axis: Vec3| (at - plane.point).dot(axis) / axis.length_squared();
+            vec2(along(axes[0]), along(axes[1]))
+        }
+        Hit::Primitive(hit) => {
+            let primitive = &world.primitives[hit.primitive as usize];
+            let Some(image) = primitive.image.get() else { return middle };
+            match geometry_at(world, primitive, ray.time) {
+                Geometry::Sphere(sphere) => {
+                    let own = (world.ball_axes[image] * (at - sphere.center)).normalize_or(Vec3::Y);
+                    vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
+                }
+                Geometry::Triangle(triangle) => {
+                    let [a, b, c] = world.uvs[image];
+                    let weights = barycentric(method, ray, &triangle);
+                    weights.x * a + weights.y * b + weights.z * c
+                }
+            }
         }
     }
 }
@@ -106,11 +161,6 @@ pub fn meet_triangle(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> 
     hit.map(|hit| (hit.t, hit.beta, hit.gamma))
 }
 
-/// Whether a surface can send rays on at all: most cannot, and need not be asked.
-pub fn sends_on(material: &Material) -> bool {
-    material.mirror != Vec3::ZERO || material.transmission != Vec3::ZERO
-}
-
 /// A ray that goes on, starting as far from the surface as a shadow ray does.
 pub fn leave(surface: &Surface, child: &Child) -> Ray {
     let side = match child.bounce {
@@ -124,12 +174,13 @@ pub fn leave(surface: &Surface, child: &Child) -> Ray {
 }
 
 /// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.
-fn point_on_plane(ray: &Ray, t: f32, plane: &Plane) -> (Vec3, Vec3) {
+fn point_on_plane(ray: &Ray, t: f32, plane: &Plane) -> Found {
     let rough = ray.at(t);
     let normal = plane.normal.normalize();
     let offset = rough - plane.point;
     let point = rough - offset.dot(normal) * normal;
-    (point, rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element())))
+    let error = rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element()));
+    Found { point, error, normal: plane.normal, smooth: None }
 }
 
 /// `γ_n`, the largest relative error that `n` roundings can add up to (Higham).

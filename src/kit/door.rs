@@ -3,10 +3,14 @@
 use super::*;
 use crate::aabb::Aabb;
 use crate::bvh::Bvh;
+use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
 use crate::mesh::Mesh;
-use crate::shape::{Sphere, Triangle};
-use glam::Vec3;
+use crate::random::Stratum;
+use crate::ray::Ray;
+use crate::scene::{Sampler, Scene};
+use crate::shape::{Disk, Sphere, Triangle};
+use glam::{Vec2, Vec3};
 
 /// Carries a request to where the student's code lives and brings the answer back.
 ///
@@ -21,8 +25,14 @@ pub trait Transport: Sync {
 pub struct Door<T>(pub T);
 
 /// Everything that students write.
-pub trait Kit: Shapes + Triangles + Hierarchies + Shading + Recursion + Frames + Sync {}
-impl<T: Shapes + Triangles + Hierarchies + Shading + Recursion + Frames + Sync> Kit for T {}
+pub trait Kit:
+    Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Frames + Sync
+{
+}
+impl<T> Kit for T where
+    T: Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Frames + Sync
+{
+}
 
 /// Whole frames, rendered where the student's code lives, so that no ray crosses a process boundary.
 pub trait Frames {
@@ -45,11 +55,10 @@ macro_rules! door {
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Request {
             $($($(#[$doc])* $Message(Vec<$query>),)*)*
-                        /// A whole frame.
+            /// A whole frame.
             Render(Box<RenderJob>),
             /// The rays behind a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
-
         }
 
         /// An answer as a message.
@@ -57,10 +66,9 @@ macro_rules! door {
         pub enum Answer {
             $($($(#[$doc])* $Message(Vec<$answer>),)*)*
             /// A whole frame; `None` when it was cancelled.
-                        Render(Option<Box<Rendering>>),
+            Render(Option<Box<Rendering>>),
             /// The rays behind a pixel.
             Trace(Vec<TracedRay>),
-
         }
 
         impl Request {
@@ -70,7 +78,6 @@ macro_rules! door {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
                     Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
-
                 }
             }
         }
@@ -178,7 +185,7 @@ door! {
         /// The highlight.
         SpecularTerm fn specular_term(TermQuery) -> f32;
         /// The ray that asks whether a light is visible, if the light can matter.
-        ShadowRay fn shadow_ray(ShadowQuery) -> Option<crate::ray::Ray>;
+        ShadowRay fn shadow_ray(ShadowQuery) -> Option<Ray>;
         /// The normal to shade with: `(geometric, interpolated, ray direction)`.
         ShadingNormal fn shading_normal((Vec3, Option<Vec3>, Vec3)) -> Vec3;
         /// The colour of a point.
@@ -201,5 +208,57 @@ door! {
         FresnelExact fn fresnel_exact(FresnelQuery) -> f32;
         /// The rays that go on from a surface.
         Children fn children(ChildrenQuery) -> Vec<Child>;
+    }
+
+    /// Stage 6: distributed ray tracing.
+    trait Distribution {
+        /// Where in its cell a sample lies.
+        Jittered fn jittered(Stratum) -> Vec2;
+        /// Where in or around its pixel a sample lies.
+        PixelPosition fn pixel_position((Sampler, Stratum)) -> Vec2;
+        /// The weight of a sample at this distance from the centre of its pixel.
+        GaussianWeight fn gaussian_weight(Vec2) -> f32;
+        /// The colour of a pixel from its samples.
+        Develop fn develop(Vec<WeightedColor>) -> Vec3;
+        /// A place on a disk of radius 1.
+        OnDisk fn on_disk(Vec2) -> Vec2;
+        /// The ray from a place on the lens.
+        LensRay fn lens_ray(LensQuery) -> Ray;
+        /// A point of a rectangular lamp.
+        OnRectangle fn on_rectangle(RectangleQuery) -> Vec3;
+        /// A point of a round flat lamp.
+        OnLampDisk fn on_lamp_disk((Disk, Vec2)) -> Vec3;
+        /// A direction to a ball.
+        TowardBall fn toward_ball(BallQuery) -> Vec3;
+        /// A direction off or through a rough surface.
+        Gloss fn gloss(GlossQuery) -> Vec3;
+        /// The slot in time of the cell in column x and row y.
+        TemporalSlot fn temporal_slot((u32, u32)) -> u32;
+        /// A moment while the shutter is open.
+        TimeInShutter fn time_in_shutter(TimeQuery) -> f32;
+        /// Where a point is that moves from the first to the second in time 0 to 1.
+        Between fn between((Vec3, Vec3, f32)) -> Vec3;
+        /// The box around all that moves from the first box to the second.
+        Sweep fn sweep((Aabb, Aabb)) -> Aabb;
+    }
+
+    /// Stage 7: only what the scene calls for.
+    trait Economy {
+        /// What a light takes.
+        LightEffects fn light_effects(LightQuery) -> LightEffects;
+        /// What a material takes.
+        MaterialEffects fn material_effects(MaterialQuery) -> MaterialEffects;
+        /// What a scene takes.
+        Effects fn effects(Scene) -> Effects;
+        /// The most rays that a scene can take.
+        MostRays fn most_rays(BoundQuery) -> RayCounts;
+        /// The rays that hits send on.
+        RaysOfHits fn rays_of_hits(HitsQuery) -> RayCounts;
+        /// How many samples it takes for an error: `(standard deviation of one, error of the mean)`.
+        SamplesForError fn samples_for_error((f32, f32)) -> u32;
+        /// The column or row of an image that stands for this one.
+        Texel fn texel(TexelQuery) -> u32;
+        /// The colour of an image.
+        TextureColor fn texture_color(TextureQuery) -> Vec3;
     }
 }

@@ -4,7 +4,9 @@
 //! the same process or sits in a worker at the other end of a pipe. Every call takes a batch, so that a check with
 //! thousands of cases crosses the pipe once.
 
+mod distribution;
 pub mod door;
+mod economy;
 pub mod mishap;
 mod recursion;
 mod shading;
@@ -13,8 +15,15 @@ mod table;
 mod traced;
 mod triangles;
 
+pub use distribution::{
+    BallQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
+};
 pub use door::{
-    Answer, Door, Frames, Hierarchies, Kit, Recursion, Request, Shading, Shapes, Transport, Triangles,
+    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Recursion, Request, Shading, Shapes,
+    Transport, Triangles,
+};
+pub use economy::{
+    BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
 pub use mishap::Mishap;
 pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};

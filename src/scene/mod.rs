@@ -4,12 +4,15 @@ pub mod error;
 pub mod load;
 pub mod obj;
 pub mod ply;
+mod shown;
+
+pub use shown::Shown;
 
 use crate::camera::Camera;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::shape::Shape;
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -97,9 +100,20 @@ pub enum Sampler {
     Jittered,
     /// Around the centre, weighted by a Gaussian.
     Gaussian,
-    /// Spread as evenly as can be.
+    /// Spread as evenly as can be; a single one in the centre.
     #[default]
     LowDiscrepancy,
+}
+
+impl Sampler {
+    /// Whether `samples` samples of a pixel lie anywhere else than in its centre.
+    pub fn spreads(self, samples: u32) -> bool {
+        match self {
+            Sampler::Center => false,
+            Sampler::LowDiscrepancy => samples > 1,
+            Sampler::Random | Sampler::Jittered | Sampler::Gaussian => true,
+        }
+    }
 }
 
 /// How many digits ray/shape tests work with (stage 10).
@@ -120,7 +134,7 @@ pub struct Quality {
     pub samples_per_pixel: u32,
     /// Where they lie (stage 6).
     pub sampler: Sampler,
-    /// Samples of an area light a hit, at least 1 (stage 6).
+    /// Samples of an area light a hit (stage 6); with 0 it shines from its middle.
     pub light_samples: u32,
     /// Rays of a rough mirror a hit, at least 1 (stage 6).
     pub gloss_samples: u32,
@@ -187,6 +201,48 @@ pub struct Node {
     pub material: Option<usize>,
     /// Indices of nodes below.
     pub children: Vec<usize>,
+}
+
+impl Scene {
+    /// A scene with nothing in it, seen by `camera`: 1 by 1 pixel, black, one default material.
+    pub fn empty(camera: Camera) -> Scene {
+        Scene {
+            film: FilmSettings { width: 1, height: 1, encoding: Encoding::default() },
+            camera,
+            background: Vec3::ZERO,
+            ambient: Vec3::ZERO,
+            indirect_light: false,
+            lights: Vec::new(),
+            materials: vec![Material::default()],
+            material_names: vec!["default".into()],
+            textures: Vec::new(),
+            meshes: Vec::new(),
+            nodes: Vec::new(),
+            roots: Vec::new(),
+            quality: Quality::default(),
+        }
+    }
+}
+
+impl Node {
+    /// From the space of this node to that of its parent at `time`, the matrices blended entry by entry.
+    pub fn transform_at(&self, time: f32) -> Affine3A {
+        self.transform_end.map_or(self.transform, |end| blend(&self.transform, &end, time))
+    }
+}
+
+/// `start` at time 0, `end` at time 1, entry by entry.
+pub fn blend(start: &Affine3A, end: &Affine3A, time: f32) -> Affine3A {
+    let column = |start: Vec3A, end: Vec3A| (1.0 - time) * start + time * end;
+    let (s, e) = (&start.matrix3, &end.matrix3);
+    Affine3A {
+        matrix3: Mat3A::from_cols(
+            column(s.x_axis, e.x_axis),
+            column(s.y_axis, e.y_axis),
+            column(s.z_axis, e.z_axis),
+        ),
+        translation: column(start.translation, end.translation),
+    }
 }
 
 /// A scene, ready to be rendered.

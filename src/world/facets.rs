@@ -2,20 +2,26 @@
 //! look round, too.
 
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Sphere};
-use glam::Vec3;
+use glam::{Vec2, Vec3, vec2};
 use std::f32::consts::TAU;
 
 /// Corners on a full circle: an error of 0.03 % of the radius.
 const AROUND: usize = 128;
 
-/// A triangle and, on a curved surface, the normals at its corners.
+/// A triangle with the normals at its corners, on a curved surface, and with the texture coordinates there, if it has
+/// any.
 pub(super) struct Facet {
     pub corners: [Vec3; 3],
     pub normals: Option<[Vec3; 3]>,
+    pub uvs: Option<[Vec2; 3]>,
 }
 
 fn flat(a: Vec3, b: Vec3, c: Vec3) -> Facet {
-    Facet { corners: [a, b, c], normals: None }
+    Facet { corners: [a, b, c], normals: None, uvs: None }
+}
+
+fn curved(corners: [Vec3; 3], normals: [Vec3; 3]) -> Facet {
+    Facet { corners, normals: Some(normals), uvs: None }
 }
 
 /// A fan around the first corner.
@@ -30,8 +36,14 @@ pub(super) fn cuboid(cuboid: &Cuboid) -> Vec<Facet> {
             |bit: usize, axis: usize| if i >> bit & 1 == 1 { cuboid.max[axis] } else { cuboid.min[axis] };
         Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
     };
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    faces.iter().flat_map(|face| polygon(&face.map(corner))).collect()
+    // Each begins with the lower left corner of its image.
+    let faces = [[1, 0, 2, 3], [4, 5, 7, 6], [0, 1, 5, 4], [6, 7, 3, 2], [0, 4, 6, 2], [5, 1, 3, 7]];
+    let image = [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0)];
+    let half = |face: [usize; 4], [i, j, k]: [usize; 3]| Facet {
+        uvs: Some([image[i], image[j], image[k]]),
+        ..flat(corner(face[i]), corner(face[j]), corner(face[k]))
+    };
+    faces.iter().flat_map(|&face| [half(face, [0, 1, 2]), half(face, [0, 2, 3])]).collect()
 }
 
 /// Unit vectors around `axis`, starting and ending with the same one.
@@ -62,8 +74,8 @@ pub(super) fn cylinder(cylinder: &Cylinder) -> Vec<Facet> {
         let [n0, n1] = [side[0], side[1]];
         let [low0, low1] = [n0, n1].map(|n| cylinder.base + cylinder.radius * n);
         let [high0, high1] = [n0, n1].map(|n| cylinder.top + cylinder.radius * n);
-        facets.push(Facet { corners: [low0, low1, high1], normals: Some([n0, n1, n1]) });
-        facets.push(Facet { corners: [low0, high1, high0], normals: Some([n0, n1, n0]) });
+        facets.push(curved([low0, low1, high1], [n0, n1, n1]));
+        facets.push(curved([low0, high1, high0], [n0, n1, n0]));
     }
     facets
 }
@@ -77,7 +89,7 @@ pub(super) fn cone(cone: &Cone) -> Vec<Facet> {
         let normal = |out: Vec3| (height * out + cone.radius * axis / height).normalize();
         let corners = [cone.base + cone.radius * side[0], cone.base + cone.radius * side[1], cone.apex];
         let normals = [normal(side[0]), normal(side[1]), normal(0.5 * (side[0] + side[1]))];
-        facets.push(Facet { corners, normals: Some(normals) });
+        facets.push(curved(corners, normals));
     }
     facets
 }
@@ -89,22 +101,28 @@ pub(super) fn sphere(sphere: &Sphere) -> Vec<Facet> {
             let (sin, cos) = (TAU / 2.0 * ring as f32 / rings as f32).sin_cos();
             // The poles are one point each, so that no crack opens there.
             let sin = if ring % rings == 0 { 0.0 } else { sin };
-            circle(Vec3::Z).iter().map(|around| sin * *around + cos * Vec3::Z).collect()
+            // From -z by -x, +z and +x: as an image wraps around, seen from outside.
+            let meridian = |i: usize| {
+                let (sin, cos) = (TAU * (i % AROUND) as f32 / AROUND as f32).sin_cos();
+                Vec3::new(-sin, 0.0, -cos)
+            };
+            (0..=AROUND).map(|i| sin * meridian(i) + cos * Vec3::Y).collect()
         })
         .collect();
-    let facet = |normals: [Vec3; 3]| Facet {
-        corners: normals.map(|n| sphere.center + sphere.radius * n),
-        normals: Some(normals),
+    let facet = |places: [(usize, usize); 3]| {
+        let normals = places.map(|(ring, i)| directions[ring][i]);
+        let uv = |(ring, i): (usize, usize)| vec2(i as f32 / AROUND as f32, 1.0 - ring as f32 / rings as f32);
+        let corners = normals.map(|n| sphere.center + sphere.radius * n);
+        Facet { uvs: Some(places.map(uv)), ..curved(corners, normals) }
     };
     let mut facets = Vec::new();
     for ring in 0..rings {
-        let (upper, lower) = (&directions[ring], &directions[ring + 1]);
         for i in 0..AROUND {
             if ring > 0 {
-                facets.push(facet([upper[i], lower[i], upper[i + 1]]));
+                facets.push(facet([(ring, i), (ring + 1, i), (ring, i + 1)]));
             }
             if ring + 1 < rings {
-                facets.push(facet([upper[i + 1], lower[i], lower[i + 1]]));
+                facets.push(facet([(ring, i + 1), (ring + 1, i), (ring + 1, i + 1)]));
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::material::{AreaShape, Emitter, Falloff, Light};
 use crate::scene::error::LoadError;
 use glam::Vec3;
 
-const KEYS: [&str; 5] = ["point", "directional", "area", "color", "intensity"];
+const KEYS: [&str; 6] = ["point", "directional", "area", "color", "intensity", "shadows"];
 
 pub(super) fn lights(value: Option<Value>) -> Result<Vec<Light>, LoadError> {
     let Some(value) = value else { return Ok(Vec::new()) };
@@ -27,6 +27,7 @@ fn light(value: Value) -> Result<Light, LoadError> {
         },
         color: table.get("color").map_or(Ok(Vec3::ONE), |color| color.color())?,
         intensity: table.get("intensity").map_or(Ok(1.0), |intensity| intensity.not_negative())?,
+        shadows: table.get("shadows").map_or(Ok(true), |shadows| shadows.truth())?,
     })
 }
 

@@ -129,7 +129,7 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
     for value in value.table(&QUALITY_KEYS)?.values() {
         match value.key {
             "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
-            "light_samples" => quality.light_samples = value.whole(1..=MAX_SAMPLES)?,
+            "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
             "gloss_samples" => quality.gloss_samples = value.whole(1..=MAX_SAMPLES)?,
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,

@@ -1,0 +1,246 @@
+//! Random numbers by address: which pixel, which sample, which path, and what for.
+//!
+//! Numbers are not taken from a sequence, one after the other, but looked up. So switching an effect on or off moves
+//! no number of any other effect, and neither threads nor neighbours have a say.
+
+use crate::kit::Bounce;
+use crate::scene::Sampler;
+use glam::{UVec2, Vec2, uvec2};
+use serde::{Deserialize, Serialize};
+
+/// What a pair of numbers decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// The place in the pixel.
+    Pixel,
+    /// The place on the lens.
+    Lens,
+    /// The moment while the shutter is open.
+    Time,
+    /// The place on the lamp with this index.
+    Light(u32),
+    /// The way off or through a rough surface.
+    Gloss(Bounce),
+}
+
+/// One of several samples of a unit square, each in a cell of its own: somewhere in cell `cell` of `grid.x` columns and
+/// `grid.y` rows. Samples that are not kept apart have one cell for all.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stratum {
+    /// Column and row of the cell.
+    pub cell: UVec2,
+    /// Columns and rows.
+    pub grid: UVec2,
+    /// Two random numbers in `0.0..1.0`.
+    pub u: Vec2,
+}
+
+/// Where to look up the numbers of one path.
+#[derive(Clone, Copy, Debug)]
+pub struct Points {
+    sampler: Sampler,
+    /// Stands for the seed, the pixel, and the bounces behind; not for the sample, so that the samples of a pixel share
+    /// what they have in common and can be spread evenly.
+    key: u64,
+    /// Number of this path among `count` of the same key.
+    index: u32,
+    count: u32,
+}
+
+impl Points {
+    /// The numbers of sample `sample` of `samples` of pixel number `pixel`.
+    pub fn new(sampler: Sampler, seed: u64, pixel: u64, sample: u32, samples: u32) -> Points {
+        Points { sampler, key: mix(seed ^ mix(pixel)), index: sample, count: samples }
+    }
+
+    /// The numbers of the path that goes on from here as ray `part` of `parts` of the same kind.
+    pub fn beyond(&self, bounce: Bounce, part: u32, parts: u32) -> Points {
+        let key = mix(self.key ^ mix(1 + bounce as u64));
+        Points { key, index: self.nth(part, parts), count: self.count.saturating_mul(parts), ..*self }
+    }
+
+    /// Draw `part` of `parts` for `purpose`. Among all samples of the pixel, the draws for one purpose are spread as the
+    /// sampler says.
+    pub fn stratum(&self, purpose: Purpose, part: u32, parts: u32) -> Stratum {
+        let index = self.nth(part, parts);
+        let key = || self.key ^ mix(address(purpose));
+        let alone = |u| Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u };
+        match self.sampler {
+            Sampler::Center | Sampler::Random => alone(random_pair(key(), index)),
+            Sampler::Jittered | Sampler::Gaussian => {
+                let grid = grid_of(self.count.saturating_mul(parts));
+                let (cells, key) = (grid.x * grid.y, key());
+                let cell = permute(index % cells, cells, mix(key));
+                Stratum { cell: uvec2(cell % grid.x, cell / grid.x), grid, u: random_pair(key, index) }
+            }
+            Sampler::LowDiscrepancy => alone(self.sobol(purpose, index)),
+        }
+    }
+
+    fn nth(&self, part: u32, parts: u32) -> u32 {
+        self.index.wrapping_mul(parts).wrapping_add(part)
+    }
+
+    /// An Owen-scrambled Sobol sequence. Place and lens are four dimensions of one sequence and time is the fifth, so
+    /// that they are spread evenly together; everything else has a sequence of its own.
+    fn sobol(&self, purpose: Purpose, index: u32) -> Vec2 {
+        let (set, first, seed) = match purpose {
+            Purpose::Pixel => (0, 0, self.key),
+            Purpose::Lens => (0, 2, self.key),
+            Purpose::Time => (1, 0, self.key),
+            other => (0, 0, mix(self.key ^ mix(address(other)))),
+        };
+        // The sequence has 2¹⁶ points; after that another one begins.
+        let seed = seed ^ mix(u64::from(index >> 16));
+        let point = sobol_burley::sample_4d(index & 0xffff, set, seed as u32);
+        Vec2::new(point[first], point[first + 1])
+    }
+}
+
+/// A number of its own for each purpose.
+fn address(purpose: Purpose) -> u64 {
+    match purpose {
+        Purpose::Pixel => 1,
+        Purpose::Lens => 2,
+        Purpose::Time => 3,
+        Purpose::Gloss(bounce) => 4 + bounce as u64,
+        Purpose::Light(index) => 16 + u64::from(index),
+    }
+}
+
+/// Columns and rows for `samples` samples: as square as can be, and room for all.
+pub fn grid_of(samples: u32) -> UVec2 {
+    // 2^15 cells a side and more could not be numbered in 32 bits.
+    let samples = samples.clamp(1, 1 << 30);
+    let columns = f64::from(samples).sqrt().ceil() as u32;
+    uvec2(columns, samples.div_ceil(columns))
+}
+
+/// Two numbers in `0.0..1.0`, never 1.0: all 32 bits over 2³² would round up to 1.0 for 128 of the values (hard case
+/// D1); 24 bits fit exactly.
+fn random_pair(key: u64, index: u32) -> Vec2 {
+    let bits = mix(key.wrapping_add(mix(u64::from(index))));
+    let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
+    Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
+}
+
+/// The finalizer of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): every
+/// bit of the input sways every bit of the output.
+fn mix(key: u64) -> u64 {
+    let key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let key = (key ^ (key >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let key = (key ^ (key >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    key ^ (key >> 31)
+}
+
+/// Where `index` lies in a shuffled `0..length`, without a table: in each round the indices are paired, and a coin says
+/// for each pair whether its two change places (Hoang, Morris and Rogaway, "An enciphering scheme based on a card
+/// shuffle", 2012).
+fn permute(mut index: u32, length: u32, seed: u64) -> u32 {
+    /// Enough that all orders of a few cells come up equally often.
+    const ROUNDS: u64 = 12;
+    let length = u64::from(length);
+    for round in 0..ROUNDS {
+        let key = mix(seed ^ round);
+        let partner = ((key % length + length - u64::from(index)) % length) as u32;
+        // Both of a pair ask for the same coin.
+        if mix(key ^ u64::from(index.max(partner))) & 1 == 1 {
+            index = partner;
+        }
+    }
+    index
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Sampler; 5] =
+        [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian, Sampler::LowDiscrepancy];
+
+    #[test]
+    fn numbers_lie_below_one_and_do_not_repeat() {
+        for sampler in ALL {
+            let mut seen = Vec::new();
+            for pixel in 0..50 {
+                for sample in 0..20 {
+                    let points = Points::new(sampler, 7, pixel, sample, 20);
+                    for purpose in [Purpose::Pixel, Purpose::Lens, Purpose::Light(0), Purpose::Light(1)] {
+                        let u = points.stratum(purpose, 0, 1).u;
+                        assert!(u.min_element() >= 0.0 && u.max_element() < 1.0, "{u}");
+                        seen.push((u.x.to_bits(), u.y.to_bits()));
+                    }
+                }
+            }
+            let drawn = seen.len();
+            seen.sort_unstable();
+            seen.dedup();
+            assert!(seen.len() > drawn - 3, "{sampler:?}: {} of {drawn} are different", seen.len());
+        }
+    }
+
+    #[test]
+    fn the_largest_numbers_stay_below_one() {
+        // D1: all bits set must not round up to 1.
+        let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
+        assert!(unit(u32::MAX) < 1.0);
+    }
+
+    #[test]
+    fn each_jittered_draw_has_a_cell_of_its_own() {
+        for (samples, parts) in [(1, 1), (16, 1), (7, 1), (4, 4), (5, 3)] {
+            let mut cells = Vec::new();
+            for sample in 0..samples {
+                let points = Points::new(Sampler::Jittered, 1, 99, sample, samples);
+                for part in 0..parts {
+                    let stratum = points.stratum(Purpose::Lens, part, parts);
+                    assert!(stratum.cell.cmplt(stratum.grid).all());
+                    cells.push((stratum.cell.x, stratum.cell.y));
+                }
+            }
+            cells.sort_unstable();
+            cells.dedup();
+            assert_eq!(cells.len(), (samples * parts) as usize);
+        }
+    }
+
+    #[test]
+    fn shuffles_are_shuffles() {
+        for length in [1, 2, 3, 7, 16, 100] {
+            let mut places: Vec<u32> = (0..length).map(|index| permute(index, length, 5)).collect();
+            places.sort_unstable();
+            assert_eq!(places, (0..length).collect::<Vec<_>>());
+        }
+        // All 24 orders of four things come up about equally often: 24,000 shuffles, 1,000 each, σ = 31.
+        let mut orders = std::collections::BTreeMap::new();
+        for seed in 0..24_000 {
+            *orders.entry([0, 1, 2, 3].map(|index| permute(index, 4, seed))).or_insert(0) += 1;
+        }
+        assert_eq!(orders.len(), 24);
+        assert!(orders.values().all(|n| (700..1300).contains(n)), "{orders:?}");
+    }
+
+    #[test]
+    fn the_low_discrepancy_points_fill_all_elementary_intervals() {
+        // 16 points: one in each of 16 cells, whether 4 × 4, 2 × 8, 8 × 2, 1 × 16 or 16 × 1.
+        for grid in [uvec2(4, 4), uvec2(2, 8), uvec2(8, 2), uvec2(1, 16), uvec2(16, 1)] {
+            let mut filled = vec![false; 16];
+            for sample in 0..16 {
+                let u =
+                    Points::new(Sampler::LowDiscrepancy, 3, 8, sample, 16).stratum(Purpose::Pixel, 0, 1).u;
+                let cell = (u * grid.as_vec2()).as_uvec2();
+                filled[(cell.y * grid.x + cell.x) as usize] = true;
+            }
+            assert!(filled.iter().all(|filled| *filled), "{grid}");
+        }
+    }
+
+    #[test]
+    fn grids_have_room_for_all() {
+        assert_eq!(grid_of(1), uvec2(1, 1));
+        assert_eq!(grid_of(16), uvec2(4, 4));
+        assert_eq!(grid_of(7), uvec2(3, 3));
+        assert_eq!(grid_of(2), uvec2(2, 1));
+        assert!(grid_of(u32::MAX).x >= 1 << 15);
+    }
+}

@@ -1,0 +1,101 @@
+//! What a scene shows: the shapes that can be reached from its roots, each with what it is made of.
+
+use super::{Node, Scene};
+use crate::shape::Shape;
+use std::collections::BTreeSet;
+
+/// A shape in the scene.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// Index of its node.
+    pub node: usize,
+    /// Index of its mesh, if it is one.
+    pub mesh: Option<usize>,
+    /// Indices of the materials that it is made of, in ascending order.
+    pub materials: Vec<usize>,
+    /// Whether it, or a node above it, is elsewhere at time 1 than at time 0.
+    pub moves: bool,
+}
+
+impl Scene {
+    /// Every shape that is reached from a root, once for each combination of material and motion in which it is.
+    pub fn shown(&self) -> Vec<Shown> {
+        let mut walk = Walk { scene: self, seen: BTreeSet::new(), shown: Vec::new() };
+        for &root in &self.roots {
+            walk.node(root, 0, false);
+        }
+        walk.shown
+    }
+
+    fn materials_of(&self, shape: &Shape, otherwise: usize) -> Vec<usize> {
+        let Shape::Mesh(index) = shape else { return vec![otherwise] };
+        let mesh = &self.meshes[*index];
+        if mesh.mesh.face_materials.is_empty() || mesh.materials.is_empty() {
+            return vec![otherwise];
+        }
+        let names: BTreeSet<u32> = mesh.mesh.face_materials.iter().copied().collect();
+        let materials: BTreeSet<usize> = names
+            .iter()
+            .map(|name| mesh.materials.get(*name as usize).copied().unwrap_or(otherwise))
+            .collect();
+        materials.into_iter().collect()
+    }
+}
+
+struct Walk<'a> {
+    scene: &'a Scene,
+    /// Nodes that were visited, each with the material that it inherits and whether what is above moves: a node that
+    /// stands in a million places is looked at a few times.
+    seen: BTreeSet<(usize, usize, bool)>,
+    shown: Vec<Shown>,
+}
+
+impl Walk<'_> {
+    fn node(&mut self, index: usize, material: usize, moves: bool) {
+        if !self.seen.insert((index, material, moves)) {
+            return;
+        }
+        let node: &Node = &self.scene.nodes[index];
+        let material = node.material.unwrap_or(material);
+        let moves = moves || node.transform_end.is_some_and(|end| end != node.transform);
+        if let Some(shape) = &node.shape {
+            let mesh = if let Shape::Mesh(mesh) = shape { Some(*mesh) } else { None };
+            let materials = self.scene.materials_of(shape, material);
+            self.shown.push(Shown { node: index, mesh, materials, moves });
+        }
+        for &child in &node.children {
+            self.node(child, material, moves);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::load::parse;
+    use std::path::Path;
+
+    #[test]
+    fn materials_are_inherited_and_motion_is_passed_on() {
+        let text = r#"
+[camera]
+position = [0, 0, 5]
+look_at = [0, 0, 0]
+[materials.red]
+diffuse = [1, 0, 0]
+[materials.unused]
+mirror = 1
+[[nodes]]
+name = "ball"
+shape = { sphere = { center = [0, 0, 0], radius = 1 } }
+[[nodes]]
+material = "red"
+children = ["ball"]
+transform_end = [{ translate = [1, 0, 0] }]
+[[nodes]]
+children = ["ball"]
+"#;
+        let scene = parse(Path::new("test.toml"), text).expect("a scene");
+        let shown: Vec<_> = scene.shown().into_iter().map(|s| (s.node, s.materials, s.moves)).collect();
+        assert_eq!(shown, [(0, vec![1], true), (0, vec![0], false)]);
+    }
+}

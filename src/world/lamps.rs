@@ -1,0 +1,88 @@
+//! From a place on a lamp to the light that arrives from there.
+
+use crate::kit::LightSample;
+use crate::material::{AreaShape, Emitter, Falloff, Light};
+use crate::shape::Sphere;
+use glam::Vec3;
+
+impl Light {
+    /// The light that would arrive at `point` from the middle of the lamp if nothing stood in its way. The way to a ball
+    /// ends at its surface, so that a ball that is seen as well does not stand in its own light.
+    pub fn from_its_middle(&self, point: Vec3) -> LightSample {
+        match &self.emitter {
+            Emitter::Point { position, .. } => self.from_place(*position, point),
+            Emitter::Area { shape: AreaShape::Sphere(ball), .. } => {
+                let direction = (ball.center - point).normalize_or(Vec3::Y);
+                self.from_ball(ball, direction, point)
+            }
+            Emitter::Area { shape, .. } => self.from_place(shape.center(), point),
+            Emitter::Directional { direction } => {
+                LightSample { direction: -*direction, distance: f32::INFINITY, radiance: self.radiance() }
+            }
+        }
+    }
+
+    /// The light that would arrive at `point` from `place` on the lamp.
+    pub fn from_place(&self, place: Vec3, point: Vec3) -> LightSample {
+        let way = place - point;
+        let distance = way.length();
+        self.arriving(way.normalize_or(Vec3::Y), distance, distance)
+    }
+
+    /// The light that would arrive at `point` from where the unit direction `direction` meets `ball`. It weakens with the
+    /// distance to the middle: a ball shines as if all of its light came from there.
+    pub fn from_ball(&self, ball: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
+        let distance = distance_to_ball(ball, direction, point);
+        self.arriving(direction, distance, point.distance(ball.center))
+    }
+
+    fn arriving(&self, direction: Vec3, distance: f32, weakening_distance: f32) -> LightSample {
+        let falloff = match &self.emitter {
+            Emitter::Point { falloff, .. } | Emitter::Area { falloff, .. } => *falloff,
+            Emitter::Directional { .. } => Falloff::None,
+        };
+        let weakened = match falloff {
+            Falloff::None => 1.0,
+            Falloff::InverseSquare => 1.0 / (weakening_distance * weakening_distance),
+        };
+        LightSample { direction, distance, radiance: weakened * self.radiance() }
+    }
+}
+
+/// How far it is to the ball: to its near side from outside, to its far side from inside. Directions that just miss it
+/// by a rounding count as touching it.
+fn distance_to_ball(ball: &Sphere, direction: Vec3, point: Vec3) -> f32 {
+    // In double precision: 24 bits do not hold the square of a small radius beside that of a long way.
+    let (to_center, direction) = (ball.center.as_dvec3() - point.as_dvec3(), direction.as_dvec3());
+    let radius = f64::from(ball.radius);
+    let middle = to_center.dot(direction);
+    let half_chord = (radius * radius - (to_center - middle * direction).length_squared()).max(0.0).sqrt();
+    let outside = to_center.length_squared() > radius * radius;
+    (if outside { middle - half_chord } else { middle + half_chord }).max(0.0) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_to_a_ball_ends_at_its_surface() {
+        let ball = Sphere { center: Vec3::new(0.0, 5.0, 0.0), radius: 2.0 };
+        assert_eq!(distance_to_ball(&ball, Vec3::Y, Vec3::ZERO), 3.0);
+        assert_eq!(distance_to_ball(&ball, Vec3::Y, Vec3::new(0.0, 4.0, 0.0)), 3.0); // from inside
+        let touching = Vec3::new(2.0, 21f32.sqrt(), 0.0).normalize();
+        assert!((distance_to_ball(&ball, touching, Vec3::ZERO) - 21f32.sqrt()).abs() < 2e-3);
+    }
+
+    #[test]
+    fn light_weakens_with_the_square_of_the_way_to_its_place() {
+        let light = Light {
+            emitter: Emitter::Point { position: 4.0 * Vec3::Y, falloff: Falloff::InverseSquare },
+            color: Vec3::ONE,
+            intensity: 8.0,
+            shadows: true,
+        };
+        assert_eq!(light.from_its_middle(Vec3::ZERO).radiance, Vec3::splat(0.5));
+        assert_eq!(light.from_place(2.0 * Vec3::Y, Vec3::ZERO).radiance, Vec3::splat(2.0));
+    }
+}
