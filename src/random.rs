@@ -224,7 +224,7 @@ mod tests {
     fn the_low_discrepancy_points_fill_all_elementary_intervals() {
         // 16 points: one in each of 16 cells, whether 4 × 4, 2 × 8, 8 × 2, 1 × 16 or 16 × 1.
         for grid in [uvec2(4, 4), uvec2(2, 8), uvec2(8, 2), uvec2(1, 16), uvec2(16, 1)] {
-            let mut filled = vec![false; 16];
+            let mut filled = [false; 16];
             for sample in 0..16 {
                 let u =
                     Points::new(Sampler::LowDiscrepancy, 3, 8, sample, 16).stratum(Purpose::Pixel, 0, 1).u;

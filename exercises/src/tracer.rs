@@ -356,6 +356,16 @@ impl<'a, T: Tally> SceneProbe<'a, T> {
         SceneProbe { tracer, inverse_dir: ray.dir.recip(), tally }
     }
 
+    #[inline]
+    fn meet(&self, ray: &Ray, geometry: &Geometry) -> Option<f32> {
+        match geometry {
+            Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
+            Geometry::Triangle(triangle) => {
+                meet_triangle(self.tracer.looks.method, ray, triangle).map(|(t, ..)| t)
+            }
+        }
+    }
+
     /// The last primitive in the order of the scene that the ray meets.
     fn last_hit(&mut self, ray: &Ray) -> Option<PrimitiveHit> {
         let n_primitives = self.tracer.world.primitives.len() as u32;
@@ -383,11 +393,10 @@ impl<T: Tally> Probe for SceneProbe<'_, T> {
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::PrimitiveTest);
         let world = &self.tracer.world;
-        match geometry_at(world, &world.primitives[primitive as usize], ray.time) {
-            Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
-            Geometry::Triangle(triangle) => {
-                meet_triangle(self.tracer.looks.method, ray, &triangle).map(|(t, ..)| t)
-            }
+        let primitive = &world.primitives[primitive as usize];
+        match primitive.end.get() {
+            None => self.meet(ray, &primitive.geometry),
+            Some(_) => self.meet(ray, &geometry_at(world, primitive, ray.time)),
         }
     }
 }

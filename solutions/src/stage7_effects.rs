@@ -1,6 +1,6 @@
 //! Stage 7 · effects: look at the scene first, and compute only what it calls for.
 //!
-//! Slides: "Cost of shadow computation", "Distributed Ray Tracing", "Texture mapping"; and the promise of this kit that
+//! Slides: "Cost of shadow computation", "Distributed Ray Tracing", "Each vertex holds … texture coordinates"; and the promise of this kit that
 //! no effect costs anything where it is not seen.
 //!
 //! What you return decides what the tracer does. Too much, and the picture is right but costs more than it should; too

@@ -16,6 +16,9 @@ pub mod stage2;
 pub mod stage3;
 pub mod stage4;
 pub mod stage5;
+pub mod stage6;
+pub mod stage7;
+pub mod statistics;
 pub mod tree;
 pub mod trial;
 
@@ -29,6 +32,8 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (3, stage3::CHECKS),
     (4, stage4::CHECKS),
     (5, stage5::CHECKS),
+    (6, stage6::CHECKS),
+    (7, stage7::CHECKS),
 ];
 
 /// Lists the checks of a stage, and makes the macro that turns them into tests of a kit: `checks::stage1!(kit)`.

@@ -1,6 +1,6 @@
 //! Inputs as Rust that can be pasted into a test: every number with all its digits.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{
     BuildQuery, InsideQuery, LightSample, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery, SlabQuery,
@@ -37,6 +37,12 @@ impl Paste for f32 {
 impl Paste for Vec3 {
     fn paste(&self) -> String {
         format!("vec3({}, {}, {})", self.x.paste(), self.y.paste(), self.z.paste())
+    }
+}
+
+impl Paste for Vec2 {
+    fn paste(&self) -> String {
+        format!("vec2({}, {})", self.x.paste(), self.y.paste())
     }
 }
 

@@ -1,0 +1,203 @@
+//! Times, and where things are then.
+
+use super::pixels::unit_number;
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use crate::generate::{magnitude, point, rough_point};
+use crate::judge::{compare, known};
+use crate::paste::{Paste, call};
+use crate::statistics::{SAMPLES, covers_evenly, pairs};
+use glam::{DVec3, Vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::camera::Shutter;
+use raykata::kit::TimeQuery;
+
+/// The table of the slide.
+const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
+
+pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
+    // A block that begins anywhere holds each slot once, because blocks repeat.
+    for (left, top) in [(0, 0), (4, 8), (1, 3), (1022, 765)] {
+        let cells: Vec<(u32, u32)> = (0..16).map(|index| (left + index % 4, top + index / 4)).collect();
+        let slots = trial.kit.temporal_slot(&cells);
+        let mut sorted = slots.clone();
+        sorted.sort_unstable();
+        if sorted != (1..=16).collect::<Vec<_>>() {
+            let input = format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
+            let broken = Broken::new(input, &slots, "each of 1..=16 once", "the table is a permutation");
+            let from_zero = sorted == (0..16).collect::<Vec<_>>();
+            return Err(broken.looks_like(from_zero.then_some("slots are counted from 1")));
+        }
+        for ((x, y), slot) in cells.into_iter().zip(slots) {
+            let expected = TABLE[y as usize % 4][x as usize % 4];
+            if slot != expected {
+                let turned = slot == TABLE[x as usize % 4][y as usize % 4];
+                let input = format!("temporal_slot({x}, {y})");
+                let broken = Broken::new(input, slot, expected, "the table of the slide");
+                return Err(
+                    broken.looks_like(turned.then_some("rows and columns are exchanged: y picks the row"))
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn paste(query: &TimeQuery) -> String {
+    format!(
+        "time_in_shutter(&Shutter {{ open: {}, close: {} }}, {}, {}, {})",
+        query.shutter.open.paste(),
+        query.shutter.close.paste(),
+        query.slot,
+        query.slots,
+        query.u.paste()
+    )
+}
+
+pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
+    let shutter = (0.0..1.0f32, 0.0..=1.0f32)
+        .prop_map(|(first, second)| Shutter { open: first.min(second), close: first.max(second) });
+    let whole = Just(Shutter { open: 0.0, close: 1.0 });
+    let queries = (prop_oneof![shutter, whole], 1..=16u32, 0.0..1.0f32, unit_number()).prop_map(
+        |(shutter, slots, share, u)| TimeQuery {
+            shutter,
+            slot: 1 + ((share * slots as f32) as u32).min(slots - 1),
+            slots,
+            u,
+        },
+    );
+    trial.forall(3000, queries, |queries| {
+        compare(queries, trial.kit.time_in_shutter(queries), |query, yours| {
+            let (open, close) = (f64::from(query.shutter.open), f64::from(query.shutter.close));
+            let at = |slot: f64| open + (slot + f64::from(query.u)) / f64::from(query.slots) * (close - open);
+            let expected = at(f64::from(query.slot) - 1.0);
+            let near = |time: f64| (f64::from(yours) - time).abs() < 3e-7; // a few roundings of numbers up to 1
+            let open_then = (query.shutter.open..=query.shutter.close).contains(&yours);
+            if near(expected) && open_then {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if near(expected) => "the shutter is closed then, by a rounding: clamp",
+                () if near(at(f64::from(query.slot))) => {
+                    "slots are counted from 1: slot 1 begins when it opens"
+                }
+                () if near((expected - open) / (close - open)) => {
+                    "a share of the time: scale it to open..close"
+                }
+                () => "",
+            };
+            Err(Broken::new(paste(query), yours, expected, "double precision").looks_like(known(diagnosis)))
+        })
+    })
+}
+
+pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
+    let shutter = Shutter { open: 0.25, close: 0.75 };
+    let u = pairs(trial.seed, SAMPLES);
+    let queries: Vec<TimeQuery> = u
+        .iter()
+        .enumerate()
+        .map(|(index, u)| TimeQuery { shutter, slot: 1 + index as u32 % 16, slots: 16, u: u.x })
+        .collect();
+    let times = trial.kit.time_in_shutter(&queries);
+    // The second axis is free: any even number will do.
+    let shares: Vec<(f64, f64)> =
+        times.iter().zip(&u).map(|(time, u)| (2.0 * (f64::from(*time) - 0.25), f64::from(u.y))).collect();
+    covers_evenly("time_in_shutter in 16 slots", &shares, ["the time", "another number"], |_| "")
+}
+
+type Move = (Vec3, Vec3, f32);
+
+fn told((start, end, time): &Move) -> String {
+    call("between", &[start, end, time])
+}
+
+pub(super) fn between_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
+    let ends = || (rough_point(1000.0), rough_point(1000.0));
+    let time = prop_oneof![Just(0.0f32), Just(1.0f32)];
+    let at_ends = (ends(), time).prop_map(|((start, end), time)| (start, end, time));
+    trial.forall(1000, at_ends, |queries| {
+        compare(queries, trial.kit.between(queries), |query, yours| {
+            let expected = if query.2 == 0.0 { query.0 } else { query.1 };
+            let broken = || Broken::new(told(query), yours, expected, "bit for bit");
+            let near = (yours - expected).length() < 1e-3;
+            match yours == expected {
+                true => Ok(()),
+                false if near => Err(broken()
+                    .looks_like(Some("off by a rounding: start + t (end - start) does not reach the end"))),
+                false => Err(broken()),
+            }
+        })
+    })?;
+    let still = (rough_point(1000.0), 0.0..=1.0f32).prop_map(|(place, time)| (place, place, time));
+    trial.forall(2000, still, |queries| {
+        compare(queries, trial.kit.between(queries), |query, yours| match yours == query.0 {
+            true => Ok(()),
+            false => Err(Broken::new(told(query), yours, query.0, "what does not move stands still")
+                .looks_like(Some(
+                    "off by a rounding: (1 - t) a + t a is not always a; clamp to what lies between the ends",
+                ))),
+        })
+    })
+}
+
+pub(super) fn between_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
+    let near_each_other = (point(4), point(4), magnitude(-7.0, 3.0))
+        .prop_map(|(start, step, scale)| (start, start + scale * step));
+    let queries = (near_each_other, 0.0..=1.0f32).prop_map(|((start, end), time)| (start, end, time));
+    trial.forall(4000, queries, |queries| {
+        compare(queries, trial.kit.between(queries), |query, yours| {
+            let (start, end, time) = *query;
+            let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
+            // Three roundings of the larger end.
+            let slack = 2e-7 * f64::from(start.abs().max(end.abs()).max_element());
+            let near = (yours.as_dvec3() - exact).abs().max_element() <= slack;
+            let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
+            if near && inside {
+                return Ok(());
+            }
+            let backwards = end.as_dvec3().lerp(start.as_dvec3(), f64::from(time));
+            let diagnosis = match () {
+                () if near => {
+                    "outside of the box around its ends, by a rounding: the structure would lose it"
+                }
+                () if (yours.as_dvec3() - backwards).length() <= slack => "start and end are exchanged",
+                () => "",
+            };
+            Err(Broken::new(told(query), yours, exact.as_vec3(), "double precision, within the ends")
+                .looks_like(known(diagnosis)))
+        })
+    })
+}
+
+pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
+    let around = || (point(4), point(2)).prop_map(|(min, size)| Aabb::new(min, min + size.abs()));
+    let ways = (around(), around()).prop_map(|(start, end)| (start, end));
+    trial.forall(2000, ways, |queries| {
+        compare(queries, trial.kit.sweep(queries), |(start, end), yours| {
+            let expected = Aabb::new(start.min.min(end.min), start.max.max(end.max));
+            if yours == expected {
+                return Ok(());
+            }
+            let at = |time: f64| {
+                let blend = |a: Vec3, b: Vec3| a.as_dvec3().lerp(b.as_dvec3(), time);
+                (blend(start.min, end.min), blend(start.max, end.max))
+            };
+            let outside = |(min, max): (DVec3, DVec3)| {
+                !(yours.min.as_dvec3().cmple(min).all() && max.cmple(yours.max.as_dvec3()).all())
+            };
+            let diagnosis = match () {
+                () if yours == *start => "only where it starts: what moves leaves this box",
+                () if yours == *end => "only where it ends",
+                () if [0.0, 0.5, 1.0].into_iter().any(|time| outside(at(time))) => {
+                    "part of the way is outside"
+                }
+                () => "right, but larger than need be",
+            };
+            let input = call("sweep", &[start, end]);
+            Err(Broken::new(input, yours, expected, "the corners move along straight lines")
+                .looks_like(known(diagnosis)))
+        })
+    })
+}

@@ -1,0 +1,90 @@
+//! Scenes to be looked at.
+
+use glam::{Affine3A, Vec2, Vec3, vec3};
+use raykata::camera::{Camera, Lens, Shutter};
+use raykata::effects::Effect;
+use raykata::material::{AreaShape, Emitter, Falloff, Light, Material, Texture, Wrap};
+use raykata::mesh::Mesh;
+use raykata::scene::{Node, Scene, SceneMesh};
+use raykata::shape::{Shape, Sphere};
+use std::sync::Arc;
+
+pub(super) fn lamp(color: Vec3, intensity: f32) -> Light {
+    let emitter = Emitter::Point { position: vec3(0.0, 5.0, 0.0), falloff: Falloff::None };
+    Light { emitter, color, intensity, shadows: true }
+}
+
+pub(super) fn ball_lamp(color: Vec3) -> Light {
+    let shape = AreaShape::Sphere(Sphere { center: vec3(0.0, 5.0, 0.0), radius: 1.0 });
+    Light { emitter: Emitter::Area { shape, falloff: Falloff::None }, ..lamp(color, 1.0) }
+}
+
+pub(super) fn camera() -> Camera {
+    Camera::new(vec3(0.0, 1.0, 5.0), Vec3::NEG_Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along -z")
+}
+
+pub(super) fn ball(material: usize) -> Node {
+    let shape = Shape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
+    Node { name: "ball".into(), shape: Some(shape), material: Some(material), ..Node::default() }
+}
+
+/// A scene with one ball of `material` and a lamp.
+pub(super) fn one_ball(material: Material) -> Scene {
+    let mut scene = Scene::empty(camera());
+    scene.lights.push(lamp(Vec3::ONE, 1.0));
+    scene.materials.push(material);
+    scene.material_names.push("ball".into());
+    scene.nodes.push(ball(1));
+    scene.roots.push(0);
+    scene
+}
+
+/// A scene that calls for every effect that is built.
+pub(super) fn everything() -> Scene {
+    let mut scene = one_ball(Material {
+        mirror: Vec3::splat(0.3),
+        roughness: 0.2,
+        texture: Some(0),
+        ..Material::default()
+    });
+    scene.materials.push(Material { transmission: Vec3::ONE, roughness: 0.1, ..Material::default() });
+    scene.material_names.push("glass".into());
+    scene.textures.push(Texture {
+        width: 1,
+        height: 1,
+        pixels: Arc::new(vec![Vec3::ONE]),
+        wrap: Wrap::Repeat,
+    });
+    scene.lights.push(ball_lamp(Vec3::ONE));
+    scene.camera.lens = Some(Lens { aperture: 0.1, focal_distance: 4.0 });
+    scene.camera.shutter = Some(Shutter { open: 0.0, close: 1.0 });
+    let transform_end = Some(Affine3A::from_translation(Vec3::X));
+    scene.nodes.push(Node { transform_end, ..ball(2) });
+    scene.meshes.push(SceneMesh { mesh: Arc::new(one_triangle()), smooth: true, materials: Vec::new() });
+    scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
+    scene.roots = vec![0, 1, 2];
+    scene
+}
+
+pub(super) fn one_triangle() -> Mesh {
+    Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        normals: vec![Vec3::Z; 3],
+        uvs: vec![Vec2::ZERO; 3],
+        triangles: vec![[0, 1, 2]],
+        ..Mesh::default()
+    }
+}
+
+/// Effects that [`everything`] calls for.
+pub(super) const BUILT: [Effect; 9] = [
+    Effect::Shadows,
+    Effect::AreaLights,
+    Effect::Mirrors,
+    Effect::Transmission,
+    Effect::Gloss,
+    Effect::Lens,
+    Effect::Motion,
+    Effect::SmoothNormals,
+    Effect::Textures,
+];

@@ -1,0 +1,144 @@
+//! Whether numbers are distributed as they should be: two tests with a stated rate of false alarms.
+//!
+//! Each test gives a score that is normally distributed if all is right, and cries wolf beyond a threshold that right
+//! code passes 9,999 times out of 10,000 ([`FALSE_ALARMS`]). `solutions/tests/calibration.rs` runs every statistical
+//! check with 1,000 seeds: on the reference, and on wrong distributions, each of which has to be caught 990 times.
+
+use crate::broken::{Broken, Outcome};
+use glam::{UVec2, Vec2};
+use raykata::random::{Points, Purpose};
+use raykata::scene::Sampler;
+
+/// How often a test rejects right code.
+pub const FALSE_ALARMS: f64 = 1e-4;
+/// A normally distributed score is above this with probability [`FALSE_ALARMS`].
+const ONE_SIDED: f64 = 3.719;
+/// A normally distributed score is beyond ± this with probability [`FALSE_ALARMS`].
+const TWO_SIDED: f64 = 3.891;
+
+/// Cells along each side of the square into which samples are sorted.
+pub const CELLS: u32 = 8;
+/// Samples of a chi-square test: 64 in each of 64 cells, far more than the 5 from which on the test is exact enough.
+pub const SAMPLES: usize = 4096;
+
+/// Pairs of random numbers in `0.0..1.0`, the same for the same seed.
+pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
+    let pair = |index| Points::new(Sampler::Random, seed, index, 0, 1).stratum(Purpose::Pixel, 0, 1).u;
+    (0..count as u64).map(pair).collect()
+}
+
+/// The chi-square score of cells that should be hit alike: by Wilson and Hilferty's approximation normally distributed
+/// (good to a few percent of the rate for 63 degrees of freedom), large if the counts are too uneven.
+pub fn chi_square_score(counts: &[u64]) -> f64 {
+    let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
+    let chi_square: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
+    let freedom = counts.len() as f64 - 1.0;
+    let spread = 2.0 / (9.0 * freedom);
+    ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
+}
+
+/// The score of Student's test: by how many standard errors the mean of `values` is off. With thousands of values it
+/// is normally distributed.
+pub fn mean_score(values: &[f64], expected: f64) -> f64 {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let standard_error = (variance / n).sqrt();
+    // Values that are all the same have no spread: then they have to be right.
+    if standard_error > 0.0 { (mean - expected) / standard_error } else { (mean - expected) * f64::MAX }
+}
+
+/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call; `diagnose` may say what cells
+/// that are hit too often or too rarely look like.
+pub fn covers_evenly(
+    what: &str,
+    places: &[(f64, f64)],
+    axes: [&str; 2],
+    diagnosis: impl Fn(&[u64]) -> &'static str,
+) -> Outcome {
+    let mut counts = vec![0; (CELLS * CELLS) as usize];
+    for &(x, y) in places {
+        let cell = |share: f64| ((share * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
+        let UVec2 { x, y } = UVec2::new(cell(x), cell(y));
+        counts[(y * CELLS + x) as usize] += 1;
+    }
+    if chi_square_score(&counts) <= ONE_SIDED {
+        return Ok(());
+    }
+    let expected = places.len() as f64 / counts.len() as f64;
+    let worst = (0..counts.len())
+        .max_by(|&a, &b| {
+            let off = |cell: usize| (counts[cell] as f64 - expected).abs();
+            off(a).total_cmp(&off(b))
+        })
+        .unwrap_or(0);
+    let (column, row) = (worst as u32 % CELLS, worst as u32 / CELLS);
+    let range = |cell: u32| {
+        format!("{:.3}..{:.3}", f64::from(cell) / f64::from(CELLS), f64::from(cell + 1) / f64::from(CELLS))
+    };
+    let input = format!(
+        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal likelihood",
+        places.len(),
+        axes[0],
+        axes[1],
+        counts.len()
+    );
+    let yours =
+        format!("{} with {} in {} and {} in {}", counts[worst], axes[0], range(column), axes[1], range(row));
+    let broken =
+        Broken::told(input, yours, format!("about {expected:.0}"), "chi-square, 1 false alarm in 10,000");
+    let diagnosis = diagnosis(&counts);
+    Err(broken.looks_like((!diagnosis.is_empty()).then_some(diagnosis)))
+}
+
+/// Checks that the mean of `values` is `expected`.
+pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> Outcome {
+    if mean_score(values, expected).abs() <= TWO_SIDED {
+        return Ok(());
+    }
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let input = format!("{what}: the mean over {} pairs u", values.len());
+    let broken = Broken::told(
+        input,
+        format!("{mean:.5}"),
+        format!("{expected:.5}"),
+        "closed form; t-test, 1 false alarm in 10,000",
+    );
+    Err(broken.looks_like((!diagnosis.is_empty()).then_some(diagnosis)))
+}
+
+/// Hits in each column of the cells.
+pub fn columns(counts: &[u64]) -> Vec<u64> {
+    let column = |x: usize| counts.iter().skip(x).step_by(CELLS as usize).sum();
+    (0..CELLS as usize).map(column).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Scores of right numbers, for 2,000 seeds.
+    fn alarms(score: impl Fn(u64) -> f64, threshold: f64) -> usize {
+        (0..2000).filter(|&seed| score(seed) > threshold).count()
+    }
+
+    #[test]
+    fn right_numbers_raise_false_alarms_at_the_stated_rate() {
+        let chi_square = |seed| {
+            let mut counts = [0; 64];
+            for u in pairs(seed, 1024) {
+                counts[((u.x * 8.0) as usize) * 8 + (u.y * 8.0) as usize] += 1;
+            }
+            chi_square_score(&counts)
+        };
+        // At 1.645, 5 % of 2,000: 100 ± 10. Four standard deviations either way.
+        let n = alarms(chi_square, 1.645);
+        assert!((60..140).contains(&n), "chi-square: {n}");
+        let mean = |seed| {
+            let values: Vec<f64> = pairs(seed, 1024).iter().map(|u| f64::from(u.x)).collect();
+            mean_score(&values, 0.5)
+        };
+        let n = alarms(mean, 1.645);
+        assert!((60..140).contains(&n), "mean: {n}");
+    }
+}
