@@ -28,9 +28,9 @@ use searches::{
     closest_hit_both_agrees_with_brute_force, closest_hit_both_enters_only_boxes_it_meets,
 };
 use slabs::{
-    slab_agrees_with_double_precision, slab_is_entered_at_once_from_inside,
-    slab_is_hit_by_rays_within_a_face, slab_of_a_flat_box_is_hit, slab_of_nothing_is_missed,
-    slab_respects_the_range, slab_takes_zeros_of_either_sign,
+    slab_agrees_with_double_precision, slab_hits_the_corners_it_is_aimed_at,
+    slab_is_entered_at_once_from_inside, slab_is_hit_by_rays_within_a_face, slab_of_a_flat_box_is_hit,
+    slab_of_nothing_is_missed, slab_respects_the_range, slab_takes_zeros_of_either_sign,
 };
 use splits::{
     object_median_makes_equal_halves, spatial_median_cuts_in_the_middle,
@@ -55,6 +55,7 @@ checks! { ($) 3 stage3 [
     slab_of_a_flat_box_is_hit
     slab_respects_the_range
     slab_of_nothing_is_missed
+    slab_hits_the_corners_it_is_aimed_at
     object_median_makes_equal_halves
     spatial_median_cuts_in_the_middle
     spatial_median_never_leaves_a_side_empty

@@ -206,6 +206,26 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> Outcome {
     judge_slabs(trial, &[inside], "the interval is that of the box and of the ray").into_iter().collect()
 }
 
+pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome {
+    // A10: all numbers are eighths, so o + 1 d is the corner exactly, and the closed box is hit: no tolerance.
+    let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        let dir = vec3(pick(0), pick(1), pick(2)) - origin;
+        SlabQuery { ray: Ray::new(origin, if dir == Vec3::ZERO { Vec3::X } else { dir }), bounds }
+    });
+    trial.forall(3000, inputs, |queries| {
+        compare(queries, trial.kit.slab(queries), |query, yours| match yours {
+            Some(_) => Ok(()),
+            None => {
+                Err(Broken::told(query.call("slab"), "None", "a hit", "exact arithmetic").looks_like(Some(
+                    "1/d, the difference and the product are rounded, so far may fall just short of near: \
+                     make far a little longer, (1 + 2 γ₃) times",
+                )))
+            }
+        })
+    })
+}
+
 pub(super) fn slab_of_nothing_is_missed(trial: &Trial<'_>) -> Outcome {
     let dirs = [Vec3::X, Vec3::NEG_X, Vec3::ONE, -Vec3::ONE, vec3(0.0, -0.0, 1.0)];
     let cases = dirs.map(|dir| (Ray::new(vec3(0.5, 0.5, 0.5), dir), Aabb::EMPTY, false));
