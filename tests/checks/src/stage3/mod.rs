@@ -1,10 +1,11 @@
 //! Stage 3: bounding volume hierarchies.
 //!
-//! `boxes` · `slabs` · `splits` (how they are judged is in `divided`) · `builds` · `searches` · `stadium` (what it all
+//! `boxes` · `slabs` · `splits` · `cuts` (how they are judged is in `divided`) · `builds` · `searches` · `stadium` (what it all
 //! costs, counted) · `picture`
 
 mod boxes;
 mod builds;
+mod cuts;
 mod divided;
 mod picture;
 mod searches;
@@ -22,6 +23,7 @@ use builds::{
     build_isolates_what_is_not_a_number, build_of_nothing_and_of_one, object_median_is_balanced,
     trees_of_eight_boxes,
 };
+use cuts::surface_area_heuristic_finds_the_cheapest_cut;
 use picture::picture_of_depth;
 use searches::{
     any_hit_agrees_with_brute_force, any_hit_stops_at_the_first, closest_hit_agrees_with_brute_force,
@@ -34,8 +36,7 @@ use slabs::{
 };
 use splits::{
     object_median_makes_equal_halves, spatial_median_cuts_in_the_middle,
-    spatial_median_never_leaves_a_side_empty, surface_area_heuristic_finds_the_cheapest_cut,
-    surface_area_heuristic_survives_zero_area,
+    spatial_median_never_leaves_a_side_empty, surface_area_heuristic_survives_zero_area,
 };
 use stadium::{
     closest_hit_skips_what_lies_behind, each_split_strategy_is_worth_its_cost,
