@@ -26,11 +26,11 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
     ]);
     let row = cubes(&[
         (0.0, 0.25, 0.5, 1.0),
-        (11.0, 0.75, 0.0, 1.0),
-        (21.0, 0.5, 0.75, 1.0),
-        (22.5, 0.0, 0.25, 1.0),
-        (24.0, 1.0, 1.25, 1.0),
-        (25.5, 1.25, 1.0, 1.0),
+        (30.0, 0.75, 0.0, 1.0),
+        (40.0, 0.5, 0.75, 1.0),
+        (41.5, 0.0, 0.25, 1.0),
+        (43.0, 1.0, 1.25, 1.0),
+        (44.5, 1.25, 1.0, 1.0),
     ]);
     let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest);
     judge(&[scattered, row]).into_iter().collect::<Outcome>()?;

@@ -69,6 +69,11 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
             let told = || (format!("ends after {reach}"), format!("just below {}", light.distance));
             // L2: a lamp that is a surface of the scene must not shadow itself; what stands near it must.
             match () {
+                () if (length - 1.0).abs() > 1e-3 && reach > light.distance && ray.t_max <= light.distance => Some((
+                    told().0,
+                    told().1,
+                    "t counts lengths of the direction: if it is as long as the way, the light is at t = 1",
+                )),
                 () if reach == f32::INFINITY => Some((
                     told().0,
                     told().1,
