@@ -57,6 +57,9 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         records::bless(root, &tried, complete)?;
     }
     report(&tried, &differences);
+    if complete {
+        report_idle_checks(&tried);
+    }
     Ok(differences.is_empty() && tried.iter().all(|one| one.fate.is_as_it_must_be()))
 }
 
@@ -157,6 +160,17 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize) -> Result<Tried> 
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     tried(Fate::of(entry, &failures), failures)
+}
+
+/// Names the checks that no mistake fails: nobody knows whether they can fail at all.
+fn report_idle_checks(tried: &[Tried]) {
+    let is_tried = |stage: u8| tried.iter().any(|one| one.entry.stage == stage);
+    let fails = |name: &str| tried.iter().any(|one| one.failures.contains_key(name));
+    let checks = checks::STAGES.iter().filter(|(stage, _)| is_tried(*stage)).flat_map(|(_, checks)| *checks);
+    let idle: Vec<&str> = checks.map(|check| check.name).filter(|name| !fails(name)).collect();
+    if !idle.is_empty() {
+        println!("\nchecks that no mistake fails: {}", idle.join(", "));
+    }
 }
 
 fn report(tried: &[Tried], differences: &[String]) {

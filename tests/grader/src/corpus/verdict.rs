@@ -129,14 +129,37 @@ pub fn check_named(stage: u8, name: &str) -> Option<&'static Check> {
 pub fn failure(verdict: Verdict) -> Option<String> {
     match verdict {
         Verdict::Passed => None,
-        Verdict::Failed(message) => Some(message),
-        Verdict::NotWritten { task, place } => Some(format!("not written yet: {place}\n  {task}\n")),
+        Verdict::Failed(message) => Some(without_lines(&message)),
+        Verdict::NotWritten { task, place } => {
+            Some(without_lines(&format!("not written yet: {place}\n  {task}\n")))
+        }
     }
+}
+
+/// `file.rs:12` as `file.rs`: the line of a panic moves with every edit above it, and what is kept would go stale.
+fn without_lines(message: &str) -> String {
+    let mut parts = message.split(".rs:");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        text.push_str(".rs");
+        let rest = part.trim_start_matches(|c: char| c.is_ascii_digit());
+        if rest.len() == part.len() {
+            text.push(':'); // No line follows.
+        }
+        text.push_str(rest);
+    }
+    text
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lines_of_panics_are_left_out() {
+        let message = "panicked at solutions/src/a.rs:12\n  words: a.rs: b\n";
+        assert_eq!(without_lines(message), "panicked at solutions/src/a.rs\n  words: a.rs: b\n");
+    }
 
     #[test]
     fn fates_follow_from_claims_and_failures() {
