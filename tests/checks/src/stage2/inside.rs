@@ -92,7 +92,7 @@ pub(super) fn inside_by_areas_gives_the_weights_of_the_corners(trial: &Trial<'_>
                 return Ok(());
             }
             let diagnosis = match yours {
-                Some(yours) if (yours.element_sum() - 1.0).abs() > 1e-2 => {
+                Some(yours) if inside && (yours.element_sum() - 1.0).abs() > 1e-2 => {
                     "the weights do not add up to 1: divide like by like, |u × v| is twice the area"
                 }
                 Some(_) if !inside => "areas without a sign cannot tell inside from outside: measure along the normal",
