@@ -52,7 +52,7 @@ pub(super) fn judge_inside(
                             "seen from behind all three signs turn: accept all ≥ 0 or all ≤ 0"
                         }
                         false => "seen from the front all three signs are alike: accept all ≥ 0 or all ≤ 0",
-                        true => "a point beyond a side: is P0 subtracted twice, or a side left out?",
+                        true => "a point beyond a side: is P0 subtracted twice, or a side left out or turned around?",
                     };
                     Err(Broken::new(query.call(name), yours, inside, "double precision")
                         .looks_like(Some(diagnosis)))

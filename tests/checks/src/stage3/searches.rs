@@ -165,7 +165,10 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
             let expected = closest_in_table(query).is_some();
-            let diagnosis = if yours {
+            let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
+            let diagnosis = if yours && nothing {
+                "nothing is hit: to enter a box is not yet a hit"
+            } else if yours {
                 "a hit beyond t_max, or before t_min, hides nothing"
             } else {
                 "a hit was overlooked"

@@ -28,7 +28,7 @@ pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
 }
 
 pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
-    trial.forall(2000, terms(), |queries| {
+    let judge = |queries: &[TermQuery]| {
         compare(queries, trial.kit.diffuse_term(queries), |query, yours| {
             let cosine = query.normal.as_dvec3().dot(query.to_light.as_dvec3());
             let expected = cosine.max(0.0) as f32;
@@ -40,6 +40,9 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
                     "a light behind the surface lights it: clamp at 0, do not take the absolute value"
                 }
                 () if yours == 1.0 => "the cosine is missing",
+                () if yours == 0.0 && cosine > 0.0 => {
+                    "a light in front of the surface gives nothing: is its direction turned around?"
+                }
                 () => "",
             };
             let input = paste_term("diffuse_term", query);
@@ -50,7 +53,13 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
                 Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
             }
         })
-    })
+    };
+    // First a light in front: from behind, a wrong sign and an absolute value look alike.
+    let (to_light, to_viewer) = (vec3(0.6, 0.8, 0.0), Vec3::Y);
+    judge(&[TermQuery { normal: Vec3::Y, to_light, to_viewer, exponent: 1.0 }])
+        .into_iter()
+        .collect::<Outcome>()?;
+    trial.forall(2000, terms(), judge)
 }
 
 /// `cosⁿ φ` in double precision.
