@@ -61,9 +61,10 @@ pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
         let exact = 255.0 * f64::from(*linear).sqrt();
         if (f64::from(yours) - exact).abs() > 0.501 {
             let input = format!("encode_gamma({linear:?})");
-            // All bytes came back, so 255 is not just cut off.
-            let down = (f64::from(yours) == exact.floor())
-                .then_some("cut off, where rounding belongs: 255 √linear + 0.5 is not 256 √linear");
+            // Here, where all bytes came back, 256 in place of 255 may be what is behind it.
+            let down = (f64::from(yours) == exact.floor()).then_some(
+                "rounded down: add one half before the cast (256 √linear cut off is not the same)",
+            );
             return Err(
                 Broken::new(input, yours, exact.round() as u8, "255 √linear, rounded").looks_like(down)
             );
