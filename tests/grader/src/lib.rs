@@ -1,6 +1,7 @@
 //! The parts of the tool, so that tests and benchmarks can reach them. The program is `main.rs`.
 
 pub mod check;
+pub mod corpus;
 pub mod generate;
 pub mod kits;
 pub mod render;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, generate, render, strip, sync, tree};
+use grader::{check, corpus, generate, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -56,6 +56,8 @@ enum Command {
         #[arg(long, conflicts_with = "check")]
         force: bool,
     },
+    /// Try the checks on known mistakes and on other right solutions (for authors).
+    Corpus(corpus::Options),
     /// Make the mesh of the showcase scene (for authors).
     Generate {
         /// Where to write it.
@@ -90,6 +92,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
+        Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
         Some(Command::Generate { out }) => generate::write(&out)?,
     }
     Ok(true)

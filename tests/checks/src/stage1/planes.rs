@@ -19,16 +19,19 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
             return Ok(());
         }
         let length = query.ray.dir.length();
+        let endless = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
+        let mirrored = |t: f32| double::plane(&endless, &query.plane).accepts(Some(-t));
         let diagnosis = match (yours, expected) {
             (Some(t), _) if t.is_nan() => "NaN is no hit: compare so that NaN fails",
             (Some(t), _) if !query.ray.contains(t) => "a t that ray.contains(t) refuses",
-            (Some(t), Expected::Hit { t: exact, .. }) if f64::from(t) * exact < 0.0 => {
-                "the sign of t is wrong"
-            }
+            (Some(t), _) if t != 0.0 && mirrored(t) => "the sign of t is wrong: p0 - o, not o - p0",
             (Some(t), Expected::Hit { t: exact, tolerance })
                 if (f64::from(t / length) - exact).abs() <= tolerance =>
             {
                 "your t counts world units; it must count lengths of dir"
+            }
+            (None, Expected::Hit { .. }) if query.ray.dir.dot(query.plane.normal).abs() < 0.01 => {
+                "a fixed limit for n·d: only a ray with n·d = 0 is parallel, however flat it comes in"
             }
             (None, Expected::Hit { .. }) if query.ray.dir.dot(query.plane.normal) > 0.0 => {
                 "the plane can be hit from behind, too"
@@ -46,11 +49,13 @@ pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
         PlaneQuery { ray: Ray::new(origin, dir), plane: Plane { point, normal } }
     });
     trial.forall(4000, inputs, |queries| judge_planes(trial, queries))?;
+    let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let flat = PlaneQuery { ray: Ray::new(Vec3::Y, Vec3::new(1.0, -2f32.powi(-14), 0.0)), plane: floor };
     let short = PlaneQuery {
         ray: Ray::new(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y).with_range(0.0, 1.0),
-        plane: Plane { point: Vec3::ZERO, normal: Vec3::Y },
+        plane: floor,
     };
-    judge_planes(trial, &[short]).into_iter().collect()
+    judge_planes(trial, &[flat, short]).into_iter().collect()
 }
 
 pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {

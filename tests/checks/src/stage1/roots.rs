@@ -10,6 +10,20 @@ use raykata::kit::RootQuery;
 use raykata::ray::Ray;
 
 pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> Outcome {
+    // First roots that are clearly out of range: among random ones the smallest that fails lies at an end of it.
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    let behind = "a root behind the ray: ray.contains(t) refuses it";
+    let beyond = "a root beyond t_max: ray.contains(t) refuses it";
+    for (roots, ray, diagnosis) in
+        [([-2.0, -1.0], ray, behind), ([2.0, 3.0], ray.with_range(0.0, 1.0), beyond)]
+    {
+        let query = RootQuery { roots, ray };
+        let yours = trial.kit.nearest_root(&[query])[0];
+        if yours.is_some() {
+            let broken = Broken::new(query.call("nearest_root"), yours, None::<f32>, "the definition");
+            return Err(broken.looks_like(Some(diagnosis)));
+        }
+    }
     let root = || (-24..=24i32).prop_map(|eighths| eighths as f32 / 8.0);
     let inputs = (root(), root(), 0..=8i32, 0..=24i32).prop_map(|(first, second, start, length)| {
         let (t_min, length) = (start as f32 / 8.0, length as f32 / 8.0);
@@ -55,7 +69,12 @@ pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> Outcome
     let queries = cases.map(|(roots, _)| RootQuery { roots, ray });
     for ((query, yours), (_, expected)) in queries.iter().zip(trial.kit.nearest_root(&queries)).zip(cases) {
         if yours != expected {
-            return Err(Broken::new(query.call("nearest_root"), yours, expected, "the definition"));
+            let diagnosis = match yours {
+                Some(t) if !t.is_finite() => "NaN and infinity are no hits: ask ray.contains(t)",
+                _ => "a comparison with NaN is false, so an if-else put NaN in the place of the other root",
+            };
+            let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
+            return Err(broken.looks_like(Some(diagnosis)));
         }
     }
     Ok(())

@@ -2,10 +2,11 @@
 
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
-use crate::double::{self, Expected};
+use crate::double::{self, Expected, Roots};
 use crate::judge::{compare, known};
 use crate::paste::Arguments;
 use raykata::kit::{Kit, SphereQuery};
+use raykata::shape::Sphere;
 
 /// One of the two ways to intersect a sphere.
 #[derive(Clone, Copy)]
@@ -55,6 +56,16 @@ impl Method {
     }
 }
 
+/// Whether `t` is a root for a sphere whose radius is the square root of the true one.
+fn takes_radius_for_its_square(query: &SphereQuery, t: f32) -> bool {
+    let sphere = Sphere { radius: query.sphere.radius.sqrt(), ..query.sphere };
+    double::sphere_roots(&query.ray, &sphere).is_ok_and(|roots| is_one_of(t, roots))
+}
+
+fn is_one_of(t: f32, roots: Roots) -> bool {
+    [roots.near, roots.far].iter().any(|root| (f64::from(t) - root).abs() <= 1e-5 * root.abs())
+}
+
 /// The mistake that gives this answer.
 pub(super) fn sphere_diagnosis(
     query: &SphereQuery,
@@ -84,6 +95,12 @@ pub(super) fn sphere_diagnosis(
         {
             "your t counts world units; it must count lengths of dir (is dir taken for a unit vector?)"
         }
+        (Some(t), _, Some(roots))
+            if near(t, -roots.near, roots.tolerance) || near(t, -roots.far, roots.tolerance) =>
+        {
+            "the sign of t is wrong: this is as far behind the ray as the sphere is before it"
+        }
+        (Some(t), _, _) if takes_radius_for_its_square(query, t) => "r stands where r² belongs",
         (Some(t), _, Some(roots)) if near(t, 0.5 * (roots.near + roots.far), roots.tolerance) => {
             "your t is the point nearest to the centre: half the chord is missing"
         }
@@ -98,6 +115,9 @@ pub(super) fn sphere_diagnosis(
         }
         (Some(_), Expected::Hit { .. }, Some(_)) if (length - 1.0).abs() > 1e-3 => {
             "dir is not of unit length here: is a = d·d left out?"
+        }
+        (None, Expected::Hit { .. }, _) => {
+            "a hit is lost: is -r² left out, or the sign of b (or t_ca) wrong?"
         }
         (Some(_), Expected::Miss, _) => "a hit where the ray passes by",
         _ => return None,

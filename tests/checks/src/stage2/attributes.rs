@@ -48,7 +48,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
         let factor = 2f32.powi(power);
         Triangle { a: factor * t.a, b: factor * t.b, c: factor * t.c }
     });
-    trial.forall(2000, inputs, |triangles| {
+    let judge = |triangles: &[Triangle]| {
         compare(triangles, trial.kit.face_normal(triangles), |triangle, yours| {
             let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
             let cross = (b - a).cross(c - a);
@@ -77,7 +77,12 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
                 Err(Broken::new(input, yours, expected, "double precision").looks_like(known(diagnosis)))
             }
         })
-    })
+    };
+    // Three corners on a line, and two or three in one point.
+    let flat = [(Vec3::X, 2.0 * Vec3::X), (Vec3::X, Vec3::ZERO), (Vec3::ZERO, Vec3::ZERO)]
+        .map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
+    judge(&flat).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, inputs, judge)
 }
 
 pub(super) fn octahedron() -> Mesh {
@@ -103,12 +108,24 @@ pub(super) fn judge_normals(
     for (vertex, &yours) in normals.iter().enumerate() {
         if let Some(expected) = accept(vertex, yours) {
             let input = format!("{input}, vertex {vertex} at {}", mesh.positions[vertex].paste());
+            let around = mesh.triangles.iter().filter(|corners| corners.contains(&(vertex as u32)));
+            let weighed: Vec<Vec3> = around
+                .map(|corners| corners.map(|corner| mesh.positions[corner as usize]))
+                .map(|[a, b, c]| (b - a).cross(c - a))
+                .collect();
+            let same = |n: Vec3| (yours - n.normalize_or_zero()).length() < 1e-4;
             let diagnosis = match () {
                 () if yours.is_nan() => {
                     "0/0: normals that cancel have no average; take the normal of one face"
                 }
                 () if (yours.length() - 1.0).abs() > 1e-4 => "the normal is not of unit length",
                 () if (yours + expected).length() < 1e-3 => "the normal points inwards",
+                () if same(weighed.iter().sum()) => {
+                    "each face counts by its area: normalise the normals of the faces before adding them up"
+                }
+                () if weighed.iter().any(|&face| same(face)) => {
+                    "the normal of one face: add up those of all faces around the vertex"
+                }
                 () => "",
             };
             return Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)));

@@ -9,6 +9,27 @@ use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
 
 pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome {
+    // First tables that tell one mistake from another.
+    for (primitives, diagnosis) in [
+        (vec![5.0], "the last primitive is left out: they are 0..n"),
+        (
+            vec![1.0, 3.0],
+            "the closest hit is not kept: a later one replaces it (is it kept under another name?)",
+        ),
+        (vec![3.0, 1.0], "the closest hit is not kept: the first one stays, or ends the search"),
+    ] {
+        let ray = Ray::new(Vec3::ZERO, Vec3::X);
+        let table = Table { boxes: Vec::new(), primitives };
+        let query = SearchQuery { bvh: Default::default(), ray, table };
+        let expected = crate::tree::closest_in_table(&query);
+        let yours = trial.kit.brute_force(std::slice::from_ref(&query))[0].hit;
+        let yours = yours.map(|hit| (hit.primitive, hit.t));
+        if yours != expected {
+            let input = format!("primitives at t = {:?}", query.table.primitives);
+            return Err(Broken::new(input, yours, expected, "the smallest t in the table")
+                .looks_like(Some(diagnosis)));
+        }
+    }
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
     let inputs = (prop::collection::vec(t, 0..12), 0..=4i32).prop_map(|(primitives, t_min)| {
         let ray = Ray::new(Vec3::ZERO, Vec3::X).with_range(t_min as f32 / 2.0, 8.0);

@@ -52,7 +52,7 @@ pub(super) fn judge_inside(
                             "seen from behind all three signs turn: accept all ≥ 0 or all ≤ 0"
                         }
                         false => "seen from the front all three signs are alike: accept all ≥ 0 or all ≤ 0",
-                        true => "a point beyond a side: is P0 subtracted twice, or a side left out?",
+                        true => "a point beyond a side: is P0 subtracted twice, or a side left out or turned around?",
                     };
                     Err(Broken::new(query.call(name), yours, inside, "double precision")
                         .looks_like(Some(diagnosis)))
@@ -92,6 +92,9 @@ pub(super) fn inside_by_areas_gives_the_weights_of_the_corners(trial: &Trial<'_>
                 return Ok(());
             }
             let diagnosis = match yours {
+                Some(yours) if inside && (yours.element_sum() - 1.0).abs() > 1e-2 => {
+                    "the weights do not add up to 1: divide like by like, |u × v| is twice the area"
+                }
                 Some(_) if !inside => "areas without a sign cannot tell inside from outside: measure along the normal",
                 Some(yours) if (yours.as_dvec3().truncate() - exact.truncate()).length() > 1e-3
                     && (yours.as_dvec3() - DVec3::new(exact.z, exact.y, exact.x)).length() < 1e-3 =>

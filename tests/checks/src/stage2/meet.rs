@@ -62,6 +62,11 @@ for_all_methods! {
 }
 
 pub(super) fn triangle_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
+    // First a ray on which every formula is right that is right on any: what it gets wrong is told most plainly.
+    let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
+    let ray = Ray::new(vec3(0.125, 0.5, 2.0), vec3(0.0, 0.0, -0.5));
+    let drawn = TriangleQuery { ray, triangle: unit };
+    method.judge(trial, &[drawn]).into_iter().collect::<Outcome>()?;
     trial.forall(6000, aimed(triangle(), point(8)), |queries| method.judge(trial, queries))
 }
 
@@ -94,6 +99,12 @@ pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 pub(super) fn triangle_windings(trial: &Trial<'_>, method: Method) -> Outcome {
+    let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
+    let sides = [1.0, -1.0].map(|way| TriangleQuery {
+        ray: Ray::new(vec3(0.125, 0.5, 2.0 * way), vec3(0.0, 0.0, -way)),
+        triangle: unit,
+    });
+    method.judge(trial, &sides).into_iter().collect::<Outcome>()?;
     // The corners in all six orders: the same verdict and the same t, from the front and from the back.
     trial.forall(1000, aimed(triangle(), point(8)), |queries| {
         let orders = |query: &TriangleQuery| {

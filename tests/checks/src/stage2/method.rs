@@ -82,8 +82,16 @@ pub(super) fn triangle_diagnosis(
             "a point outside with one weight below 0: 0 ≤ s + t ≤ 1 is not enough, s ≥ 0 and t ≥ 0 as well"
         }
         (Some(_), Expected::Miss) if alpha < 0.0 => "a point beyond the third side: β + γ ≤ 1 is not tested",
-        (Some(hit), _) if near(hit.beta, gamma) && near(hit.gamma, beta) => "β and γ look swapped",
-        (Some(hit), _) if near(hit.beta, alpha) || near(hit.gamma, alpha) => {
+        _ if method == CRAMER.name && slide_determinant_explains(query, yours, expected) => {
+            "the determinant as the slide prints it: it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+        }
+        (Some(hit), _) if !near(hit.beta, beta) && near(hit.beta, gamma) && near(hit.gamma, beta) => {
+            "β and γ look swapped"
+        }
+        (Some(hit), _)
+            if !near(hit.beta, beta) && near(hit.beta, alpha)
+                || !near(hit.gamma, gamma) && near(hit.gamma, alpha) =>
+        {
             "a weight of corner a: β belongs to b and γ to c"
         }
         (Some(hit), Expected::Hit { t, .. }) if f64::from(hit.t) * t < 0.0 => "the sign of t is wrong",
@@ -92,21 +100,36 @@ pub(super) fn triangle_diagnosis(
         {
             "your t counts world units; it must count lengths of dir"
         }
-        (_, Expected::Hit { .. }) if method == CRAMER.name && slide_determinant_is_off(query) => {
-            "the determinant as the slide prints it: it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+        (None, Expected::Hit { .. }) => {
+            "a hit was lost: is the triangle tested from one side only, or a - o turned around?"
         }
-        (None, Expected::Hit { .. }) => "a hit was lost: is the triangle tested from one side only?",
         _ => return None,
     })
 }
 
-/// Whether the determinant that the slide prints differs much from the true one here.
-pub(super) fn slide_determinant_is_off(query: &TriangleQuery) -> bool {
+/// Whether the determinant that the slide prints differs much from the true one here, and gives this answer.
+fn slide_determinant_explains(
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    expected: &double::TriangleExpected,
+) -> bool {
     let [x, y, z] = [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.dir];
     let s = query.triangle.a - query.ray.origin;
     let slide = x.x * (y.y * z.z - z.y * y.z) + y.x * (z.y * s.z - s.y * z.z) + z.x * (s.y * y.z - y.y * s.z);
     let right = x.dot(y.cross(z));
-    (slide - right).abs() > 1e-3 * right.abs()
+    let Expected::Hit { t, .. } = expected.t else { return false };
+    if (slide - right).abs() <= 1e-3 * right.abs() {
+        return false;
+    }
+    // Numerators are right, so all three results are off by one factor.
+    let factor = f64::from(right) / f64::from(slide);
+    let [t, beta, gamma] = [t, expected.beta, expected.gamma].map(|value| factor * value);
+    match yours {
+        Some(hit) => t.is_finite() && (f64::from(hit.t) - t).abs() <= 1e-3 * t.abs(),
+        None => {
+            !t.is_finite() || !query.ray.contains(t as f32) || beta < 0.0 || gamma < 0.0 || beta + gamma > 1.0
+        }
+    }
 }
 
 /// A ray that is aimed at the point `(β, γ)` of a triangle, inside or out.

@@ -16,14 +16,18 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> Outcome {
         compare(triangles, trial.kit.triangle_bounds(triangles), |triangle, yours| {
             let corner = |p: Vec3| Aabb::new(p, p);
             let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
-            let diagnosis = yours
-                .contains_box(&expected)
-                .then_some("a padded box: slabs are closed, so a flat box needs none");
+            let diagnosis = match () {
+                () if yours.contains_box(&expected) => {
+                    "a padded box: slabs are closed, so a flat box needs none"
+                }
+                () if expected.contains_box(&yours) => "a corner is left out",
+                () => "",
+            };
             let input = call("triangle_bounds", &[triangle]);
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(diagnosis))
+                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
             }
         })
     })
@@ -36,8 +40,8 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, spheres, |spheres| {
         compare(spheres, trial.kit.sphere_bounds(spheres), |sphere, yours| {
             let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
-            // One rounding either way is allowed, and a few outwards.
-            let slack = (center.abs() + radius) * 4.0 * double::U;
+            // Half a step for the rounding and two steps outwards; a step is two roundings at most.
+            let slack = (center.abs() + radius) * 5.0 * double::U;
             let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
             let right = near(yours.min, center - radius) && near(yours.max, center + radius);
             let expected = Aabb::new((center - radius).as_vec3(), (center + radius).as_vec3());
@@ -46,7 +50,20 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
                 sphere.center.paste(),
                 sphere.radius.paste()
             );
-            if right { Ok(()) } else { Err(Broken::new(input, yours, expected, "closed form")) }
+            let diagnosis = match yours.max - yours.min {
+                size if (size - 2.0 * sphere.radius).abs().max_element() < 1e-3 * sphere.radius => {
+                    "the box is elsewhere: go one radius either way from the centre"
+                }
+                size if size.max_element() < 2.0 * sphere.radius => {
+                    "the box is too small: one radius, not half of one, either way"
+                }
+                _ => "",
+            };
+            if right {
+                Ok(())
+            } else {
+                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+            }
         })
     })
 }
@@ -62,12 +79,18 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> Outcome {
         compare(pairs, trial.kit.union(pairs), |(first, second), yours| {
             let expected = tree::around([first, second]);
             let input = call("union", &[first, second]);
-            let diagnosis = (first.is_empty() != second.is_empty())
-                .then_some("the empty box (inf, -inf) must change nothing");
+            let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
+            let diagnosis = match () {
+                () if first.is_empty() != second.is_empty() => {
+                    "the empty box (inf, -inf) must change nothing"
+                }
+                () if yours == shared => "what both boxes share: take the smaller min and the larger max",
+                () => "",
+            };
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(diagnosis))
+                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
             }
         })
     })
@@ -78,7 +101,16 @@ pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> Outcome {
         compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
             let expected = 0.5 * (bounds.min + bounds.max); // eighths: exact
             let input = call("centroid", &[bounds]);
-            if yours == expected { Ok(()) } else { Err(Broken::new(input, yours, expected, "closed form")) }
+            let diagnosis = match () {
+                () if yours == bounds.min + bounds.max => "min + max, not halved",
+                () if yours == 0.5 * (bounds.max - bounds.min) => "half the size of the box, not its middle",
+                () => "",
+            };
+            if yours == expected {
+                Ok(())
+            } else {
+                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+            }
         })
     })
 }
@@ -90,6 +122,7 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> Outcome {
             let expected = 2.0 * tree::half_area(bounds) as f32; // products of eighths: exact
             let diagnosis = match yours {
                 _ if bounds.is_empty() => "an empty box has no faces; inf - -inf makes nonsense",
+                _ if yours == (bounds.max - bounds.min).element_product() => "the volume, not the area",
                 _ if 2.0 * yours == expected => "half of it: each face counts twice",
                 _ => "",
             };

@@ -3,13 +3,13 @@
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
 use crate::broken::{Broken, Outcome};
-use crate::judge::compare;
+use crate::judge::{compare, known};
 use crate::paste::Arguments;
 use crate::{Trial, golden, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::BuildQuery;
+use raykata::kit::{BuildQuery, Mishap, mishap};
 use raykata::scene::Split;
 
 pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Outcome> {
@@ -17,10 +17,26 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Out
         match tree::fault(&yours, &query.bounds, query.leaf_size) {
             None => Ok(()),
             Some((yours, expected)) => {
-                Err(Broken::told(query.call("build"), yours, expected, "what makes a hierarchy"))
+                let diagnosis = build_diagnosis(&yours);
+                let broken = Broken::told(query.call("build"), yours, expected, "what makes a hierarchy");
+                Err(broken.looks_like(known(diagnosis)))
             }
         }
     })
+}
+
+/// What goes wrong where a tree has this fault.
+fn build_diagnosis(fault: &str) -> &'static str {
+    match fault {
+        _ if fault.ends_with("in 0 leaves") => "a primitive was left out: both halves together must hold all",
+        _ if fault.ends_with("leaves") => "a primitive got into both halves: where one ends the other begins",
+        _ if fault.contains(" holds ") => {
+            "the wrong leaf size: a leaf is made if n ≤ leaf_size, and only then"
+        }
+        _ if fault.contains("sticks out") => "the box of a node must be around all that lies below it",
+        _ if fault.ends_with("nodes") => "nothing needs no tree: add no node",
+        _ => "",
+    }
 }
 
 pub(super) fn split() -> impl Strategy<Value = Split> + Clone {
@@ -41,7 +57,19 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
     for split in Split::ALL {
         for leaf_size in [1, 4] {
             let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size };
-            judge_builds(trial, &[query]).into_iter().collect::<Outcome>()?;
+            match mishap::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
+                Ok(outcomes) => outcomes.into_iter().collect::<Outcome>()?,
+                Err(Mishap::Panicked { message, place }) => {
+                    let diagnosis = match bounds.len() <= leaf_size {
+                        true => "so few primitives are a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
+                        false => "a split put everything on one side: fall back on one that divides",
+                    };
+                    let panic = format!("a panic at {place}: {message}");
+                    let broken = Broken::told(query.call("build"), panic, "a tree", "what makes a hierarchy");
+                    return Err(broken.looks_like(Some(diagnosis)));
+                }
+                Err(mishap) => mishap::unwind(mishap),
+            }
         }
     }
     Ok(())

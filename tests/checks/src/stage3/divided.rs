@@ -40,12 +40,9 @@ pub(super) fn judge_splits(
         let mut ids = order.clone();
         ids.sort_unstable();
         if ids != (0..n as u32).collect::<Vec<_>>() {
-            return Err(Broken::told(
-                input,
-                format!("{order:?}"),
-                format!("the primitives 0..{n} in some order"),
-                "nothing may be lost",
-            ));
+            let all = format!("the primitives 0..{n} in some order");
+            let broken = Broken::told(input, format!("{order:?}"), all, "nothing may be lost");
+            return Err(broken.looks_like(Some("a primitive was overwritten: swap the two")));
         }
         let Some(middle) = middle else {
             return match law(&query.primitives, 0) {

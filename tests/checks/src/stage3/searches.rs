@@ -8,7 +8,8 @@ use crate::{Trial, tree};
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{SearchAnswer, SearchQuery};
+use raykata::bvh::Bvh;
+use raykata::kit::{SearchAnswer, SearchQuery, Table};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -23,7 +24,14 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
             let twice = if t_min % 3 == 0 { spheres.clone() } else { Vec::new() };
             let spheres: Vec<Sphere> = twice.into_iter().chain(spheres).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
-            let bvh = tree::build(&boxes, leaf_size);
+            let mut bvh = tree::build(&boxes, leaf_size);
+            if t_min % 2 == 0 {
+                // Numbered from the other end, so that of two hits at one t the larger number may come first.
+                let last = spheres.len() as u32;
+                bvh.order.iter_mut().for_each(|id| *id = last - 1 - *id);
+            }
+            let spheres: Vec<Sphere> =
+                if t_min % 2 == 0 { spheres.into_iter().rev().collect() } else { spheres };
             // Half of the rays look at the middle of things.
             let dir = if leaf_size % 2 == 0 && origin != Vec3::ZERO {
                 (-origin.normalize() + 0.2 * dir).normalize()
@@ -76,7 +84,51 @@ pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> Outcome
         .looks_like(known(diagnosis)))
 }
 
+/// Two trees so small that an answer tells the mistake: a leaf of four, and two boxes that overlap.
+fn drawn_searches() -> [SearchQuery; 2] {
+    let bounds = Aabb::new(Vec3::ZERO, Vec3::splat(9.0));
+    let ids = tree::references(&[bounds; 4]);
+    let ray = Ray::new(Vec3::NEG_X, Vec3::X);
+    let mut leaf = Bvh::for_primitives(4);
+    let root = leaf.add_node(bounds);
+    leaf.set_leaf(root, &ids);
+    let mut two = Bvh::for_primitives(2);
+    let (root, near, far) = (two.add_node(bounds), two.add_node(bounds), two.add_node(bounds));
+    two.set_leaf(near, &ids[..1]);
+    two.set_leaf(far, &ids[1..2]);
+    two.set_children(root, near, far);
+    let table = |boxes: Vec<(f32, f32)>, primitives: Vec<f32>| Table { boxes, primitives };
+    [
+        SearchQuery { bvh: leaf, ray, table: table(vec![(1.0, 9.0)], vec![3.0, 5.0, 4.0, 2.0]) },
+        SearchQuery { bvh: two, ray, table: table(vec![(1.0, 9.0), (1.0, 8.0), (2.0, 9.0)], vec![6.0, 4.0]) },
+    ]
+}
+
+fn judge_drawn_searches(yours: &[SearchAnswer]) -> Outcome {
+    let queries = drawn_searches();
+    let diagnosis = |index: usize, yours: &SearchAnswer| match (index, yours.hit.map(|hit| hit.t)) {
+        (_, None) => "a subtree or part of a leaf was left out",
+        (0, _) if yours.counts.primitive_tests == 1 => "the first hit of a leaf is taken: ask all of a leaf",
+        (0, Some(5.0)) | (1, Some(6.0)) if yours.counts.primitive_tests >= 2 => {
+            "the farther of two hits is kept"
+        }
+        (0, _) => "part of a leaf was left out: its last primitive?",
+        _ => {
+            "boxes overlap: the search stopped before it had seen the nearer hit, which is in the other child"
+        }
+    };
+    for (index, (query, yours)) in queries.iter().zip(yours).enumerate() {
+        let (found, expected) = (yours.hit.map(|hit| (hit.primitive, hit.t)), closest_in_table(query));
+        if found != expected {
+            let broken = Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)");
+            return Err(broken.looks_like(Some(diagnosis(index, yours))));
+        }
+    }
+    Ok(())
+}
+
 pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    judge_drawn_searches(&trial.kit.closest_hit_both(&drawn_searches()))?;
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| judge_search(query, &yours))
     })
@@ -103,6 +155,7 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
 }
 
 pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    judge_drawn_searches(&trial.kit.closest_hit(&drawn_searches()))?;
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit(queries), |query, yours| judge_search(query, &yours))
     })
@@ -112,7 +165,10 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
             let expected = closest_in_table(query).is_some();
-            let diagnosis = if yours {
+            let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
+            let diagnosis = if yours && nothing {
+                "nothing is hit: to enter a box is not yet a hit"
+            } else if yours {
                 "a hit beyond t_max, or before t_min, hides nothing"
             } else {
                 "a hit was overlooked"

@@ -1,12 +1,12 @@
-//! The three split strategies.
+//! The two medians, and what no split may stumble over.
 
 use super::divided::{boxes, divided, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
-use crate::broken::Outcome;
+use crate::broken::{Broken, Outcome};
 use crate::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::bvh::PrimitiveRef;
+use raykata::kit::{Mishap, mishap};
 use raykata::scene::Split;
 
 pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> Outcome {
@@ -53,11 +53,11 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> Outcome {
             };
             let some_cut =
                 |bounds: &Aabb| tree::longest_axes(bounds).into_iter().any(|axis| fits(bounds, axis));
-            // If the middle of the box divides nothing, any split will do.
+            // If the middle of the box divides nothing, any split will do; a centroid on the cut may go either way.
             let divides = tree::longest_axes(&all).into_iter().all(|axis| {
                 let cut = 0.5 * (all.min[axis] + all.max[axis]);
                 ordered.iter().any(|p| p.centroid[axis] < cut)
-                    && ordered.iter().any(|p| p.centroid[axis] >= cut)
+                    && ordered.iter().any(|p| p.centroid[axis] > cut)
             });
             let right = !divides || some_cut(&all) || some_cut(&tree::around(&centroids));
             (!right).then(|| {
@@ -86,49 +86,21 @@ pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Out
     .collect()
 }
 
-pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> Outcome {
-    trial.forall(500, boxes(16), |sets| {
-        judge_splits(trial, Split::SurfaceArea, sets, |ordered, middle| {
-            let (best, _, _) = tree::best_cut(ordered);
-            let leaf = tree::leaf_is_cheaper(ordered, best);
-            if middle == 0 {
-                let wrong = leaf == Some(false);
-                return wrong.then(|| (String::new(), format!("a cut of cost {best:.4}, cheaper than a leaf"), "the leaf is taken too soon: C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) against C_i A(P) n(P)"));
-            }
-            if leaf == Some(true) {
-                return Some((format!("a cut before {middle}"), "None: a leaf is cheaper than any cut".into(), "TRAVERSAL_COST is left out, so a cut always looks cheaper"));
-            }
-            let yours = tree::cut_cost(ordered, middle);
-            // Coincident centroids may be sorted in any order, which changes the cost of cuts between them; those
-            // sets are judged by the best cut that some order gives only if centroids differ.
-            (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
-                let by_count = best_by_count(ordered) ;
-                let diagnosis = if middle == by_count { "a cut by counts alone: the areas are left out" } else { "only one axis tried, or not every cut" };
-                (format!("cost {yours:.4} (cut before {middle})"), format!("cost {best:.4}"), diagnosis)
-            })
-        })
-    })
-}
-
-/// Where a cut by counts alone would be.
-pub(super) fn best_by_count(ordered: &[PrimitiveRef]) -> usize {
-    ordered.len() / 2
-}
-
-pub(super) fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {
-    (0..3).all(|axis| {
-        let mut at: Vec<f32> = primitives.iter().map(|p| p.centroid[axis]).collect();
-        at.sort_by(f32::total_cmp);
-        at.windows(2).all(|pair| pair[0] < pair[1])
-    })
-}
-
 pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Outcome {
     // A3: boxes in a line and boxes in a point have no area; 0/0 must not decide, nor panic.
     let line: Vec<Aabb> =
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();
     let points = vec![Aabb::new(Vec3::ONE, Vec3::ONE); 5];
-    judge_splits(trial, Split::SurfaceArea, &[line, points, vec![UNIT_BOX; 6]], |_, _| None)
-        .into_iter()
-        .collect()
+    let sets = [line, points, vec![UNIT_BOX; 6]];
+    match mishap::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _| None)) {
+        Ok(outcomes) => outcomes.into_iter().collect(),
+        Err(Mishap::Panicked { message, place }) => {
+            let input = "SurfaceArea of six boxes along a line, five in one point, six equal ones";
+            let panic = format!("a panic at {place}: {message}");
+            Err(Broken::told(input, panic, "an answer", "the definition").looks_like(Some(
+                "0/0 makes every cost NaN, and no cut is the best: compare costs without dividing by A(P)",
+            )))
+        }
+        Err(mishap) => mishap::unwind(mishap),
+    }
 }

@@ -6,7 +6,7 @@ use crate::broken::{Broken, Outcome};
 use crate::generate::{point, unit};
 use crate::judge::{compare, known};
 use crate::paste::Arguments;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{LightSample, ShadeQuery, Surface, TermQuery};
 use raykata::material::Material;
@@ -45,8 +45,8 @@ pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
     )
 }
 
-/// The share of light `index` in double precision, shadows aside.
-pub(super) fn share(query: &ShadeQuery, index: usize) -> DVec3 {
+/// The diffuse and the specular share of light `index` in double precision, shadows aside.
+fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
     let light = &query.lights[index];
     let normal = query.surface.shading_normal;
     let diffuse = normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
@@ -56,11 +56,17 @@ pub(super) fn share(query: &ShadeQuery, index: usize) -> DVec3 {
         to_viewer: query.to_viewer,
         exponent: query.material.exponent,
     };
-    light.radiance.as_dvec3()
-        * (query.material.diffuse.as_dvec3() * diffuse + query.material.specular.as_dvec3() * specular(&term))
+    let radiance = light.radiance.as_dvec3();
+    let Material { diffuse: kd, specular: ks, .. } = &query.material;
+    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term)]
 }
 
-pub(super) fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool) -> DVec3 {
+/// The share of light `index`, shadows aside.
+fn share(query: &ShadeQuery, index: usize) -> DVec3 {
+    shares(query, index).into_iter().sum()
+}
+
+fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool) -> DVec3 {
     let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
     (0..query.lights.len()).filter(|&light| counts(light)).map(|light| share(query, light)).sum::<DVec3>()
         + ambient
@@ -78,22 +84,7 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Out
         if horizon || same(expected) {
             return Ok(());
         }
-        let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
-        let diagnosis = match () {
-            () if color.is_nan() => "NaN: a negative cosine to a broken power?",
-            () if same(expected_color(query, |_| true)) => "hidden lights shine as well: multiply by V_i",
-            () if same(expected - ambient) => "the ambient part is missing",
-            () if same(expected_color(query, |light| !query.visible[light])) => {
-                "visible and hidden are swapped"
-            }
-            () if same(ambient + (expected - ambient) * query.material.diffuse.as_dvec3()) => {
-                "the light is multiplied by kd twice"
-            }
-            () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
-                "too bright: is the cosine left out, or a light counted that is behind the surface?"
-            }
-            () => "",
-        };
+        let diagnosis = shade_diagnosis(query, color, expected, same);
         Err(Broken::new(
             query.call("shade"),
             yours.color,
@@ -104,13 +95,91 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Out
     })
 }
 
+/// The mistake that gives this colour.
+fn shade_diagnosis(
+    query: &ShadeQuery,
+    color: DVec3,
+    expected: DVec3,
+    same: impl Fn(DVec3) -> bool,
+) -> &'static str {
+    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
+    let kd = query.material.diffuse.as_dvec3();
+    let visible: Vec<usize> = (0..query.lights.len()).filter(|&light| query.visible[light]).collect();
+    let only = |part: usize| visible.iter().map(|&light| shares(query, light)[part]).sum::<DVec3>() + ambient;
+    let white = ShadeQuery {
+        lights: query.lights.iter().map(|light| LightSample { radiance: Vec3::ONE, ..*light }).collect(),
+        ..query.clone()
+    };
+    let one = |light: Option<&usize>| light.is_some_and(|&light| same(share(query, light) + ambient));
+    match () {
+        () if color.is_nan() => "NaN: a negative cosine to a broken power?",
+        () if same(expected - ambient) => "the ambient part is missing",
+        () if visible.len() < query.lights.len() && same(expected_color(query, |_| true)) => {
+            "hidden lights shine as well: multiply by V_i"
+        }
+        () if visible.len() < query.lights.len()
+            && same(expected_color(query, |light| !query.visible[light])) =>
+        {
+            "visible and hidden are swapped"
+        }
+        () if same(expected.min(DVec3::ONE)) => "the colour is cut off at 1: that is for the picture to do",
+        () if same(only(1)) => "the diffuse part is missing",
+        () if same(only(0)) => "the specular part is missing",
+        () if one(visible.first()) || one(visible.last()) => {
+            "one light counts, the first light or the last: add up all of them"
+        }
+        () if same(expected_color(&white, |light| query.visible[light])) => {
+            "the colour of the light is left out"
+        }
+        () if same(ambient + (expected - ambient) * kd) => "the light is multiplied by kd twice",
+        () if same(expected + (query.lights.len().max(1) - 1) as f64 * ambient) => {
+            "the ambient part is added for each light: it counts once"
+        }
+        () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
+            "too bright: is the cosine left out, or a light counted that is behind the surface?"
+        }
+        () => "",
+    }
+}
+
+/// A surface with two lights on which each part and each way to go wrong gives another colour.
+fn drawn(brightness: f32, visible: [bool; 2]) -> ShadeQuery {
+    let light = |direction: Vec3, radiance: Vec3| LightSample { direction, distance: 2.0, radiance };
+    let material = Material {
+        ambient: vec3(0.5, 0.25, 0.5),
+        diffuse: vec3(0.5, 0.25, 0.75),
+        specular: vec3(0.25, 0.5, 0.125),
+        exponent: 4.0,
+        ..Material::default()
+    };
+    ShadeQuery {
+        surface: Surface {
+            point: Vec3::ZERO,
+            error: Vec3::splat(1e-7),
+            geometric_normal: Vec3::Y,
+            shading_normal: Vec3::Y,
+        },
+        to_viewer: vec3(0.28, 0.96, 0.0),
+        material,
+        ambient: vec3(0.2, 0.4, 0.6),
+        lights: vec![
+            light(vec3(-0.6, 0.8, 0.0), brightness * vec3(0.5, 0.25, 0.75)),
+            light(vec3(0.0, 0.8, 0.6), brightness * vec3(0.25, 0.5, 0.125)),
+        ],
+        visible: visible.to_vec(),
+    }
+}
+
 pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> Outcome {
+    let drawn = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
+    judge_shades(trial, &drawn).into_iter().collect::<Outcome>()?;
     let all_visible =
         shade_query().prop_map(|query| ShadeQuery { visible: vec![true; query.lights.len()], ..query });
     trial.forall(2000, all_visible, |queries| judge_shades(trial, queries))
 }
 
 pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> Outcome {
+    judge_shades(trial, &[drawn(1.0, [true, false])]).into_iter().collect::<Outcome>()?;
     trial.forall(2000, shade_query(), |queries| judge_shades(trial, queries))
 }
 

@@ -69,6 +69,11 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
             let told = || (format!("ends after {reach}"), format!("just below {}", light.distance));
             // L2: a lamp that is a surface of the scene must not shadow itself; what stands near it must.
             match () {
+                () if (length - 1.0).abs() > 1e-3 && reach > light.distance && ray.t_max <= light.distance => Some((
+                    told().0,
+                    told().1,
+                    "t counts lengths of the direction: if it is as long as the way, the light is at t = 1",
+                )),
                 () if reach == f32::INFINITY => Some((
                     told().0,
                     told().1,
@@ -105,6 +110,13 @@ pub(super) fn start_height(query: &ShadowQuery, ray: &raykata::ray::Ray) -> (f64
     ((start - query.surface.point.as_dvec3()).dot(normal), query.surface.error.as_dvec3().dot(normal.abs()))
 }
 
+/// Whether the start has moved towards the light, and not along the normal.
+fn goes_along_the_light(query: &ShadowQuery, ray: &raykata::ray::Ray) -> bool {
+    let moved = (ray.origin - query.surface.point).normalize_or_zero();
+    let (normal, to_light) = (query.surface.geometric_normal, query.light.direction);
+    moved.dot(to_light) > 0.99 && moved.dot(normal) < 0.9
+}
+
 pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> Outcome {
     // R6: the true surface is up to `error` above the point. Sizes from a thousandth to a hundred thousand.
     trial.forall(3000, lit(-3.0..5.0), |queries| {
@@ -115,6 +127,9 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
                     "the ray starts on the surface itself, and hits it in half of all cases"
                 }
                 () if height < 0.0 => "the ray starts below the surface",
+                () if goes_along_the_light(query, ray) => {
+                    "the offset goes along the ray, which may be nearly along the surface: go along the normal"
+                }
                 () => "a fixed offset is too small here: move by the error of the point, error · |n|",
             };
             // A hundredth for the rounding of the bound itself.

@@ -28,7 +28,7 @@ pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
 }
 
 pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
-    trial.forall(2000, terms(), |queries| {
+    let judge = |queries: &[TermQuery]| {
         compare(queries, trial.kit.diffuse_term(queries), |query, yours| {
             let cosine = query.normal.as_dvec3().dot(query.to_light.as_dvec3());
             let expected = cosine.max(0.0) as f32;
@@ -40,6 +40,9 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
                     "a light behind the surface lights it: clamp at 0, do not take the absolute value"
                 }
                 () if yours == 1.0 => "the cosine is missing",
+                () if yours == 0.0 && cosine > 0.0 => {
+                    "a light in front of the surface gives nothing: is its direction turned around?"
+                }
                 () => "",
             };
             let input = paste_term("diffuse_term", query);
@@ -50,7 +53,13 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
                 Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
             }
         })
-    })
+    };
+    // First a light in front: from behind, a wrong sign and an absolute value look alike.
+    let (to_light, to_viewer) = (vec3(0.6, 0.8, 0.0), Vec3::Y);
+    judge(&[TermQuery { normal: Vec3::Y, to_light, to_viewer, exponent: 1.0 }])
+        .into_iter()
+        .collect::<Outcome>()?;
+    trial.forall(2000, terms(), judge)
 }
 
 /// `cosⁿ φ` in double precision.
@@ -62,36 +71,47 @@ pub(super) fn specular(query: &TermQuery) -> f64 {
 }
 
 pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> Outcome {
-    trial.forall(3000, terms(), |queries| {
-        compare(queries, trial.kit.specular_term(queries), |query, yours| {
-            let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
-            let exponent = f64::from(query.exponent);
-            let expected = specular(query);
-            // A cosine near 0 decides between 0 and 1 for exponent 0.
-            let edge = n.dot(l).abs() < 1e-5 || (2.0 * n.dot(l) * n - l).dot(v).abs() < 1e-5;
-            // The cosine is off by a few roundings, and the power makes n times as much of that.
-            if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + exponent) {
-                return Ok(());
+    // First a highlight for which each way to go wrong gives another number.
+    let drawn = TermQuery {
+        normal: Vec3::Y,
+        to_light: vec3(0.6, 0.8, 0.0),
+        to_viewer: vec3(-0.28, 0.96, 0.0),
+        exponent: 2.0,
+    };
+    judge_highlights(trial, &[drawn]).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, terms(), |queries| judge_highlights(trial, queries))
+}
+
+fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.specular_term(queries), |query, yours| {
+        let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
+        let exponent = f64::from(query.exponent);
+        let expected = specular(query);
+        // A cosine near 0 decides between 0 and 1 for exponent 0.
+        let cos_phi = (2.0 * n.dot(l) * n - l).dot(v);
+        let edge = n.dot(l).abs() < 1e-5 || cos_phi.abs() < 1e-5;
+        // The cosine is off by a few roundings, and the power makes n times as much of that.
+        if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + exponent) {
+            return Ok(());
+        }
+        let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent);
+        let power = |cosine: f64| cosine.max(0.0).powf(exponent);
+        let diagnosis = match () {
+            () if yours.is_nan() => "a negative cosine to a broken power is NaN: clamp it first",
+            () if n.dot(l) <= 0.0 => "the light is behind the surface: no highlight",
+            () if near(power((l + v).normalize().dot(n))) => {
+                "the half-vector form (Blinn); the notes mirror the light (Phong)"
             }
-            let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent);
-            let half = (l + v).normalize().dot(n).max(0.0);
-            let diagnosis = match () {
-                () if yours.is_nan() => "a negative cosine to a broken power is NaN: clamp it first",
-                () if n.dot(l) <= 0.0 => "the light is behind the surface: no highlight",
-                () if near(half.powf(exponent)) => {
-                    "the half-vector form (Blinn); the notes mirror the light (Phong)"
-                }
-                () if near((-(l - 2.0 * n.dot(l) * n)).dot(-v).powf(exponent)) => {
-                    "the mirrored direction points into the surface"
-                }
-                () if near(n.dot(l).max(0.0).powf(exponent)) => {
-                    "φ is the angle between mirrored light and viewer, not θ"
-                }
-                () => "",
-            };
-            Err(Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form")
-                .looks_like(known(diagnosis)))
-        })
+            () if near(power(n.dot(l))) => "φ is the angle between mirrored light and viewer, not θ",
+            () if near(cos_phi) => "the exponent is left out",
+            () if near(power((n.dot(l) * n - l).dot(v))) => "the 2 of 2 (n·l) n - l is left out",
+            () if yours == 0.0 && cos_phi > 0.0 => {
+                "no highlight where there is one: the mirrored direction points into the surface, 2 (n·l) n - l does not"
+            }
+            () => "",
+        };
+        Err(Broken::new(paste_term("specular_term", query), yours, expected as f32, "closed form")
+            .looks_like(known(diagnosis)))
     })
 }
 
@@ -105,6 +125,8 @@ pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> Outcome {
             [
                 TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(-0.6, 0.8, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(0.6, 0.8, 0.0), exponent },
+                // Here cos φ is positive, and only cos θ says that the light is below the horizon.
+                TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(-0.96, 0.28, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: aside, to_viewer: vec3(0.8, -0.6, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: aside, to_viewer: vec3(0.96, 0.28, 0.0), exponent },
             ]

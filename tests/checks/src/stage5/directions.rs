@@ -15,14 +15,18 @@ pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
 }
 
 pub(super) fn mirror_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
-    trial.forall(2000, arrival(), |queries| {
+    let judge = |queries: &[(Vec3, Vec3)]| {
         compare(queries, trial.kit.mirror(queries), |(dir, normal), yours| {
             let (d, n) = (dir.as_dvec3(), normal.as_dvec3());
             let expected = (d - 2.0 * d.dot(n) * n).normalize().as_vec3();
             let same = |v: Vec3| (yours - v).length() < 1e-6; // a few roundings of numbers up to 2
             let diagnosis = match () {
-                () if same(-expected) => "the mirrored ray points into the surface",
                 () if same(*dir) => "the ray goes straight on",
+                () if same(-*dir) => "the ray goes back the way it came",
+                () if same(-expected) => "the mirrored ray points into the surface",
+                () if same((d + 2.0 * d.dot(n) * n).normalize().as_vec3()) => {
+                    "plus, where minus belongs: d - 2 n (d·n)"
+                }
                 () if (yours.normalize_or_zero()
                     - (*dir - dir.dot(*normal) * *normal).normalize_or_zero())
                 .length()
@@ -38,7 +42,10 @@ pub(super) fn mirror_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
             }
             Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
         })
-    })
+    };
+    // First a slanted ray: on one along the normal or along the surface, several mistakes give one answer.
+    judge(&[(vec3(0.6, -0.8, 0.0), Vec3::Y)]).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, arrival(), judge)
 }
 
 pub(super) fn mirror_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Outcome {
@@ -63,12 +70,23 @@ pub(super) fn mirror_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Ou
 }
 
 /// Snell's law in double precision; `None` beyond the critical angle, and how far the answer is from that.
-fn snell(query: &RefractQuery) -> (Option<DVec3>, f64) {
+pub(super) fn snell(query: &RefractQuery) -> (Option<DVec3>, f64) {
     let (d, n) = (query.dir.as_dvec3(), query.normal.as_dvec3().normalize());
     let ratio = f64::from(query.n1) / f64::from(query.n2);
     let along = ratio * (d - d.dot(n) * n);
     let cos_squared = 1.0 - along.length_squared();
     ((cos_squared >= 0.0).then(|| (along - cos_squared.max(0.0).sqrt() * n).normalize()), cos_squared)
+}
+
+/// The direction behind the surface if the sine there were this one of `(sin θ1, n1 / n2)`.
+fn turned(query: &RefractQuery, sine: impl Fn(f64, f64) -> f64) -> Option<DVec3> {
+    let (d, n) = (query.dir.as_dvec3(), query.normal.as_dvec3().normalize());
+    let ratio = f64::from(query.n1) / f64::from(query.n2);
+    let along = d - d.dot(n) * n;
+    let sine_1 = along.length();
+    let sine_2 = sine(sine_1, ratio);
+    (sine_2.abs() <= 1.0 && sine_1 > 0.0)
+        .then(|| sine_2 / sine_1 * along - (1.0 - sine_2 * sine_2).sqrt() * n)
 }
 
 fn paste(query: &RefractQuery) -> String {
@@ -101,9 +119,23 @@ pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> 
                 "beyond the critical angle there is no refracted ray: return None"
             }
             _ if near(swapped) => "n1 and n2 are exchanged: sin θ2 = n1 / n2 · sin θ1",
-            _ if near(expected.map(|v| -v)) => "the refracted ray points back",
             Some(yours) if yours.dot(query.normal) > 0.0 => {
                 "the refracted ray stays on the side it came from"
+            }
+            _ if near(expected.map(|v| -v)) => "the refracted ray points back",
+            _ if near(turned(query, |sine, ratio| -ratio * sine)) => {
+                "the part along the surface goes the other way: keep its sign"
+            }
+            _ if near(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin())) => {
+                "the sines go as n1 / n2, not the angles"
+            }
+            _ if near(turned(query, |sine, ratio| {
+                // What normalising makes of √(1 - n1 / n2 sin² θ1).
+                let (along, across) = (ratio * sine, (1.0 - ratio * sine * sine).sqrt());
+                along / along.hypot(across)
+            })) =>
+            {
+                "sin² θ2 is (n1 / n2)² sin² θ1: the ratio must be squared, too"
             }
             _ => "",
         };
@@ -121,6 +153,8 @@ pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> Outcome {
         n1,
         n2,
     });
+    let drawn = RefractQuery { dir: vec3(0.6, -0.8, 0.0), normal: Vec3::Y, n1: 1.0, n2: 1.25 };
+    judge_refractions(trial, &[drawn]).into_iter().collect::<Outcome>()?;
     trial.forall(4000, inputs, |queries| judge_refractions(trial, queries))
 }
 

@@ -47,6 +47,7 @@ fn judge(
     queries: &[FresnelQuery],
     answers: Vec<f32>,
     reference: fn(&FresnelQuery) -> f64,
+    mistakes: fn(&FresnelQuery) -> Vec<(f64, &'static str)>,
 ) -> Vec<Outcome> {
     compare(queries, answers, |query, yours| {
         let expected = reference(query);
@@ -71,21 +72,69 @@ fn judge(
             () if (f64::from(1.0 - yours) - expected).abs() <= tolerance => {
                 "that is what goes through; asked is what is mirrored"
             }
-            () => "",
+            () => mistakes(query)
+                .into_iter()
+                .find(|(share, _)| (f64::from(yours) - share).abs() <= tolerance)
+                .map_or("", |(_, diagnosis)| diagnosis),
         };
         let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
         Err(Broken::new(input, yours, expected as f32, "double precision").looks_like(known(diagnosis)))
     })
 }
 
-pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    trial.forall(3000, queries(), |queries| {
-        judge("fresnel_schlick", queries, trial.kit.fresnel_schlick(queries), schlick)
+/// What Schlick's formula gives with one thing wrong.
+fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
+    let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
+    let r0 = ((n1 - n2) / (n1 + n2)).powi(2);
+    let behind = behind(query).0.unwrap_or(cosine);
+    let (right, wrong) = if n1 > n2 { (behind, cosine) } else { (cosine, behind) };
+    let formula = |r0: f64, cosine: f64, power: i32| r0 + (1.0 - r0) * (1.0 - cosine).powi(power);
+    vec![
+        (
+            formula(r0, wrong, 5),
+            "the cosine is that of the wrong side: it must be the one in the thinner medium",
+        ),
+        (formula(r0, right, 4), "the fourth power: Schlick takes the fifth"),
+        (formula(r0.sqrt(), right, 5), "R0 is not squared"),
+        (r0, "R0 alone, whatever the angle: the share rises to 1 towards flat angles"),
+    ]
+}
+
+/// What Fresnel's equations give with one thing wrong.
+fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
+    let [cos_1, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
+    let Some(cos_2) = behind(query).0 else { return Vec::new() };
+    let ratio = |p: f64, q: f64| (p - q) / (p + q);
+    let (s, p) = (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
+    vec![
+        (s * s, "one polarisation only: the mean of both"),
+        (p * p, "one polarisation only: the mean of both"),
+        (s * s + p * p, "the sum of both polarisations, not their mean"),
+        (0.5 * (s.abs() + p.abs()), "the ratios are not squared"),
+    ]
+}
+
+/// From either side, and beyond the critical angle; all mistakes give different shares there.
+fn drawn() -> [FresnelQuery; 3] {
+    [(0.5, 1.0, 1.5), (0.875, 1.5, 1.0), (0.5, 1.5, 1.0)].map(|(cos_theta, n1, n2)| FresnelQuery {
+        cos_theta,
+        n1,
+        n2,
     })
 }
 
+pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+    let judge = |queries: &[FresnelQuery]| {
+        judge("fresnel_schlick", queries, trial.kit.fresnel_schlick(queries), schlick, schlick_mistakes)
+    };
+    judge(&drawn()).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, queries(), judge)
+}
+
 pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    trial.forall(3000, queries(), |queries| {
-        judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact)
-    })
+    let judge = |queries: &[FresnelQuery]| {
+        judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact, exact_mistakes)
+    };
+    judge(&drawn()).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, queries(), judge)
 }

@@ -75,6 +75,13 @@ pub(super) fn tree_ends_where_children_count_too_little(trial: &Trial<'_>) -> Ou
     // R9: halves down to a hundredth: 1/64 is traced and 1/128 is not. Testing the parent makes 255 rays of 127.
     let parent = "the weight of the child decides, not that of its parent";
     let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
+    // Twenty bounces, 1 + 20 rays, if the limit is not there at all.
+    let left_out = "limits.min_contribution is left out: only the depth ends this";
+    let halving = judge(trial, 0.5, 0.0, Limits { max_depth: 20, min_contribution: 0.01 }, 7, parent);
+    halving.map_err(|broken| match broken.yours.as_str() {
+        "21 rays" => broken.looks_like(Some(left_out)),
+        _ => broken,
+    })?;
     judge(trial, 0.5, 0.5, limits(0.01), 127, parent)?;
     judge(trial, 0.5, 0.0, limits(0.01), 7, parent)?;
     judge(

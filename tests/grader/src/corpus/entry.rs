@@ -1,0 +1,206 @@
+//! An entry of the corpus: a patch of one file of the solutions, with a header that says what is to come of it.
+
+use anyhow::{Context, Result, anyhow, bail};
+use std::fmt;
+use std::path::Path;
+
+/// What an entry must show.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Claim {
+    /// A mistake, which a check must find and name.
+    Wrong {
+        /// The trap of the lecture notes that it falls into, if it is one.
+        trap: Option<String>,
+        /// The check that is there to catch it.
+        caught_by: String,
+        /// Words that must appear in the message of that check.
+        says: Vec<String>,
+    },
+    /// Another way to do it, which every check must accept.
+    Right,
+}
+
+/// One solution with one difference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The stage whose checks judge it.
+    pub stage: u8,
+    /// The name of its file, without `.patch`.
+    pub name: String,
+    /// The mistake or the method, in a sentence.
+    pub title: String,
+    /// What must come of it.
+    pub claim: Claim,
+    /// The file it changes, from the root of the kit: `solutions/src/…`.
+    pub file: String,
+    /// The difference as `diff -u` prints it.
+    pub diff: String,
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/stage{}/{}", self.kind(), self.stage, self.name)
+    }
+}
+
+impl Entry {
+    /// `wrong` or `right`: the folder it lies in.
+    pub fn kind(&self) -> &'static str {
+        if self.claim == Claim::Right { "right" } else { "wrong" }
+    }
+
+    /// Reads the text of `tests/corpus/KIND/stageN/NAME.patch`.
+    pub fn parse(kind: &str, stage: u8, name: &str, text: &str) -> Result<Entry> {
+        let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
+        let Some(start) = start else { bail!("no difference follows the header (a line `--- a/…`)") };
+        let (header, diff) = text.split_at(start);
+        let mut header = Header::parse(header)?;
+        let (title, claim) = match kind {
+            "wrong" => {
+                let claim = Claim::Wrong {
+                    trap: header.take("trap").pop(),
+                    caught_by: header.one("caught_by")?,
+                    says: header.take("says"),
+                };
+                if matches!(&claim, Claim::Wrong { says, .. } if says.is_empty()) {
+                    bail!("the header lacks `says: words of the message`");
+                }
+                (header.one("mistake")?, claim)
+            }
+            _ => (header.one("method")?, Claim::Right),
+        };
+        header.nothing_left()?;
+        let mut files = diff.lines().filter_map(|line| line.strip_prefix("+++ b/"));
+        let file = files.next().ok_or_else(|| anyhow!("no line `+++ b/solutions/src/…`"))?.trim().to_owned();
+        if files.next().is_some() {
+            bail!("it changes several files; one entry changes one");
+        }
+        if !file.starts_with("solutions/src/") || file.contains("..") {
+            bail!("it changes {file}; an entry changes a file of solutions/src");
+        }
+        Ok(Entry { stage, name: name.to_owned(), title, claim, file, diff: diff.to_owned() })
+    }
+
+    /// The text of the file with the difference made.
+    pub fn apply(&self, original: &str) -> Result<String> {
+        let patch = diffy::Patch::from_str(&self.diff).map_err(|error| anyhow!("{error}"))?;
+        let changed = diffy::apply(original, &patch)
+            .map_err(|error| anyhow!("it does not fit {} as it is now: {error}", self.file))?;
+        if changed == original {
+            bail!("it changes nothing in {}", self.file);
+        }
+        Ok(changed)
+    }
+}
+
+/// Lines `key: value`; comments begin with `#`.
+struct Header(Vec<(String, String)>);
+
+impl Header {
+    fn parse(text: &str) -> Result<Header> {
+        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+        let pair = |line: &str| match line.split_once(':') {
+            Some((key, value)) if !value.trim().is_empty() => {
+                Ok((key.trim().to_owned(), value.trim().to_owned()))
+            }
+            _ => Err(anyhow!("the header has the line `{line}`, which is not `key: value`")),
+        };
+        lines.map(pair).collect::<Result<_>>().map(Header)
+    }
+
+    fn take(&mut self, key: &str) -> Vec<String> {
+        let (taken, left) = std::mem::take(&mut self.0).into_iter().partition(|(name, _)| name == key);
+        self.0 = left;
+        let taken: Vec<(String, String)> = taken;
+        taken.into_iter().map(|(_, value)| value).collect()
+    }
+
+    fn one(&mut self, key: &str) -> Result<String> {
+        let mut values = self.take(key);
+        match (values.pop(), values.is_empty()) {
+            (Some(value), true) => Ok(value),
+            (Some(_), false) => bail!("the header has several lines `{key}: …`"),
+            (None, _) => bail!("the header lacks a line `{key}: …`"),
+        }
+    }
+
+    fn nothing_left(&self) -> Result<()> {
+        match self.0.first() {
+            None => Ok(()),
+            Some((key, _)) => bail!(
+                "the header has `{key}`, which is not one of mistake, trap, caught_by, says (wrong) or method (right)"
+            ),
+        }
+    }
+}
+
+/// All entries of the kit at `root`, sorted by stage, then wrong before right, then by name.
+pub fn read_all(root: &Path) -> Result<Vec<Entry>> {
+    let mut entries = Vec::new();
+    for kind in ["wrong", "right"] {
+        let folder = root.join("tests/corpus").join(kind);
+        for stage_folder in list(&folder)? {
+            let Some(stage) = stage_folder.strip_prefix("stage").and_then(|number| number.parse().ok())
+            else {
+                bail!("tests/corpus/{kind}/{stage_folder}: entries lie in folders stage1, stage2, …");
+            };
+            for file in list(&folder.join(&stage_folder))? {
+                let place = format!("tests/corpus/{kind}/{stage_folder}/{file}");
+                let Some(name) = file.strip_suffix(".patch") else {
+                    bail!("{place}: entries are files NAME.patch");
+                };
+                let text = std::fs::read_to_string(root.join(&place)).with_context(|| place.clone())?;
+                entries.push(Entry::parse(kind, stage, name, &text).with_context(|| place)?);
+            }
+        }
+    }
+    entries.sort_by(|one, other| {
+        let key = |entry: &Entry| (entry.stage, entry.claim == Claim::Right, entry.name.clone());
+        key(one).cmp(&key(other))
+    });
+    Ok(entries)
+}
+
+/// The names in a folder, sorted; none if there is no such folder.
+fn list(folder: &Path) -> Result<Vec<String>> {
+    if !folder.is_dir() {
+        return Ok(Vec::new());
+    }
+    let read = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    let mut names: Vec<String> =
+        read.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect::<Result<_>>()?;
+    names.sort();
+    Ok(names)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DIFF: &str =
+        "--- a/solutions/src/a.rs\n+++ b/solutions/src/a.rs\n@@ -1,2 +1,2 @@\n-one\n+eins\n two\n";
+
+    fn wrong(header: &str) -> Result<Entry> {
+        Entry::parse("wrong", 1, "counts", &format!("{header}\n{DIFF}"))
+    }
+
+    #[test]
+    fn an_entry_is_read_and_applied() {
+        let entry =
+            wrong("mistake: it counts\ntrap: S3\ncaught_by: a_check\nsays: too\nsays: many\n").unwrap();
+        assert_eq!(entry.to_string(), "wrong/stage1/counts");
+        let Claim::Wrong { trap, caught_by, says } = &entry.claim else { panic!("{entry:?}") };
+        assert_eq!((trap.as_deref(), caught_by.as_str(), says.len()), (Some("S3"), "a_check", 2));
+        assert_eq!(entry.apply("one\ntwo\n").unwrap(), "eins\ntwo\n");
+        assert!(entry.apply("three\nfour\n").unwrap_err().to_string().contains("does not fit"));
+    }
+
+    #[test]
+    fn a_header_that_lacks_something_or_has_too_much_is_refused() {
+        let told = |header: &str| wrong(header).unwrap_err().to_string();
+        assert!(told("mistake: it counts\nsays: many").contains("lacks a line `caught_by: …`"));
+        assert!(told("mistake: it counts\ncaught_by: a_check").contains("lacks `says"));
+        assert!(told("mistake: m\ncaught_by: c\nsays: s\ntarp: S3").contains("has `tarp`"));
+        assert!(told("mistake").contains("not `key: value`"));
+    }
+}

@@ -1,0 +1,216 @@
+//! `raykata corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
+//! must catch and name, or another right way to do it, which every check must accept.
+//!
+//! `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
+
+pub mod entry;
+pub mod records;
+pub mod verdict;
+pub mod workshop;
+
+use crate::check::run_checks_on;
+use crate::kits::Source;
+use anyhow::{Result, bail};
+use clap::Args;
+use entry::{Claim, Entry};
+use indicatif::{ProgressBar, ProgressStyle};
+use records::Matrix;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use verdict::{Fate, Tried};
+use workshop::{Built, Workshop};
+
+/// Which entries to try, and what to do with what comes of it.
+#[derive(Args)]
+pub struct Options {
+    /// Entries by name; all, if none is named.
+    names: Vec<String>,
+    /// One stage only.
+    #[arg(long)]
+    stage: Option<u8>,
+    /// Two mistakes and one right way of each stage.
+    #[arg(long)]
+    slice: bool,
+    /// How many to try at once.
+    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
+    jobs: usize,
+    /// Also compare with tests/corpus/matrix.txt and tests/corpus/messages.
+    #[arg(long)]
+    check: bool,
+    /// Write tests/corpus/matrix.txt and tests/corpus/messages.
+    #[arg(long, conflicts_with = "check")]
+    bless: bool,
+}
+
+/// Tries entries and reports; whether all is as it must be.
+pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let all = entry::read_all(root)?;
+    let n_all = all.len();
+    let chosen = choose(all, options)?;
+    let complete = chosen.len() == n_all;
+    let tried = try_all(root, chosen, options.jobs.max(1))?;
+
+    let matrix = Matrix::read(root);
+    let differences = if options.check { records::differences(root, &matrix, &tried) } else { Vec::new() };
+    if options.bless {
+        records::bless(root, &tried, complete)?;
+    }
+    report(&tried, &differences);
+    if complete {
+        report_idle_checks(&tried);
+    }
+    Ok(differences.is_empty() && tried.iter().all(|one| one.fate.is_as_it_must_be()))
+}
+
+fn choose(all: Vec<Entry>, options: &Options) -> Result<Vec<Entry>> {
+    for name in &options.names {
+        if !all.iter().any(|entry| is_named(entry, name)) {
+            bail!("tests/corpus has no entry `{name}`");
+        }
+    }
+    let slice = slice(&all);
+    let wanted = |entry: &Entry| {
+        (options.names.is_empty() || options.names.iter().any(|name| is_named(entry, name)))
+            && options.stage.is_none_or(|stage| stage == entry.stage)
+            && (!options.slice || slice.contains(&entry.to_string()))
+    };
+    let chosen: Vec<Entry> = all.into_iter().filter(wanted).collect();
+    if chosen.is_empty() {
+        bail!("no entry is left to try: tests/corpus has none for this choice");
+    }
+    Ok(chosen)
+}
+
+fn is_named(entry: &Entry, name: &str) -> bool {
+    entry.name == name || entry.to_string() == name
+}
+
+/// Of each stage the mistakes a third and two thirds down the list, and the right way in the middle.
+fn slice(all: &[Entry]) -> Vec<String> {
+    let mut stages: Vec<u8> = all.iter().map(|entry| entry.stage).collect();
+    stages.dedup();
+    let mut chosen = Vec::new();
+    for stage in stages {
+        let of_stage = all.iter().filter(|entry| entry.stage == stage);
+        let (right, wrong): (Vec<&Entry>, Vec<&Entry>) =
+            of_stage.partition(|entry| entry.claim == Claim::Right);
+        let picks = [wrong.get(wrong.len() / 3), wrong.get(2 * wrong.len() / 3), right.get(right.len() / 2)];
+        chosen.extend(picks.into_iter().flatten().map(ToString::to_string));
+    }
+    chosen
+}
+
+/// Tries entries in as many workshops as there are jobs.
+fn try_all(root: &Path, entries: Vec<Entry>, jobs: usize) -> Result<Vec<Tried>> {
+    let bar = ProgressBar::new(entries.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}  {msg}") {
+        bar.set_style(style);
+    }
+    bar.set_message("foreign crates");
+    let jobs = jobs.min(entries.len());
+    let first = Workshop::open(root, 0)?;
+    // The reference itself must build, and what it needs is then there for all workshops.
+    match first.build_original()? {
+        Built::Worker(_) => {}
+        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => {
+            bail!("the solutions do not compile by themselves:\n{error}");
+        }
+    }
+    let mut workshops = vec![first];
+    for number in 1..jobs {
+        let workshop = Workshop::open(root, number)?;
+        workshop.take_over(&workshops[0])?;
+        workshops.push(workshop);
+    }
+
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(jobs);
+    let (next, tried) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let work = |workshop: &Workshop| -> Result<()> {
+        while let Some(entry) = entries.get(next.fetch_add(1, Ordering::Relaxed)) {
+            bar.set_message(entry.to_string());
+            let one = try_one(workshop, entry, threads)?;
+            bar.inc(1);
+            if let Ok(mut tried) = tried.lock() {
+                tried.push(one);
+            }
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
+        running.into_iter().try_for_each(|job| {
+            job.join().unwrap_or_else(|_| bail!("a job of the corpus broke: see the message above"))
+        })
+    })?;
+    bar.finish_and_clear();
+    let mut tried = tried.into_inner().unwrap_or_default();
+    tried.sort_by_key(|one| entries.iter().position(|entry| *entry == one.entry));
+    Ok(tried)
+}
+
+fn try_one(workshop: &Workshop, entry: &Entry, threads: usize) -> Result<Tried> {
+    let tried = |fate, failures| Ok(Tried { entry: entry.clone(), fate, failures });
+    let worker = match workshop.build(entry)? {
+        Built::Worker(worker) => worker,
+        Built::DoesNotApply(why) => return tried(Fate::DoesNotApply(why), Default::default()),
+        Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
+    };
+    let graded = run_checks_on(threads, &Source::Worker(worker), |stage| stage == entry.stage);
+    let failures: verdict::Failures =
+        graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
+    tried(Fate::of(entry, &failures), failures)
+}
+
+/// Names the checks that no mistake fails: nobody knows whether they can fail at all.
+fn report_idle_checks(tried: &[Tried]) {
+    let is_tried = |stage: u8| tried.iter().any(|one| one.entry.stage == stage);
+    let fails = |name: &str| tried.iter().any(|one| one.failures.contains_key(name));
+    let checks = checks::STAGES.iter().filter(|(stage, _)| is_tried(*stage)).flat_map(|(_, checks)| *checks);
+    let idle: Vec<&str> = checks.map(|check| check.name).filter(|name| !fails(name)).collect();
+    if !idle.is_empty() {
+        println!("\nchecks that no mistake fails: {}", idle.join(", "));
+    }
+}
+
+fn report(tried: &[Tried], differences: &[String]) {
+    for one in tried.iter().filter(|one| !one.fate.is_as_it_must_be()) {
+        println!("{one}\n");
+    }
+    for difference in differences {
+        println!("{difference}\n");
+    }
+    let mut stages: Vec<u8> = tried.iter().map(|one| one.entry.stage).collect();
+    stages.dedup();
+    println!("stage  mistakes  by name  otherwise  survived  diagnosed   right  accepted   broken");
+    for stage in stages.iter().map(|stage| Some(*stage)).chain([None]) {
+        let count = |which: &dyn Fn(&Tried) -> bool| {
+            let of_stage = tried.iter().filter(|one| stage.is_none_or(|stage| stage == one.entry.stage));
+            of_stage.filter(|one| which(one)).count()
+        };
+        let fated = |fate: Fate| count(&|one| one.fate == fate);
+        let otherwise = |one: &Tried| matches!(one.fate, Fate::Unnamed(_) | Fate::KilledByAnother);
+        let broken = |one: &Tried| matches!(one.fate, Fate::DoesNotApply(_) | Fate::DoesNotCompile(_));
+        let right = |one: &Tried| one.entry.claim == Claim::Right;
+        println!(
+            "{:<5}  {:>8}  {:>7}  {:>9}  {:>8}  {:>9}  {:>6}  {:>8}  {:>7}",
+            stage.map_or("all".into(), |stage| stage.to_string()),
+            count(&|one| !right(one)),
+            fated(Fate::Killed),
+            count(&otherwise),
+            fated(Fate::Survived),
+            count(&Tried::is_diagnosed),
+            count(&right),
+            fated(Fate::Accepted),
+            count(&broken),
+        );
+    }
+    let undiagnosed = tried.iter().filter(|one| one.message().is_some() && !one.is_diagnosed());
+    let undiagnosed: Vec<String> = undiagnosed.map(|one| one.entry.to_string()).collect();
+    if !undiagnosed.is_empty() {
+        println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));
+    }
+    if !differences.is_empty() {
+        println!("\n{} differences: look at them, then `cargo run -- corpus --bless`", differences.len());
+    }
+}

@@ -1,0 +1,186 @@
+//! What came of an entry, and whether that is what had to come of it.
+
+use super::entry::{Claim, Entry};
+use checks::{Check, STAGES, Verdict};
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// The checks that an entry failed, with their messages.
+pub type Failures = BTreeMap<&'static str, String>;
+
+/// How an entry ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fate {
+    /// A mistake: the named check caught it and said the words.
+    Killed,
+    /// A mistake: the named check caught it, and its message lacks these words.
+    Unnamed(Vec<String>),
+    /// A mistake: other checks caught it.
+    KilledByAnother,
+    /// A mistake that nobody caught.
+    Survived,
+    /// Another right way, and every check accepts it.
+    Accepted,
+    /// Another right way that checks reject: false alarms.
+    Rejected,
+    /// The patch does not fit; why.
+    DoesNotApply(String),
+    /// It does not compile; the first error.
+    DoesNotCompile(String),
+}
+
+impl Fate {
+    /// The fate of an entry that failed these checks.
+    pub fn of(entry: &Entry, failures: &Failures) -> Fate {
+        match &entry.claim {
+            Claim::Right if failures.is_empty() => Fate::Accepted,
+            Claim::Right => Fate::Rejected,
+            Claim::Wrong { .. } if failures.is_empty() => Fate::Survived,
+            Claim::Wrong { caught_by, says, .. } => match failures.get(caught_by.as_str()) {
+                None => Fate::KilledByAnother,
+                Some(message) => {
+                    let message = one_line(message);
+                    let missing: Vec<String> =
+                        says.iter().filter(|words| !message.contains(&one_line(words))).cloned().collect();
+                    if missing.is_empty() { Fate::Killed } else { Fate::Unnamed(missing) }
+                }
+            },
+        }
+    }
+
+    /// Whether this is as it must be.
+    pub fn is_as_it_must_be(&self) -> bool {
+        matches!(self, Fate::Killed | Fate::Accepted)
+    }
+}
+
+/// The same words, however they are broken into lines.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// An entry that was tried.
+pub struct Tried {
+    /// Which.
+    pub entry: Entry,
+    /// How it ended.
+    pub fate: Fate,
+    /// What it failed.
+    pub failures: Failures,
+}
+
+impl Tried {
+    /// The message of the named check, if it gave one.
+    pub fn message(&self) -> Option<&str> {
+        match &self.entry.claim {
+            Claim::Wrong { caught_by, .. } => self.failures.get(caught_by.as_str()).map(String::as_str),
+            Claim::Right => None,
+        }
+    }
+
+    /// Whether the named check says what the mistake looks like.
+    pub fn is_diagnosed(&self) -> bool {
+        self.message().is_some_and(|message| message.contains("looks like:"))
+    }
+}
+
+impl fmt::Display for Tried {
+    /// What is wrong, and what to do; for people who look after the checks.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Tried { entry, fate, failures } = self;
+        let checks = || failures.keys().copied().collect::<Vec<_>>().join(", ");
+        let named = match &entry.claim {
+            Claim::Wrong { caught_by, .. } => caught_by,
+            Claim::Right => "",
+        };
+        write!(f, "{entry}: {}\n  ", entry.title)?;
+        match fate {
+            Fate::Killed => write!(f, "killed by {named}"),
+            Fate::Accepted => write!(f, "accepted"),
+            Fate::Unnamed(words) => {
+                write!(f, "killed by {named}, whose message does not say {}", quoted(words))?;
+                write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
+            }
+            Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
+            Fate::Survived => write!(f, "SURVIVED: no check of stage {} sees it", entry.stage),
+            Fate::Rejected => {
+                write!(f, "FALSE ALARM: it is right, but rejected by {}", checks())?;
+                failures.values().next().map_or(Ok(()), |message| write!(f, "\n{message}"))
+            }
+            Fate::DoesNotApply(why) => {
+                write!(f, "the patch cannot be used: {why}; make it anew from the solution as it is now")
+            }
+            Fate::DoesNotCompile(error) => write!(f, "does not compile:\n{error}"),
+        }
+    }
+}
+
+fn quoted(words: &[String]) -> String {
+    words.iter().map(|words| format!("`{words}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// The check of this name in this stage, if there is one.
+pub fn check_named(stage: u8, name: &str) -> Option<&'static Check> {
+    let (_, checks) = STAGES.iter().find(|(number, _)| *number == stage)?;
+    checks.iter().find(|check| check.name == name)
+}
+
+/// The message of a check that was not passed.
+pub fn failure(verdict: Verdict) -> Option<String> {
+    match verdict {
+        Verdict::Passed => None,
+        Verdict::Failed(message) => Some(without_lines(&message)),
+        Verdict::NotWritten { task, place } => {
+            Some(without_lines(&format!("not written yet: {place}\n  {task}\n")))
+        }
+    }
+}
+
+/// `file.rs:12` as `file.rs`: the line of a panic moves with every edit above it, and what is kept would go stale.
+fn without_lines(message: &str) -> String {
+    let mut parts = message.split(".rs:");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        text.push_str(".rs");
+        let rest = part.trim_start_matches(|c: char| c.is_ascii_digit());
+        if rest.len() == part.len() {
+            text.push(':'); // No line follows.
+        }
+        text.push_str(rest);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_of_panics_are_left_out() {
+        let message = "panicked at solutions/src/a.rs:12\n  words: a.rs: b\n";
+        assert_eq!(without_lines(message), "panicked at solutions/src/a.rs\n  words: a.rs: b\n");
+    }
+
+    #[test]
+    fn fates_follow_from_claims_and_failures() {
+        let claim = Claim::Wrong { trap: None, caught_by: "b".into(), says: vec!["far root".into()] };
+        let entry = |claim: &Claim| Entry {
+            stage: 1,
+            name: "n".into(),
+            title: "t".into(),
+            claim: claim.clone(),
+            file: "f".into(),
+            diff: String::new(),
+        };
+        let fate = |claim: &Claim, failed: &[(&'static str, &str)]| {
+            let failures = failed.iter().map(|(name, message)| (*name, (*message).to_owned())).collect();
+            Fate::of(&entry(claim), &failures)
+        };
+        assert_eq!(fate(&claim, &[]), Fate::Survived);
+        assert_eq!(fate(&claim, &[("a", "")]), Fate::KilledByAnother);
+        assert_eq!(fate(&claim, &[("b", "the near root")]), Fate::Unnamed(vec!["far root".into()]));
+        assert_eq!(fate(&claim, &[("b", "the far\n   root")]), Fate::Killed);
+        assert_eq!(fate(&Claim::Right, &[]), Fate::Accepted);
+        assert_eq!(fate(&Claim::Right, &[("a", "")]), Fate::Rejected);
+    }
+}

@@ -1,0 +1,229 @@
+//! Where entries are built: a folder with a copy of the scaffold and of the solutions and nothing else, so that a
+//! change costs one small crate.
+//!
+//! Path packages of different folders may hash alike, and cargo judges by modification time whether a file has changed.
+//! So each workshop has a target folder of its own, a file is written only if its text is another one, and a build in
+//! which cargo found the solutions unchanged is refused: its verdict would be about the entry before.
+
+use super::entry::Entry;
+use anyhow::{Context, Result, bail};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A folder in which one entry at a time is built.
+pub struct Workshop {
+    root: PathBuf,
+    folder: PathBuf,
+}
+
+/// What came of building an entry.
+pub enum Built {
+    /// The worker that answers with the changed solutions.
+    Worker(PathBuf),
+    /// The patch does not fit; why.
+    DoesNotApply(String),
+    /// The compiler's first error.
+    DoesNotCompile(String),
+}
+
+impl Workshop {
+    /// The workshop of this number for the kit at `root`, brought up to date.
+    pub fn open(root: &Path, number: usize) -> Result<Workshop> {
+        let folder = root.join(format!("target/corpus/{number}"));
+        let workshop = Workshop { root: root.to_owned(), folder };
+        write_if_new(
+            &workshop.folder.join("Cargo.toml"),
+            &cut_manifest(&read(&root.join("Cargo.toml"))?, &["dev-dependencies", "[test]", "[bench]"]),
+        )?;
+        write_if_new(
+            &workshop.folder.join("solutions/Cargo.toml"),
+            &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies"]),
+        )?;
+        if !workshop.folder.join("Cargo.lock").exists() {
+            // The versions that the kit uses. Cargo strikes out what is not needed here.
+            write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
+        }
+        mirror(&root.join("src"), &workshop.folder.join("src"))?;
+        workshop.reset()?;
+        Ok(workshop)
+    }
+
+    /// Makes the solutions here those of the kit again.
+    fn reset(&self) -> Result<()> {
+        mirror(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))
+    }
+
+    /// Takes over what another workshop has built of foreign crates, which saves building them again.
+    pub fn take_over(&self, other: &Workshop) -> Result<()> {
+        if !self.folder.join("target").exists() {
+            copy_with_times(&other.folder.join("target"), &self.folder.join("target"))?;
+        }
+        Ok(())
+    }
+
+    /// Builds the solutions without a change.
+    pub fn build_original(&self) -> Result<Built> {
+        self.reset()?;
+        Ok(self.cargo()?.1)
+    }
+
+    /// Builds the solutions with one entry.
+    pub fn build(&self, entry: &Entry) -> Result<Built> {
+        self.reset()?;
+        let original = read(&self.root.join(&entry.file))?;
+        let changed = match entry.apply(&original) {
+            Ok(changed) => changed,
+            Err(error) => return Ok(Built::DoesNotApply(error.to_string())),
+        };
+        write_if_new(&self.folder.join(&entry.file), &changed)?;
+        let (fresh, built) = self.cargo()?;
+        if fresh && matches!(built, Built::Worker(_)) {
+            bail!(
+                "cargo found nothing new in {} for {entry}, so its answers would be those of another entry; remove {} \
+                 and run this again",
+                entry.file,
+                self.folder.display()
+            );
+        }
+        Ok(built)
+    }
+
+    /// Whether cargo took the solutions for unchanged, and what it built.
+    fn cargo(&self) -> Result<(bool, Built)> {
+        let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+            .current_dir(&self.folder)
+            .args(["build", "--quiet", "--package", "solutions", "--bin", "solutions-worker"])
+            .args(["--message-format=json", "--target-dir", "target"])
+            .stdin(Stdio::null())
+            .output()
+            .context("cargo, which builds the entries, cannot be started")?;
+        let messages: Vec<Value> = String::from_utf8_lossy(&output.stdout)
+            .lines()
+            .filter_map(|line| serde_json::from_str(line).ok())
+            .collect();
+        let artifact = |name: &str| {
+            messages
+                .iter()
+                .find(|message| message["reason"] == "compiler-artifact" && message["target"]["name"] == name)
+        };
+        let fresh = artifact("solutions").is_none_or(|lib| lib["fresh"] != false);
+        let worker = artifact("solutions-worker").and_then(|worker| worker["executable"].as_str());
+        match worker {
+            Some(worker) if output.status.success() => Ok((fresh, Built::Worker(worker.into()))),
+            _ => {
+                let errors = messages.iter().filter(|message| message["message"]["level"] == "error");
+                let first = errors.filter_map(|message| message["message"]["rendered"].as_str()).next();
+                let stderr = String::from_utf8_lossy(&output.stderr);
+                Ok((fresh, Built::DoesNotCompile(first.unwrap_or(&stderr).trim().to_owned())))
+            }
+        }
+    }
+}
+
+/// A manifest without the sections of these names, and with no member but `solutions`.
+fn cut_manifest(manifest: &str, without: &[&str]) -> String {
+    let mut cut = String::new();
+    let mut keep = true;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            let name = line.trim_start_matches('[').trim_end_matches(']');
+            keep = !without.iter().any(|section| section.trim_matches(['[', ']']) == name);
+        }
+        match line {
+            _ if !keep || line.starts_with("default-members") => {}
+            _ if line.starts_with("members = ") => cut.push_str("members = [\"solutions\"]\n"),
+            _ => {
+                cut.push_str(line);
+                cut.push('\n');
+            }
+        }
+    }
+    cut
+}
+
+fn read(file: &Path) -> Result<String> {
+    fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
+}
+
+/// Writes a text where another one was, so that cargo takes only what has changed for changed.
+fn write_if_new(file: &Path, text: &str) -> Result<()> {
+    if fs::read_to_string(file).is_ok_and(|old| old == text) {
+        return Ok(());
+    }
+    let write = || {
+        fs::create_dir_all(file.parent().unwrap_or(file))?;
+        fs::write(file, text)
+    };
+    write().with_context(|| format!("{} cannot be written", file.display()))
+}
+
+/// Makes `to` hold the texts of `from` and nothing else.
+fn mirror(from: &Path, to: &Path) -> Result<()> {
+    let mut wanted = BTreeSet::new();
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let entry = entry?;
+        wanted.insert(entry.file_name());
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            mirror(&entry.path(), &target)?;
+        } else {
+            write_if_new(&target, &read(&entry.path())?)?;
+        }
+    }
+    for entry in fs::read_dir(to).with_context(|| to.display().to_string())? {
+        let entry = entry?;
+        if !wanted.contains(&entry.file_name()) {
+            let gone = if entry.file_type()?.is_dir() { fs::remove_dir_all } else { fs::remove_file };
+            gone(entry.path()).with_context(|| entry.path().display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
+/// Copies a folder with the times of its files, by which cargo knows what is up to date.
+fn copy_with_times(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let (entry, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
+        if entry.is_dir() {
+            copy_with_times(&entry, &target)?;
+        } else {
+            fs::copy(&entry, &target)?;
+            let modified = fs::metadata(&entry)?.modified()?;
+            fs::File::options().write(true).open(&target)?.set_modified(modified)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_manifest_of_a_workshop_has_one_member_and_no_tests() {
+        let root = "[workspace]\nmembers = [\"a\", \"b\"]\ndefault-members = [\".\"]\n[package]\nname = \"r\"\n\
+                    [dev-dependencies]\nchecks = \"1\"\n[[test]]\nname = \"s\"\n[lints]\nworkspace = true\n";
+        assert_eq!(
+            cut_manifest(root, &["dev-dependencies", "[test]"]),
+            "[workspace]\nmembers = [\"solutions\"]\n[package]\nname = \"r\"\n[lints]\nworkspace = true\n"
+        );
+    }
+
+    #[test]
+    fn what_is_the_same_is_not_written_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (from, to) = (folder.path().join("from"), folder.path().join("to"));
+        write_if_new(&from.join("a/b.txt"), "b").unwrap();
+        write_if_new(&to.join("old.txt"), "old").unwrap();
+        mirror(&from, &to).unwrap();
+        assert!(!to.join("old.txt").exists());
+        let time = || fs::metadata(to.join("a/b.txt")).unwrap().modified().unwrap();
+        let before = time();
+        mirror(&from, &to).unwrap();
+        assert_eq!(before, time());
+    }
+}

@@ -1,0 +1,113 @@
+//! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
+//! about just these entries. Building and trying them is `cargo run -- corpus --check`, which takes minutes.
+
+use grader::corpus::entry::{Claim, Entry, read_all};
+use grader::corpus::records::{Matrix, message_file};
+use grader::corpus::verdict::check_named;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn entries() -> Vec<Entry> {
+    read_all(&root()).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+#[test]
+fn every_patch_fits_the_solutions_as_they_are() {
+    for entry in entries() {
+        let original = std::fs::read_to_string(root().join(&entry.file)).expect("a file of the solutions");
+        entry.apply(&original).unwrap_or_else(|error| panic!("{entry}: {error}"));
+    }
+}
+
+#[test]
+fn every_check_that_is_to_catch_a_mistake_exists() {
+    for entry in entries() {
+        if let Claim::Wrong { caught_by, .. } = &entry.claim {
+            let stage = entry.stage;
+            assert!(check_named(stage, caught_by).is_some(), "{entry}: stage {stage} has no `{caught_by}`");
+        }
+    }
+}
+
+#[test]
+fn there_are_enough_of_each_stage() {
+    let mut counts: BTreeMap<u8, (usize, usize)> = BTreeMap::new();
+    for entry in entries() {
+        let (wrong, right) = counts.entry(entry.stage).or_default();
+        *if entry.claim == Claim::Right { right } else { wrong } += 1;
+    }
+    assert!((1..=5).all(|stage| counts.contains_key(&stage)), "{counts:?}");
+    assert!(counts.values().all(|(wrong, right)| *wrong >= 6 && *right >= 3), "{counts:?}");
+    assert!(counts.values().map(|(wrong, _)| wrong).sum::<usize>() >= 100, "{counts:?}");
+}
+
+#[test]
+fn the_matrix_is_about_these_entries_and_all_is_as_it_must_be() {
+    let matrix = Matrix::read(&root());
+    let entries = entries();
+    let names: BTreeSet<String> = entries.iter().map(ToString::to_string).collect();
+    assert_eq!(names, matrix.0.keys().cloned().collect(), "run `cargo run -- corpus --bless`");
+    for entry in &entries {
+        let failed = &matrix.0[&entry.to_string()];
+        match &entry.claim {
+            Claim::Right => assert_eq!(failed, "-", "{entry} is right, and is rejected"),
+            Claim::Wrong { caught_by, .. } => {
+                assert!(
+                    failed.split(' ').any(|check| check == format!("={caught_by}")),
+                    "{entry} is not caught"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_check_can_fail() {
+    let matrix = Matrix::read(&root());
+    let killers: BTreeSet<&str> = matrix.killers().collect();
+    let stages: BTreeSet<u8> = entries().iter().map(|entry| entry.stage).collect();
+    for (_, checks) in checks::STAGES.iter().filter(|(stage, _)| stages.contains(stage)) {
+        for check in *checks {
+            assert!(killers.contains(check.name), "no mistake of the corpus fails `{}`", check.name);
+        }
+    }
+}
+
+#[test]
+fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
+    let (mut told, mut diagnosed) = (BTreeSet::new(), 0);
+    for entry in entries() {
+        if entry.claim != Claim::Right {
+            let file = message_file(&root(), &entry);
+            let message = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{entry}: {error}"));
+            diagnosed += usize::from(message.contains("looks like:"));
+            told.insert(format!("stage{}/{}.txt", entry.stage, entry.name));
+        }
+    }
+    assert!(diagnosed * 10 >= told.len() * 9, "{diagnosed} of {}", told.len());
+    for stage in std::fs::read_dir(root().join("tests/corpus/messages")).expect("the folder of messages") {
+        let stage = stage.expect("a folder");
+        for file in std::fs::read_dir(stage.path()).expect("messages of a stage") {
+            let (folder, file) = (stage.file_name(), file.expect("a file").file_name());
+            let name = format!("{}/{}", folder.to_string_lossy(), file.to_string_lossy());
+            assert!(told.contains(&name), "tests/corpus/messages/{name} is of an entry that is gone");
+        }
+    }
+}
+
+#[test]
+fn an_entry_that_does_not_exist_is_told() {
+    let raykata = Command::new(env!("CARGO_BIN_EXE_raykata"))
+        .current_dir(root())
+        .args(["corpus", "no_such_entry"])
+        .output()
+        .expect("the program starts");
+    assert_eq!(raykata.status.code(), Some(1));
+    let complaint = String::from_utf8_lossy(&raykata.stderr);
+    assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
+}
