@@ -121,21 +121,21 @@ fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, 
 const AXES: [&str; 2] = ["1 - cos θ, as a share of the rim's", "the angle around the centre"];
 
 pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
-    let ball = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 1.5 };
+    let ball = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
     let from = vec3(1.0, 1.0, 2.0);
     let shares = seen(trial, ball, from)?;
-    covers_evenly("toward_ball from two radii away", &shares, AXES, |counts| {
+    covers_evenly("toward_ball from 1.25 radii away", &shares, AXES, |counts| {
         let rings = columns(counts);
-        if rings[0] > 2 * rings[7] {
+        if 2 * rings[0] > 3 * rings[7] {
             "crowded in the middle: slices of equal height, not rings of equal width, have equal area"
-        } else if rings[7] > 2 * rings[0] {
+        } else if 2 * rings[7] > 3 * rings[0] {
             "crowded at the rim"
         } else {
             ""
         }
     })?;
     // The light that a surface facing the ball gets: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
-    let cos_rim = 0.75f64.sqrt();
+    let cos_rim = 0.6; // its sine is 2.4 / 3
     let cosines: Vec<f64> = shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
     has_mean("the cosine of toward_ball with the way to the centre", &cosines, 0.5 * (1.0 + cos_rim), "")
 }

@@ -6,7 +6,7 @@ use crate::broken::{Broken, Outcome};
 use crate::generate::{magnitude, point, rough_point};
 use crate::judge::{compare, known};
 use crate::paste::{Paste, call};
-use crate::statistics::{SAMPLES, covers_evenly, pairs};
+use crate::statistics::{SAMPLES, columns, covers_evenly, pairs};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -101,10 +101,16 @@ pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
         .map(|(index, u)| TimeQuery { shutter, slot: 1 + index as u32 % 16, slots: 16, u: u.x })
         .collect();
     let times = trial.kit.time_in_shutter(&queries);
-    // The second axis is free: any even number will do.
-    let shares: Vec<(f64, f64)> =
-        times.iter().zip(&u).map(|(time, u)| (2.0 * (f64::from(*time) - 0.25), f64::from(u.y))).collect();
-    covers_evenly("time_in_shutter in 16 slots", &shares, ["the time", "another number"], |_| "")
+    // Even over the whole time, and even within each slot as well.
+    let place = |time: &f32| {
+        let share = 2.0 * (f64::from(*time) - 0.25);
+        ((16.0 * share).fract(), share)
+    };
+    let places: Vec<(f64, f64)> = times.iter().map(place).collect();
+    covers_evenly("time_in_shutter in 16 slots", &places, ["the time in its slot", "the time"], |counts| {
+        let of_slot = columns(counts);
+        if of_slot.contains(&0) { "not all of a slot is used: u says where in it" } else { "" }
+    })
 }
 
 type Move = (Vec3, Vec3, f32);

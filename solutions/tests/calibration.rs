@@ -1,0 +1,231 @@
+//! How well the statistical checks of stage 6 judge: each runs with 1,000 seeds on the reference, which it may reject
+//! once in 10,000 tests, and on wrong distributions, each of which it has to reject 990 times.
+//!
+//! The table: `cargo test -p solutions --test calibration -- --nocapture`.
+
+use checks::statistics::FALSE_ALARMS;
+use checks::{Check, Trial};
+use glam::{Vec2, Vec3, vec2};
+use raykata::frame::Watch;
+use raykata::kit::{Answer, BallQuery, Door, GlossQuery, Kit, Request, Transport};
+use std::f32::consts::{PI, TAU};
+use std::thread;
+
+const SEEDS: u64 = 1000;
+/// Seeds out of [`SEEDS`] with which a wrong distribution has to be caught.
+const CAUGHT: usize = 990;
+
+/// The statistical checks, and how many chi-square and t-tests each makes.
+const STATISTICAL: [(&str, u32); 10] = [
+    ("jittered_samples_cover_the_pixel_evenly", 1),
+    ("places_on_the_disk_are_even", 2),
+    ("places_on_a_rectangle_are_even", 1),
+    ("places_on_a_round_lamp_are_even", 1),
+    ("directions_to_a_ball_are_even", 2),
+    ("a_far_ball_is_still_a_ball", 1),
+    ("from_inside_a_ball_it_is_everywhere", 1),
+    ("half_a_ball_makes_half_a_shadow", 4),
+    ("gloss_falls_with_the_power_of_the_cosine", 6),
+    ("times_are_even", 1),
+];
+
+/// The reference, but for one answer.
+struct Twisted(fn(&Request) -> Option<Answer>);
+
+impl Transport for Twisted {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        (self.0)(&request).unwrap_or_else(|| request.answer(&solutions::Kit, watch))
+    }
+}
+
+fn check(name: &str) -> &'static Check {
+    checks::stage6::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
+}
+
+/// The seeds with which `check` rejects `kit`.
+fn rejections(check: &'static Check, kit: &(dyn Kit + Sync)) -> usize {
+    let half = |seeds: std::ops::Range<u64>| {
+        seeds.filter(|&seed| (check.law)(&Trial { kit, name: check.name, seed }).is_err()).count()
+    };
+    thread::scope(|scope| {
+        let first = scope.spawn(move || half(0..SEEDS / 2));
+        half(SEEDS / 2..SEEDS) + first.join().expect("checks do not panic on answers")
+    })
+}
+
+#[test]
+fn the_reference_is_rejected_as_rarely_as_stated() {
+    let (mut tests, mut alarms) = (0, 0);
+    for (name, laws) in STATISTICAL {
+        let rejected = rejections(check(name), &solutions::Kit);
+        println!("{rejected:>4} of {SEEDS} seeds rejected, {laws} tests each: {name}");
+        tests += SEEDS * u64::from(laws);
+        alarms += rejected;
+    }
+    let expected = tests as f64 * FALSE_ALARMS;
+    println!("{alarms} false alarms in {tests} tests; stated: {expected:.1}");
+    // Poisson: above its mean by four standard deviations once in some thousand times.
+    assert!((alarms as f64) <= expected + 4.0 * expected.sqrt(), "{alarms} false alarms, stated {expected}");
+}
+
+/// A unit vector at this angle to `axis`, turned around it by `turn` of a circle.
+fn around(axis: Vec3, cosine: f32, turn: f32) -> Vec3 {
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let (x, y) = axis.any_orthonormal_pair();
+    let (sin, cos) = (TAU * turn).sin_cos();
+    (cosine * axis + sine * (cos * x + sin * y)).normalize()
+}
+
+fn polar(radius: f32, turn: f32) -> Vec2 {
+    radius * Vec2::from_angle(TAU * turn)
+}
+
+fn each<Q, A>(queries: &[Q], answer: impl Fn(&Q) -> A) -> Vec<A> {
+    queries.iter().map(answer).collect()
+}
+
+fn disk(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
+    match request {
+        Request::OnDisk(queries) => Some(Answer::OnDisk(each(queries, |u| place(*u)))),
+        _ => None,
+    }
+}
+
+fn round_lamp(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
+    let Request::OnLampDisk(queries) = request else { return None };
+    let point = |(disk, u): &(raykata::shape::Disk, Vec2)| {
+        let (x, y) = disk.normal.normalize().any_orthonormal_pair();
+        let place = disk.radius * place(*u);
+        disk.center + place.x * x + place.y * y
+    };
+    Some(Answer::OnLampDisk(each(queries, point)))
+}
+
+fn rectangle(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
+    let Request::OnRectangle(queries) = request else { return None };
+    Some(Answer::OnRectangle(each(queries, |query| {
+        let shares = place(query.u);
+        query.corner + shares.x * query.edges.0 + shares.y * query.edges.1
+    })))
+}
+
+/// Directions to a ball from its rim's sine and cosine and two random numbers.
+fn ball(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<Answer> {
+    let Request::TowardBall(queries) = request else { return None };
+    Some(Answer::TowardBall(each(queries, |BallQuery { ball, from, u }| {
+        let to_center = ball.center - *from;
+        let sin_rim = ball.radius / to_center.length();
+        around(to_center.normalize_or(Vec3::Y), cosine(sin_rim, u.x), u.y)
+    })))
+}
+
+/// Directions off a rough mirror from its roughness and a random number.
+fn lobe(request: &Request, cosine: fn(roughness: f32, u: f32) -> f32) -> Option<Answer> {
+    let Request::Gloss(queries) = request else { return None };
+    Some(Answer::Gloss(each(queries, |GlossQuery { ideal, roughness, u, .. }| {
+        around(*ideal, cosine(*roughness, u.x), u.y)
+    })))
+}
+
+fn cells(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
+    let Request::Jittered(strata) = request else { return None };
+    Some(Answer::Jittered(each(strata, |stratum| {
+        (stratum.cell.as_vec2() + place(stratum.u)) / stratum.grid.as_vec2()
+    })))
+}
+
+fn times(request: &Request, place: fn(f32) -> f32) -> Option<Answer> {
+    let Request::TimeInShutter(queries) = request else { return None };
+    Some(Answer::TimeInShutter(each(queries, |query| {
+        let share = ((query.slot - 1) as f32 + place(query.u)) / query.slots as f32;
+        query.shutter.open + share * (query.shutter.close - query.shutter.open)
+    })))
+}
+
+/// What is wrong, the check that has to see it, and the answers.
+type Wrong = (&'static str, &'static str, fn(&Request) -> Option<Answer>);
+
+const WRONG: &[Wrong] = &[
+    ("disk: radius even", "places_on_the_disk_are_even", |r| disk(r, |u| polar(u.x, u.y))),
+    ("disk: radius as in a ball, ∛u", "places_on_the_disk_are_even", |r| {
+        disk(r, |u| polar(u.x.cbrt(), u.y))
+    }),
+    ("disk: radius u^0.45", "places_on_the_disk_are_even", |r| disk(r, |u| polar(u.x.powf(0.45), u.y))),
+    ("disk: one u for radius and angle", "places_on_the_disk_are_even", |r| {
+        disk(r, |u| polar(u.x.sqrt(), u.x))
+    }),
+    ("disk: half of it, angle to π", "places_on_the_disk_are_even", |r| {
+        disk(r, |u| polar(u.x.sqrt(), 0.5 * u.y))
+    }),
+    ("disk: angle in radians to 6", "places_on_the_disk_are_even", |r| {
+        disk(r, |u| polar(u.x.sqrt(), 6.0 / TAU * u.y))
+    }),
+    ("disk: the square squeezed, x √(1 - y²)", "places_on_the_disk_are_even", |r| {
+        disk(r, |u| {
+            let square = 2.0 * u - 1.0;
+            vec2(square.x * (1.0 - square.y * square.y).sqrt(), square.y)
+        })
+    }),
+    ("round lamp: radius even", "places_on_a_round_lamp_are_even", |r| round_lamp(r, |u| polar(u.x, u.y))),
+    ("round lamp: a quarter, u not centred", "places_on_a_round_lamp_are_even", |r| {
+        round_lamp(r, |u| polar(u.x.sqrt(), 0.25 * u.y))
+    }),
+    ("rectangle: one u for both edges", "places_on_a_rectangle_are_even", |r| {
+        rectangle(r, |u| vec2(u.x, u.x))
+    }),
+    ("rectangle: folded to a triangle", "places_on_a_rectangle_are_even", |r| {
+        rectangle(r, |u| if u.x + u.y > 1.0 { 1.0 - u } else { u })
+    }),
+    ("rectangle: u²", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x * u.x, u.y))),
+    ("rectangle: u^1.1", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x.powf(1.1), u.y))),
+    ("ball: θ even", "directions_to_a_ball_are_even", |r| ball(r, |rim, u| (u * rim.min(1.0).asin()).cos())),
+    ("ball: a flat disk in its middle", "directions_to_a_ball_are_even", |r| {
+        ball(r, |rim, u| (1.0 / (1.0 + u * rim * rim)).sqrt())
+    }),
+    ("ball: sin² even", "directions_to_a_ball_are_even", |r| ball(r, |rim, u| (1.0 - u * rim * rim).sqrt())),
+    ("ball: far, 1 - cos θ rounded", "a_far_ball_is_still_a_ball", |r| {
+        ball(r, |rim, u| 1.0 - u * (1.0 - (1.0 - rim * rim).sqrt()))
+    }),
+    ("ball: inside, θ even", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| (PI * u).cos())),
+    ("ball: inside, half of it", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| u)),
+    ("ball: half of the rim", "half_a_ball_makes_half_a_shadow", |r| {
+        let Request::TowardBall(queries) = r else { return None };
+        let halved = |query: &BallQuery| BallQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
+        Some(Request::TowardBall(each(queries, halved)).answer(&solutions::Kit, &raykata::frame::Unwatched))
+    }),
+    ("gloss: exponent 1 / n", "gloss_falls_with_the_power_of_the_cosine", |r| {
+        lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 2.0)))
+    }),
+    ("gloss: roughness not squared", "gloss_falls_with_the_power_of_the_cosine", |r| {
+        lobe(r, |rough, u| u.powf(1.0 / (2.0 / rough - 1.0)))
+    }),
+    ("gloss: n = 2 / roughness²", "gloss_falls_with_the_power_of_the_cosine", |r| {
+        lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) + 1.0)))
+    }),
+    ("gloss: an even cone", "gloss_falls_with_the_power_of_the_cosine", |r| {
+        lobe(r, |rough, u| 1.0 - u * 0.5 * rough * rough)
+    }),
+    ("gloss: always diffuse, √u", "gloss_falls_with_the_power_of_the_cosine", |r| lobe(r, |_, u| u.sqrt())),
+    ("jitter: u²", "jittered_samples_cover_the_pixel_evenly", |r| cells(r, |u| u * u)),
+    ("jitter: always the middle of the cell", "jittered_samples_cover_the_pixel_evenly", |r| {
+        cells(r, |_| Vec2::splat(0.5))
+    }),
+    ("jitter: one u for x and y", "jittered_samples_cover_the_pixel_evenly", |r| {
+        cells(r, |u| vec2(u.x, u.x))
+    }),
+    ("time: u² in each slot", "times_are_even", |r| times(r, |u| u * u)),
+    ("time: always the middle of the slot", "times_are_even", |r| times(r, |_| 0.5)),
+];
+
+#[test]
+fn wrong_distributions_are_caught() {
+    let mut missed = Vec::new();
+    for &(what, name, answers) in WRONG {
+        let caught = rejections(check(name), &Door(Twisted(answers)));
+        println!("{caught:>4} of {SEEDS} seeds catch it: {what} ({name})");
+        if caught < CAUGHT {
+            missed.push(what);
+        }
+    }
+    assert!(missed.is_empty(), "caught with less than {CAUGHT} of {SEEDS} seeds: {missed:?}");
+}
