@@ -47,12 +47,10 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
 
 pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
     let tracer = Tracer::new(job);
-    let pixel = u64::from(y) * u64::from(job.scene.film.width) + u64::from(x);
-    let points = Points::new(job.scene.quality.sampler, job.seed, pixel, 0, 1);
-    let sample = CameraSample { column: x, row: y, pixel: None, lens: None, time: None, points };
+    let sample = CameraSample::draw(&tracer.settings(), x, y, 0);
     let (ray, _) = tracer.eye.ray(&sample);
     let mut rays = Vec::new();
-    tracer.radiance(&ray, points, &mut Desk::<Uncounted>::default(), &mut |mut ray, material| {
+    tracer.radiance(&ray, sample.points, &mut Desk::<Uncounted>::default(), &mut |mut ray, material| {
         if let (Some(hit), Some(material)) = (&mut ray.hit, material) {
             hit.1 = job.scene.material_names.get(material).cloned().unwrap_or_default();
         }
@@ -119,7 +117,8 @@ impl<'a> Tracer<'a> {
         &self.job.scene.quality
     }
 
-    fn frame<T: Tally>(&self, watch: &dyn Watch) -> Option<(Film, Counts)> {
+    /// What the frame driver draws: only what the scene calls for.
+    fn settings(&self) -> FrameSettings {
         let (film, quality) = (&self.job.scene.film, self.quality());
         let settings = FrameSettings {
             width: film.width,
@@ -131,13 +130,16 @@ impl<'a> Tracer<'a> {
             threads: self.job.threads,
             seed: self.job.seed,
         };
+        settings.obey(&self.plan.effects)
+    }
+
+    fn frame<T: Tally>(&self, watch: &dyn Watch) -> Option<(Film, Counts)> {
         let radiance = |sample: &CameraSample, desk: &mut Desk<T>| {
             desk.note(Event::Primary);
             let (ray, weight) = self.eye.ray(sample);
             WeightedColor { color: self.radiance(&ray, sample.points, desk, &mut |_, _| {}), weight }
         };
-        let settings = settings.obey(&self.plan.effects);
-        frame::render(&settings, watch, radiance, |samples| self.eye.develop(samples))
+        frame::render(&self.settings(), watch, radiance, |samples| self.eye.develop(samples))
     }
 
     /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
@@ -163,6 +165,7 @@ impl<'a> Tracer<'a> {
                     color += path.weight * self.job.scene.background;
                 }
                 Some(hit) => {
+                    desk.note(Event::Hit);
                     let at = surfaces::surface(&self.world, self.looks, &path.ray, &hit);
                     record(path.told(Some(hit.t())), Some(at.material));
                     let material = self.material(&path.ray, &hit, &at, &mut desk.tally);

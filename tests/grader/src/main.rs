@@ -27,7 +27,7 @@ enum Command {
     Render(render::Options),
     /// Render a scene at growing depths of recursion, side by side.
     Strip(strip::Options),
-    /// Show the rays behind one pixel.
+    /// Show the rays behind one pixel, for the first of its samples.
     Tree(tree::Options),
     /// Grade your exercises and print the scorecard.
     Check {
@@ -58,11 +58,11 @@ enum Command {
     },
     /// Try the checks on known mistakes and on other right solutions (for authors).
     Corpus(corpus::Options),
-    /// Make the mesh of the showcase scene (for authors).
+    /// Make the meshes and images of the scenes (for authors).
     Generate {
-        /// Where to write it.
-        #[arg(default_value = "scenes/meshes/knot.ply")]
-        out: PathBuf,
+        /// The folder that has, or will have, meshes/ and images/.
+        #[arg(default_value = "scenes")]
+        scenes: PathBuf,
     },
 }
 
@@ -93,7 +93,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
         Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
-        Some(Command::Generate { out }) => generate::write(&out)?,
+        Some(Command::Generate { scenes }) => generate::write(&scenes)?,
     }
     Ok(true)
 }
