@@ -144,6 +144,7 @@ fn what_is_left_out_of_the_file_and_what_is_switched_off_are_the_same() {
         (Effect::Motion, "transform_end ="),
         (Effect::Textures, "texture ="),
     ];
+    let text = text();
     for set in Set::all() {
         let absent =
             |line: &&str| !keys.iter().any(|(effect, key)| !set.has(*effect) && line.starts_with(key));

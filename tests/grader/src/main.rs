@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, corpus, generate, render, strip, sync, tree};
+use grader::{check, corpus, explain, generate, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -25,6 +25,8 @@ struct Cli {
 enum Command {
     /// Render a scene to a picture.
     Render(render::Options),
+    /// Say what a scene calls for, why, what it costs, and what is left out.
+    Explain(explain::Options),
     /// Render a scene at growing depths of recursion, side by side.
     Strip(strip::Options),
     /// Show the rays behind one pixel, for the first of its samples.
@@ -83,6 +85,7 @@ fn run(cli: Cli) -> Result<bool> {
     match cli.command {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
         Some(Command::Render(options)) => render::run(&options)?,
+        Some(Command::Explain(options)) => explain::run(&options)?,
         Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {

@@ -1,6 +1,6 @@
 //! `raykata tree`: the rays behind the first sample of one pixel, as text, JSON or a graph.
 
-use crate::kits::{Source, Which, root};
+use crate::kits::{Source, Which};
 use crate::report::load_scene;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -52,10 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
             film.height - 1
         );
     }
-    let source = match options.kit {
-        Which::Solutions => Source::Solutions,
-        Which::Exercises => Source::prepare(options.kit, &root()?)?,
-    };
+    let source = Source::here(options.kit)?;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
     let rays = mishap::catch(|| source.fresh().trace(&job, x, y))?;
     print!("{}", show(&rays, options.format)?);
