@@ -1,0 +1,65 @@
+//! The tiers against big integers.
+
+#[path = "../../examples/oracle/cases.rs"]
+mod cases;
+#[path = "../../examples/oracle/reference.rs"]
+mod reference;
+
+use super::{Body, Tier, Verdict, aabb, meet_with, verdict_with};
+use cases::Case;
+use raykata::aabb::Aabb;
+use raykata::ray::Ray;
+use reference::Answer;
+
+fn agree(ray: &Ray, body: Body, answer: &Answer, context: &str) {
+    for tier in Tier::ALL {
+        let must = matches!(tier, Tier::Auto | Tier::Widest);
+        let word = |verdict| [Verdict::Out, Verdict::On, Verdict::In].iter().position(|&v| v == verdict);
+        let verdict = verdict_with(tier, ray, body);
+        assert!(verdict.is_some() || !must, "{context} {tier:?} {ray:?} {body:?}: no answer");
+        if let Some(verdict) = verdict {
+            assert_eq!(word(verdict), Some(answer.0.into()), "{context} {tier:?} {ray:?} {body:?}");
+        }
+        let meeting = meet_with(tier, ray, body);
+        assert!(meeting.is_some() || !must, "{context} {tier:?} {ray:?} {body:?}: no answer");
+        if let Some(meeting) = meeting {
+            let fits = match (&answer.1, meeting.t) {
+                (None, None) => true,
+                (Some(time), Some(t)) => time.rounds_to(t),
+                _ => false,
+            };
+            assert!(fits, "{context} {tier:?} {ray:?} {body:?}: {meeting:?}");
+        }
+    }
+}
+
+fn agree_on_all(case: &Case, context: &str) {
+    let ray = &case.ray;
+    agree(ray, Body::Triangle(case.triangle), &reference::triangle(ray, &case.triangle), context);
+    agree(ray, Body::Plane(case.plane), &reference::plane(ray, &case.plane), context);
+    agree(ray, Body::Disk(case.disk), &reference::disk(ray, &case.disk), context);
+    agree(ray, Body::Sphere(case.sphere), &reference::sphere(ray, &case.sphere), context);
+    agree(ray, Body::Cuboid(case.cuboid), &reference::cuboid(ray, &case.cuboid), context);
+    agree(ray, Body::Cylinder(case.cylinder), &reference::cylinder(ray, &case.cylinder), context);
+    agree(ray, Body::Cone(case.cone), &reference::cone(ray, &case.cone), context);
+    let bounds = Aabb::new(case.cuboid.min, case.cuboid.max);
+    let overlaps = reference::overlaps(ray, &bounds);
+    for tier in Tier::ALL {
+        let verdict = aabb::verdict_with(tier, ray, &bounds);
+        assert!(
+            verdict.is_none_or(|verdict| verdict.is_hit() == overlaps),
+            "{context} {tier:?} {ray:?} {bounds:?}"
+        );
+        assert!(
+            verdict.is_some() || !matches!(tier, Tier::Auto | Tier::Widest),
+            "{context} {tier:?}: {ray:?}"
+        );
+    }
+}
+
+#[test]
+fn all_tiers_agree_with_big_integers() {
+    for case in 0..10_000 {
+        agree_on_all(&cases::any(1, case), &format!("case {case}"));
+    }
+}
