@@ -90,20 +90,21 @@ pub struct Case {
     pub cone: Cone,
 }
 
-/// Random numbers of size one, which typical scenes are made of.
+/// Random numbers of size one, as typical scenes have: half of the rays aim at the inside of the triangle.
 pub fn typical(seed: u64, case: u64) -> Case {
-    make(&mut Random::new(seed, case), Style::Unit, 0)
+    let mut random = Random::new(seed, case);
+    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Unit));
+    let inside = a.lerp(b, random.unit()).lerp(c, random.unit());
+    let target = if case % 2 == 0 { inside } else { q };
+    shapes(Ray::new(o, target - o), [a, b, c], q, 0.5 * random.unit())
 }
 
-/// Whole numbers aimed so that the triangle is hit on an edge exactly, and much else is tied.
+/// Whole numbers: every ray hits its triangle exactly on an edge (unless that is degenerate), and much else is tied.
 pub fn tied(seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
-    let mut tied = make(&mut random, Style::Lattice, 1);
-    // The middle of an edge of even corners is on the lattice.
-    let Triangle { a, b, c } = tied.triangle;
-    tied.triangle = Triangle { a: 2.0 * a, b: 2.0 * b, c: 2.0 * c };
-    tied.ray.dir = a + b - tied.ray.origin;
-    tied
+    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Lattice));
+    // The middle of an edge between even corners is on the lattice.
+    shapes(Ray::new(o, a + b - o), [2.0 * a, 2.0 * b, 2.0 * c], q, 2.0)
 }
 
 /// One of all kinds.
@@ -168,22 +169,28 @@ fn make(random: &mut Random, style: Style, aim: u64) -> Case {
         3 => ray = ray.with_range(1e-4, 1e30),
         _ => {}
     }
-    let (mut min, mut max) = (a.min(b), a.max(b));
+    let finite = |v: Vec3| if v.is_finite() { v } else { q };
+    let mut case = shapes(ray, [a, b, finite(c)], q, radius);
+    let Cuboid { min, max } = &mut case.cuboid;
     if random.below(6) == 0 {
-        (min.z, max.z) = (max.z, max.z);
+        min.z = max.z;
     }
     if random.below(30) == 0 {
-        (min, max) = (max, min);
+        std::mem::swap(min, max);
     }
-    let finite = |v: Vec3, or: Vec3| if v.is_finite() { v } else { or };
-    let c = finite(c, q);
+    case
+}
+
+/// One shape of every kind from a few points.
+fn shapes(ray: Ray, [a, b, c]: [Vec3; 3], q: Vec3, radius: f32) -> Case {
+    let finite = |v: Vec3| if v.is_finite() { v } else { q };
     Case {
         ray,
         triangle: Triangle { a, b, c },
-        plane: Plane { point: a, normal: finite(b - c, q) },
-        disk: Disk { center: a, normal: finite(b - a, q), radius },
+        plane: Plane { point: a, normal: finite(b - c) },
+        disk: Disk { center: a, normal: finite(b - a), radius },
         sphere: Sphere { center: a, radius },
-        cuboid: Cuboid { min, max },
+        cuboid: Cuboid { min: a.min(b), max: a.max(b) },
         cylinder: Cylinder { base: a, top: b, radius },
         cone: Cone { base: a, apex: b, radius },
     }

@@ -71,6 +71,11 @@ impl Body {
         if !fine && matches!(self, Body::Triangle(_)) {
             return Frame::UNSCALED;
         }
+        if let Body::Triangle(t) = self {
+            let places = [t.a, t.b, t.c, ray.origin].map(|p| p.to_array());
+            let place = Scale::fine(places.as_flattened().iter().copied());
+            return Frame { place, dir: Scale::fine(ray.dir.to_array()), normal: Scale::NONE };
+        }
         joint_frame(ray, self, self, fine)
     }
 

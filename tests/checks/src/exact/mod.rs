@@ -2,7 +2,7 @@
 //!
 //! Every finite `f32` is `m * 2^e`, so hit or miss, the order of hits and the two sides of a rounding are signs of
 //! polynomials with integer coefficients; square roots are compared by squaring. Each question is asked of doubles
-//! that know their error first ([`Tier::Filter`]), of `i128` where a count of bits says that it fits, and of wide
+//! that know their error first ([`Tier::Filter`]), of `i64` and `i128` where a count of bits says that they suffice, and of wide
 //! integers last, which fit every finite input: adaptive predicates as in Shewchuk 1997, with integers in place of
 //! expansions. Inputs that are not finite have no answer (`None`), but the ends of a ray's range may be infinite.
 
@@ -64,6 +64,8 @@ pub enum Tier {
     Auto,
     /// Doubles with an error bound only; `None` when that is too little.
     Filter,
+    /// `i64` only; `None` when the numbers may not fit. Ties on small lattices do.
+    Small,
     /// `i128` only; `None` when the numbers may not fit.
     Narrow,
     /// Integers of 512 bits only; `None` when the numbers may not fit.
@@ -74,7 +76,8 @@ pub enum Tier {
 
 impl Tier {
     /// Every tier, [`Tier::Auto`] first.
-    pub const ALL: [Tier; 5] = [Tier::Auto, Tier::Filter, Tier::Narrow, Tier::Wide, Tier::Widest];
+    pub const ALL: [Tier; 6] =
+        [Tier::Auto, Tier::Filter, Tier::Small, Tier::Narrow, Tier::Wide, Tier::Widest];
 }
 
 /// Something to decide that can be asked of any ring.
@@ -110,6 +113,9 @@ fn decide_exactly<Q: Question>(question: &Q, tier: Tier) -> Option<Q::Answer> {
     let frame = question.frame(true);
     let bits = question.bits(&frame);
     let allowed = |only: Tier| tier == Tier::Auto || tier == only;
+    if bits < 64 && allowed(Tier::Small) {
+        return question.ask::<i64>(&frame);
+    }
     if bits < 128 && allowed(Tier::Narrow) {
         return question.ask::<i128>(&frame);
     }

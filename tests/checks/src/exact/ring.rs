@@ -189,32 +189,39 @@ impl Ring for Estimate {
     }
 }
 
-impl Ring for i128 {
-    const EXACT: bool = true;
+/// Integers of the language; nothing overflows because bits are counted first.
+macro_rules! ring_of_integers {
+    ($int:ty) => {
+        impl Ring for $int {
+            const EXACT: bool = true;
 
-    #[inline]
-    fn input(x: f32, scale: Scale) -> Self {
-        let (m, e) = split(f64::from(x));
-        if m == 0 { 0 } else { i128::from(m) << (e - scale.low) }
-    }
+            #[inline]
+            fn input(x: f32, scale: Scale) -> Self {
+                let (m, e) = split(f64::from(x));
+                if m == 0 { 0 } else { (m as $int) << (e - scale.low) }
+            }
 
-    #[inline]
-    fn fraction(t: f64, unit: i32) -> (Self, Self) {
-        let (m, e) = split(t);
-        let shift = if m == 0 { 0 } else { e - unit };
-        (i128::from(m) << shift.max(0), 1 << (-shift).max(0))
-    }
+            #[inline]
+            fn fraction(t: f64, unit: i32) -> (Self, Self) {
+                let (m, e) = split(t);
+                let shift = if m == 0 { 0 } else { e - unit };
+                ((m as $int) << shift.max(0), 1 << (-shift).max(0))
+            }
 
-    #[inline]
-    fn sign(&self) -> Option<i32> {
-        Some(self.signum() as i32)
-    }
+            #[inline]
+            fn sign(&self) -> Option<i32> {
+                Some(self.signum() as i32)
+            }
 
-    #[inline]
-    fn approx(&self) -> Option<Approx> {
-        Some(Approx { m: *self as f64, e: 0, error: f64::EPSILON })
-    }
+            #[inline]
+            fn approx(&self) -> Option<Approx> {
+                Some(Approx { m: *self as f64, e: 0, error: f64::EPSILON })
+            }
+        }
+    };
 }
+ring_of_integers!(i64);
+ring_of_integers!(i128);
 
 impl<const N: usize> Ring for Wide<N> {
     const EXACT: bool = true;
