@@ -70,14 +70,16 @@ pub enum Tier {
     Narrow,
     /// Integers of 512 bits only; `None` when the numbers may not fit.
     Wide,
+    /// Integers of 1792 bits only; `None` when the numbers may not fit. Every triangle does.
+    Wider,
     /// The widest integers.
     Widest,
 }
 
 impl Tier {
     /// Every tier, [`Tier::Auto`] first.
-    pub const ALL: [Tier; 6] =
-        [Tier::Auto, Tier::Filter, Tier::Small, Tier::Narrow, Tier::Wide, Tier::Widest];
+    pub const ALL: [Tier; 7] =
+        [Tier::Auto, Tier::Filter, Tier::Small, Tier::Narrow, Tier::Wide, Tier::Wider, Tier::Widest];
 }
 
 /// Something to decide that can be asked of any ring.
@@ -121,6 +123,9 @@ fn decide_exactly<Q: Question>(question: &Q, tier: Tier) -> Option<Q::Answer> {
     }
     if bits < 512 && allowed(Tier::Wide) {
         return question.ask::<Wide<8>>(&frame);
+    }
+    if bits < 1792 && allowed(Tier::Wider) {
+        return question.ask::<Wide<28>>(&frame);
     }
     (bits < 64 * WIDEST as u32 && allowed(Tier::Widest)).then(|| question.ask::<Wide<WIDEST>>(&frame))?
 }

@@ -96,8 +96,8 @@ pub(super) fn power(e: i32) -> f64 {
 ///
 /// Every operation rounds by at most `u = 2^-53` of its result. By induction over the operations,
 /// `|value - exact| <= ((1 + u)^n - 1) * size`, where a sum makes `n = max(n1, n2) + 1` and a product
-/// `n = n1 + n2 + 1` (Higham 2002, lemma 3.1). `size` itself is computed with as many roundings. The deepest polynomial
-/// of the oracle has `n <= 60` (a test counts), so `128 u * size` bounds the error with a factor of two to spare.
+/// `n = n1 + n2 + 1` (Higham 2002, lemma 3.1). `size` itself is computed with as many roundings. The deepest sign, in
+/// the order of two cones, has `n = 148`, and a test counts that no `n` is above 250, so `256 u * size` bounds the error.
 ///
 /// Underflow adds less than `2^-700`: inputs are scaled to 1 at most and fractions to `2^130`, a fraction enters at
 /// most squared, so each of a few hundred losses of `2^-1074` is magnified by less than `2^330`. (Triangles and boxes
@@ -110,7 +110,7 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
-    const ROUNDINGS: f64 = 128.0 * (f64::EPSILON / 2.0);
+    const ROUNDINGS: f64 = 256.0 * (f64::EPSILON / 2.0);
     const UNDERFLOW: f64 = f64::from_bits((1023 - 700) << 52);
     const UNKNOWN: Estimate = Estimate { value: 0.0, size: f64::INFINITY };
 

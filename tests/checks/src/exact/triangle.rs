@@ -56,7 +56,7 @@ pub fn margin(ray: &Ray, triangle: &Triangle) -> Option<f64> {
     let (forms, _) = forms::<Estimate>(ray, triangle, &Frame::UNSCALED);
     let margins = forms.map(|form| match form.sign() {
         Some(_) => form.value.abs() / form.size * 24f64.exp2(),
-        // Below 128 * 2^-53 of the size: nothing at this scale.
+        // Below 256 * 2^-53 of the size: nothing at this scale.
         None => 0.0,
     });
     Some(margins.into_iter().fold(f64::INFINITY, f64::min))

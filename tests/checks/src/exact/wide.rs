@@ -93,7 +93,17 @@ impl<const N: usize> Sub for Wide<N> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        self + -other
+        let mut difference = self;
+        let mut borrow = false;
+        for (limb, &less) in difference.0.iter_mut().zip(&other.0) {
+            let (partial, under) = limb.overflowing_sub(less);
+            let (total, under_again) = partial.overflowing_sub(u64::from(borrow));
+            (*limb, borrow) = (total, under | under_again);
+        }
+        debug_assert!(
+            self.is_negative() == other.is_negative() || difference.is_negative() == self.is_negative()
+        );
+        difference
     }
 }
 
