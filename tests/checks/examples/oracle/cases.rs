@@ -21,7 +21,7 @@ impl Random {
     }
 
     fn below(&mut self, n: u64) -> u64 {
-        (u128::from(self.bits()) * u128::from(n) >> 64) as u64
+        ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
     }
 
     /// In `0..1`.
@@ -95,7 +95,7 @@ pub fn typical(seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
     let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Unit));
     let inside = a.lerp(b, random.unit()).lerp(c, random.unit());
-    let target = if case % 2 == 0 { inside } else { q };
+    let target = if case.is_multiple_of(2) { inside } else { q };
     shapes(Ray::new(o, target - o), [a, b, c], q, 0.5 * random.unit())
 }
 

@@ -9,9 +9,7 @@ mod cases;
 mod reference;
 
 use cases::Case;
-use checks::exact::{
-    Body, Meeting, Tier, Verdict, aabb, meet, meet_with, order, triangle, verdict, verdict_with,
-};
+use checks::exact::{Body, Tier, Verdict, aabb, meet, meet_with, order, triangle, verdict};
 use raykata::aabb::Aabb;
 use std::hint::black_box;
 use std::process::ExitCode;
@@ -81,9 +79,12 @@ fn long_run(n_cases: u64, seed: u64, every: u64) -> ExitCode {
     ExitCode::SUCCESS
 }
 
+/// A shape and how big integers answer for it.
+type Asked = (Body, fn(&Case) -> reference::Answer);
+
 fn compare(case: &Case, with_big: bool, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
-    let bodies: [(Body, fn(&Case) -> reference::Answer); 7] = [
+    let bodies: [Asked; 7] = [
         (Body::Triangle(case.triangle), |c| reference::triangle(&c.ray, &c.triangle)),
         (Body::Plane(case.plane), |c| reference::plane(&c.ray, &c.plane)),
         (Body::Disk(case.disk), |c| reference::disk(&c.ray, &c.disk)),

@@ -16,7 +16,7 @@ use reference::Answer;
 
 fn agree(ray: &Ray, body: Body, answer: &Answer, context: u64) {
     // The widest integers are slow in this profile; the long run of `examples/oracle` asks them always.
-    for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context % 8 == 0) {
+    for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context.is_multiple_of(8)) {
         let must = matches!(tier, Tier::Auto | Tier::Widest);
         let word = |verdict| [Verdict::Out, Verdict::On, Verdict::In].iter().position(|&v| v == verdict);
         let verdict = verdict_with(tier, ray, body);
@@ -48,7 +48,7 @@ fn agree_on_all(case: &Case, context: u64) {
     agree(ray, Body::Cone(case.cone), &reference::cone(ray, &case.cone), context);
     let bounds = Aabb::new(case.cuboid.min, case.cuboid.max);
     let overlaps = reference::overlaps(ray, &bounds);
-    for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context % 8 == 0) {
+    for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context.is_multiple_of(8)) {
         let verdict = aabb::verdict_with(tier, ray, &bounds);
         assert!(
             verdict.is_none_or(|verdict| verdict.is_hit() == overlaps),
