@@ -1,7 +1,7 @@
 //! The numbers in which the oracle's polynomials are evaluated: the same code runs in doubles that know their error,
 //! in `i128`, and in wide integers. Doubles answer "undecided" when they cannot tell; integers always know.
 
-use super::scale::{Scale, split};
+use super::scale::{Scale, over_power, split};
 use super::wide::Wide;
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -197,8 +197,8 @@ macro_rules! ring_of_integers {
 
             #[inline]
             fn input(x: f32, scale: Scale) -> Self {
-                let (m, e) = split(f64::from(x));
-                if m == 0 { 0 } else { (m as $int) << (e - scale.low) }
+                let (m, shift) = over_power(x, scale.low);
+                (m as $int) << shift
             }
 
             #[inline]
@@ -227,8 +227,8 @@ impl<const N: usize> Ring for Wide<N> {
     const EXACT: bool = true;
 
     fn input(x: f32, scale: Scale) -> Self {
-        let (m, e) = split(f64::from(x));
-        if m == 0 { Wide::ZERO } else { Wide::shifted(m, (e - scale.low) as u32) }
+        let (m, shift) = over_power(x, scale.low);
+        Wide::shifted(m, shift)
     }
 
     fn fraction(t: f64, unit: i32) -> (Self, Self) {

@@ -17,6 +17,18 @@ pub(super) fn split(x: f64) -> (i64, i32) {
     (if x < 0.0 { -(m >> zeros) } else { m >> zeros }, e + zeros as i32)
 }
 
+/// `x / 2^low` for an `x` that is a multiple of `2^low`, as `m * 2^shift`: `m` holds all bits if the shift is zero.
+#[inline(always)]
+pub(super) fn over_power(x: f32, low: i32) -> (i64, u32) {
+    let bits = x.to_bits();
+    let (exponent, fraction) = ((bits >> 23 & 0xff) as i32, i64::from(bits & 0x7f_ffff));
+    let (m, e) = if exponent == 0 { (fraction, -149) } else { (fraction | 1 << 23, exponent - 150) };
+    let shift = e - low;
+    // Below low there are zeros only; 31 clears the mantissa of a zero, whose exponent says nothing.
+    let (m, shift) = if shift < 0 { (m >> (-shift).min(31), 0) } else { (m, shift) };
+    (if bits >> 31 == 1 { -m } else { m }, if m == 0 { 0 } else { shift as u32 })
+}
+
 /// The exponents that a group of inputs spans: all are multiples of `2^low` and below `2^high` in absolute value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Scale {

@@ -5,7 +5,7 @@
 mod cases;
 mod counts;
 mod hard;
-#[path = "../../../examples/oracle/reference.rs"]
+#[path = "../../../examples/oracle/reference/mod.rs"]
 mod reference;
 
 use super::{Body, Tier, Verdict, aabb, meet_with, verdict_with};

@@ -1,79 +1,16 @@
 //! The same questions answered the slow and plain way, with big integers: dyadic rationals, textbook formulas, and the
 //! place of a root found from the sign of its polynomial. Nothing here is shared with the oracle.
 
-use dashu_int::{IBig, Sign};
+mod dyadic;
+mod time;
+
+use dyadic::Dyadic;
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
 use std::cmp::Ordering;
-use std::ops::{Add, Mul, Neg, Sub};
-
-/// The number `n * 2^e`.
-#[derive(Clone, Debug)]
-pub struct Dyadic {
-    n: IBig,
-    e: isize,
-}
-
-impl Dyadic {
-    /// A finite double.
-    pub fn new(x: f64) -> Self {
-        let bits = x.to_bits();
-        let exponent = (bits >> 52 & 0x7ff) as isize;
-        let fraction = (bits & ((1 << 52) - 1)) as i64;
-        let (n, e) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
-        let zeros = if n == 0 { 0 } else { n.trailing_zeros() };
-        Dyadic { n: IBig::from(if x < 0.0 { -(n >> zeros) } else { n >> zeros }), e: e + zeros as isize }
-    }
-
-    fn aligned(&self, other: &Self) -> (IBig, IBig, isize) {
-        let e = self.e.min(other.e);
-        (&self.n << (self.e - e) as usize, &other.n << (other.e - e) as usize, e)
-    }
-
-    /// -1, 0 or 1.
-    pub fn sign(&self) -> i32 {
-        match self.n.sign() {
-            _ if self.n == IBig::ZERO => 0,
-            Sign::Positive => 1,
-            Sign::Negative => -1,
-        }
-    }
-}
-
-impl Add for &Dyadic {
-    type Output = Dyadic;
-    fn add(self, other: Self) -> Dyadic {
-        let (a, b, e) = self.aligned(other);
-        Dyadic { n: a + b, e }
-    }
-}
-
-impl Sub for &Dyadic {
-    type Output = Dyadic;
-    fn sub(self, other: Self) -> Dyadic {
-        let (a, b, e) = self.aligned(other);
-        Dyadic { n: a - b, e }
-    }
-}
-
-impl Mul for &Dyadic {
-    type Output = Dyadic;
-    fn mul(self, other: Self) -> Dyadic {
-        if self.sign() == 0 || other.sign() == 0 {
-            return Dyadic::new(0.0);
-        }
-        Dyadic { n: &self.n * &other.n, e: self.e + other.e }
-    }
-}
-
-impl Neg for &Dyadic {
-    type Output = Dyadic;
-    fn neg(self) -> Dyadic {
-        Dyadic { n: -&self.n, e: self.e }
-    }
-}
+pub use time::Time;
 
 type Vector = [Dyadic; 3];
 
@@ -99,89 +36,6 @@ fn dot(a: &Vector, b: &Vector) -> Dyadic {
 
 fn cross(a: &Vector, b: &Vector) -> Vector {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
-}
-
-/// A value of `t`.
-#[derive(Clone, Debug)]
-pub enum Time {
-    /// A fraction with a positive denominator.
-    Ratio(Dyadic, Dyadic),
-    /// The smaller (`false`) or larger (`true`) root of `a t² + 2 b t + c = 0` with `a > 0`.
-    Root(Dyadic, Dyadic, Dyadic, bool),
-}
-
-impl Time {
-    fn ratio(n: Dyadic, d: Dyadic) -> Time {
-        if d.sign() < 0 { Time::Ratio(-&n, -&d) } else { Time::Ratio(n, d) }
-    }
-
-    /// How it compares with the fraction `n / d`, `d > 0`.
-    fn cmp_ratio(&self, n: &Dyadic, d: &Dyadic) -> Ordering {
-        match self {
-            Time::Ratio(p, q) => (&(p * d) - &(n * q)).sign().cmp(&0),
-            Time::Root(a, b, c, larger) => {
-                let two_b = b + b;
-                let value = &(&(a * &(n * n)) + &(&two_b * &(n * d))) + &(c * &(d * d));
-                // On which side of the vertex -b / a the fraction lies.
-                let side = (&(n * a) + &(b * d)).sign();
-                match (value.sign(), larger) {
-                    (-1, false) => Ordering::Less,
-                    (-1, true) => Ordering::Greater,
-                    (1, _) if side < 0 => Ordering::Greater,
-                    (1, _) => Ordering::Less,
-                    (_, false) => {
-                        if side <= 0 {
-                            Ordering::Equal
-                        } else {
-                            Ordering::Less
-                        }
-                    }
-                    (_, true) => {
-                        if side >= 0 {
-                            Ordering::Equal
-                        } else {
-                            Ordering::Greater
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    /// How it compares with another; two roots must be of one polynomial.
-    pub fn cmp(&self, other: &Time) -> Ordering {
-        match (self, other) {
-            (_, Time::Ratio(n, d)) => self.cmp_ratio(n, d),
-            (Time::Ratio(n, d), _) => other.cmp_ratio(n, d).reverse(),
-            (Time::Root(a, b, c, one), Time::Root(.., two)) => {
-                let double = (&(b * b) - &(a * c)).sign() == 0;
-                if double { Ordering::Equal } else { one.cmp(two) }
-            }
-        }
-    }
-
-    fn cmp_double(&self, t: f64) -> Ordering {
-        if t.is_infinite() {
-            return if t > 0.0 { Ordering::Less } else { Ordering::Greater };
-        }
-        self.cmp_ratio(&Dyadic::new(t), &Dyadic::new(1.0))
-    }
-
-    fn is_in_range(&self, ray: &Ray) -> bool {
-        self.cmp_double(f64::from(ray.t_min)).is_gt() && self.cmp_double(f64::from(ray.t_max)).is_lt()
-    }
-
-    /// Whether `t` is this value rounded to nearest, ties to even.
-    pub fn rounds_to(&self, t: f32) -> bool {
-        let wide =
-            |x: f32| if x.is_infinite() { f64::from(x.signum()) * 128f64.exp2() } else { f64::from(x) };
-        let even = t.to_bits() & 1 == 0;
-        let below = if t == f32::NEG_INFINITY { None } else { Some((wide(t.next_down()) + wide(t)) / 2.0) };
-        let above = if t == f32::INFINITY { None } else { Some((wide(t.next_up()) + wide(t)) / 2.0) };
-        let enough = |order: Ordering, wanted| order == wanted || (even && order == Ordering::Equal);
-        below.is_none_or(|b| enough(self.cmp_double(b), Ordering::Greater))
-            && above.is_none_or(|a| enough(self.cmp_double(a), Ordering::Less))
-    }
 }
 
 /// 0 for a miss, 1 for a touch, 2 for a hit; and where.

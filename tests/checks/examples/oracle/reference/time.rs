@@ -1,0 +1,88 @@
+//! Values of `t`, rational or roots of quadratics.
+
+use super::dyadic::Dyadic;
+use raykata::ray::Ray;
+use std::cmp::Ordering;
+
+/// A value of `t`.
+#[derive(Clone, Debug)]
+pub enum Time {
+    /// A fraction with a positive denominator.
+    Ratio(Dyadic, Dyadic),
+    /// The smaller (`false`) or larger (`true`) root of `a t² + 2 b t + c = 0` with `a > 0`.
+    Root(Dyadic, Dyadic, Dyadic, bool),
+}
+
+impl Time {
+    pub(super) fn ratio(n: Dyadic, d: Dyadic) -> Time {
+        if d.sign() < 0 { Time::Ratio(-&n, -&d) } else { Time::Ratio(n, d) }
+    }
+
+    /// How it compares with the fraction `n / d`, `d > 0`.
+    fn cmp_ratio(&self, n: &Dyadic, d: &Dyadic) -> Ordering {
+        match self {
+            Time::Ratio(p, q) => (&(p * d) - &(n * q)).sign().cmp(&0),
+            Time::Root(a, b, c, larger) => {
+                let two_b = b + b;
+                let value = &(&(a * &(n * n)) + &(&two_b * &(n * d))) + &(c * &(d * d));
+                // On which side of the vertex -b / a the fraction lies.
+                let side = (&(n * a) + &(b * d)).sign();
+                match (value.sign(), larger) {
+                    (-1, false) => Ordering::Less,
+                    (-1, true) => Ordering::Greater,
+                    (1, _) if side < 0 => Ordering::Greater,
+                    (1, _) => Ordering::Less,
+                    (_, false) => {
+                        if side <= 0 {
+                            Ordering::Equal
+                        } else {
+                            Ordering::Less
+                        }
+                    }
+                    (_, true) => {
+                        if side >= 0 {
+                            Ordering::Equal
+                        } else {
+                            Ordering::Greater
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// How it compares with another; two roots must be of one polynomial.
+    pub fn cmp(&self, other: &Time) -> Ordering {
+        match (self, other) {
+            (_, Time::Ratio(n, d)) => self.cmp_ratio(n, d),
+            (Time::Ratio(n, d), _) => other.cmp_ratio(n, d).reverse(),
+            (Time::Root(a, b, c, one), Time::Root(.., two)) => {
+                let double = (&(b * b) - &(a * c)).sign() == 0;
+                if double { Ordering::Equal } else { one.cmp(two) }
+            }
+        }
+    }
+
+    pub(super) fn cmp_double(&self, t: f64) -> Ordering {
+        if t.is_infinite() {
+            return if t > 0.0 { Ordering::Less } else { Ordering::Greater };
+        }
+        self.cmp_ratio(&Dyadic::new(t), &Dyadic::new(1.0))
+    }
+
+    pub(super) fn is_in_range(&self, ray: &Ray) -> bool {
+        self.cmp_double(f64::from(ray.t_min)).is_gt() && self.cmp_double(f64::from(ray.t_max)).is_lt()
+    }
+
+    /// Whether `t` is this value rounded to nearest, ties to even.
+    pub fn rounds_to(&self, t: f32) -> bool {
+        let wide =
+            |x: f32| if x.is_infinite() { f64::from(x.signum()) * 128f64.exp2() } else { f64::from(x) };
+        let even = t.to_bits() & 1 == 0;
+        let below = if t == f32::NEG_INFINITY { None } else { Some((wide(t.next_down()) + wide(t)) / 2.0) };
+        let above = if t == f32::INFINITY { None } else { Some((wide(t.next_up()) + wide(t)) / 2.0) };
+        let enough = |order: Ordering, wanted| order == wanted || (even && order == Ordering::Equal);
+        below.is_none_or(|b| enough(self.cmp_double(b), Ordering::Greater))
+            && above.is_none_or(|a| enough(self.cmp_double(a), Ordering::Less))
+    }
+}
