@@ -122,12 +122,18 @@ fn decide_exactly<Q: Question>(question: &Q, tier: Tier) -> Option<Q::Answer> {
         return question.ask::<i128>(&frame);
     }
     if bits < 512 && allowed(Tier::Wide) {
-        return question.ask::<Wide<8>>(&frame);
+        return ask_wide::<8, Q>(question, &frame);
     }
     if bits < 1792 && allowed(Tier::Wider) {
-        return question.ask::<Wide<28>>(&frame);
+        return ask_wide::<28, Q>(question, &frame);
     }
-    (bits < 64 * WIDEST as u32 && allowed(Tier::Widest)).then(|| question.ask::<Wide<WIDEST>>(&frame))?
+    (bits < 64 * WIDEST as u32 && allowed(Tier::Widest)).then(|| ask_wide::<WIDEST, Q>(question, &frame))?
+}
+
+/// Kept apart, so that narrow integers do not pay for the stack of wide ones.
+#[inline(never)]
+fn ask_wide<const N: usize, Q: Question>(question: &Q, frame: &Frame) -> Option<Q::Answer> {
+    question.ask::<Wide<N>>(frame)
 }
 
 /// How and where a ray meets a shape first. `None` for inputs that are not finite.

@@ -22,11 +22,14 @@ pub(super) fn split(x: f64) -> (i64, i32) {
 pub(super) fn over_power(x: f32, low: i32) -> (i64, u32) {
     let bits = x.to_bits();
     let (exponent, fraction) = ((bits >> 23 & 0xff) as i32, i64::from(bits & 0x7f_ffff));
-    let (m, e) = if exponent == 0 { (fraction, -149) } else { (fraction | 1 << 23, exponent - 150) };
-    let shift = e - low;
-    // Below low there are zeros only; 31 clears the mantissa of a zero, whose exponent says nothing.
-    let (m, shift) = if shift < 0 { (m >> (-shift).min(31), 0) } else { (m, shift) };
-    (if bits >> 31 == 1 { -m } else { m }, if m == 0 { 0 } else { shift as u32 })
+    let normal = i32::from(exponent != 0);
+    let m = fraction | i64::from(normal) << 23;
+    // Of a zero the exponent is the least of all, so it is shifted to the right.
+    let shift = exponent - normal - 149 - low;
+    // Without branches, which could not be foretold: below low there are zeros only, and 31 clears what is one.
+    let m = m >> (-shift).clamp(0, 31);
+    let negative = -i64::from(bits >> 31);
+    ((m ^ negative) - negative, shift.max(0) as u32)
 }
 
 /// The exponents that a group of inputs spans: all are multiples of `2^low` and below `2^high` in absolute value.
@@ -54,14 +57,15 @@ impl Scale {
     pub fn fine(numbers: impl IntoIterator<Item = f32>) -> Scale {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for x in numbers {
+            // Without branches, which could not be foretold.
             let bits = x.to_bits() & 0x7fff_ffff;
-            if bits == 0 {
-                continue;
-            }
-            let (exponent, fraction) = ((bits >> 23) as i32, bits & 0x7f_ffff);
-            let (m, e) = if exponent == 0 { (fraction, -149) } else { (fraction | 1 << 23, exponent - 150) };
-            low = low.min(e + m.trailing_zeros() as i32);
-            high = high.max(e + 32 - m.leading_zeros() as i32);
+            let exponent = (bits >> 23) as i32;
+            let normal = i32::from(exponent != 0);
+            let m = (bits & 0x7f_ffff) | (normal as u32) << 23;
+            let e = exponent - normal - 149;
+            // A zero changes neither end.
+            low = low.min(if bits == 0 { i32::MAX } else { e + m.trailing_zeros() as i32 });
+            high = high.max(if bits == 0 { i32::MIN } else { e + 32 - m.leading_zeros() as i32 });
         }
         if low == i32::MAX { Scale::NONE } else { Scale { low, high } }
     }
