@@ -41,6 +41,7 @@ impl Random {
         match style {
             Style::Unit => self.signed(),
             Style::Lattice => self.below(17) as f32 - 8.0,
+            Style::Fine => self.below(2_000_001) as f32 - 1e6,
             Style::Far => 148_376.0 + self.signed(),
             Style::Tiny => 1.0 + 1e-6 * self.signed(),
             Style::Scales => self.signed() * (self.below(200) as f32 - 100.0).exp2(),
@@ -67,6 +68,8 @@ pub enum Style {
     Unit,
     /// Whole numbers: exact ties abound.
     Lattice,
+    /// Whole numbers up to a million: ties of more bits.
+    Fine,
     /// Far from the origin, of size one.
     Far,
     /// A few ulps around one.
@@ -101,8 +104,22 @@ pub fn typical(seed: u64, case: u64) -> Case {
 
 /// Whole numbers: every ray hits its triangle exactly on an edge (unless that is degenerate), and much else is tied.
 pub fn tied(seed: u64, case: u64) -> Case {
+    tied_on(Style::Lattice, seed, case)
+}
+
+/// The same on whole numbers up to a million.
+pub fn finely_tied(seed: u64, case: u64) -> Case {
+    tied_on(Style::Fine, seed, case)
+}
+
+/// Numbers from `2^-100` to `2^100` in one case.
+pub fn of_all_scales(seed: u64, case: u64) -> Case {
+    make(&mut Random::new(seed, case), Style::Scales, case % 8)
+}
+
+fn tied_on(lattice: Style, seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
-    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Lattice));
+    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(lattice));
     // The middle of an edge between even corners is on the lattice.
     shapes(Ray::new(o, a + b - o), [2.0 * a, 2.0 * b, 2.0 * c], q, 2.0)
 }
@@ -111,7 +128,7 @@ pub fn tied(seed: u64, case: u64) -> Case {
 pub fn any(seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
     let styles =
-        [Style::Unit, Style::Lattice, Style::Far, Style::Tiny, Style::Scales, Style::Any, Style::Lattice];
+        [Style::Unit, Style::Lattice, Style::Far, Style::Tiny, Style::Scales, Style::Any, Style::Fine];
     let style = styles[random.below(7) as usize];
     let aim = random.below(8);
     make(&mut random, style, aim)

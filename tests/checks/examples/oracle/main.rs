@@ -192,9 +192,18 @@ fn compare_orders(case: &Case, tally: &mut Tally) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks a second of each predicate, on numbers of size one and on lattices full of ties.
+/// How the cases of a measurement are made.
+type Make = fn(u64, u64) -> Case;
+
+/// Checks a second of each predicate, on numbers of size one, on lattices full of ties, and on all scales.
 fn measure(seed: u64) {
-    for (name, make) in [("typical", cases::typical as fn(u64, u64) -> Case), ("ties", cases::tied)] {
+    let kinds: [(&str, Make); 4] = [
+        ("typical", cases::typical),
+        ("ties, whole numbers to 16", cases::tied),
+        ("ties, whole numbers to 2 million", cases::finely_tied),
+        ("scales from 2^-100 to 2^100", cases::of_all_scales),
+    ];
+    for (name, make) in kinds {
         let all: Vec<Case> = (0..20_000).map(|case| make(seed, case)).collect();
         let on =
             all.iter().filter(|c| verdict(&c.ray, Body::Triangle(c.triangle)) == Some(Verdict::On)).count();

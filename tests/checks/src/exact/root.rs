@@ -35,7 +35,8 @@ impl RootBits {
     /// Bits that suffice for [`Root::compare_to`] with a fraction of these bits.
     pub fn against(self, (numerator, denominator): (u32, u32)) -> u32 {
         let p = (self.p + denominator).max(self.a + numerator) + 1;
-        (2 * p).max(self.disc + 2 * denominator) + 2
+        // Without a surd nothing is squared.
+        if self.disc == 0 { p + 1 } else { (2 * p).max(self.disc + 2 * denominator) + 2 }
     }
 
     /// Bits that suffice for [`Root::compare`].
