@@ -63,7 +63,40 @@ impl Time {
         }
     }
 
-    pub(super) fn cmp_double(&self, t: f64) -> Ordering {
+    /// How it compares with any other: two roots of different polynomials are equal if those share a root, which is
+    /// rational then, and differ otherwise, so that halving an interval tells them apart in the end.
+    pub fn cmp_any(&self, other: &Time) -> Ordering {
+        let (Time::Root(a, b, c, _), Time::Root(d, e, f, _)) = (self, other) else {
+            return self.cmp(other);
+        };
+        let minor = |x: &Dyadic, y: &Dyadic, u: &Dyadic, v: &Dyadic| &(x * v) - &(y * u);
+        let (ae, ac, bf) = (minor(a, b, d, e), minor(a, c, d, f), minor(b, c, e, f));
+        if ae.sign() == 0 && ac.sign() == 0 && bf.sign() == 0 {
+            return self.cmp(other);
+        }
+        let ae_twice = &ae + &ae;
+        let shared = (&(&ac * &ac) - &(&ae_twice * &(&bf + &bf))).sign() == 0;
+        if shared && ae.sign() != 0 {
+            let Time::Ratio(n, d) = Time::ratio(-&ac, ae_twice) else { unreachable!("a ratio is a ratio") };
+            if self.cmp_ratio(&n, &d).is_eq() && other.cmp_ratio(&n, &d).is_eq() {
+                return Ordering::Equal;
+            }
+        }
+        let one = Dyadic::new(1.0);
+        let (mut low, mut high) = (Dyadic::new(-200f64.exp2()), Dyadic::new(200f64.exp2()));
+        loop {
+            let middle = &(&low + &high) * &Dyadic::new(0.5);
+            let sides = (self.cmp_ratio(&middle, &one), other.cmp_ratio(&middle, &one));
+            match sides {
+                (Ordering::Less, Ordering::Less) => high = middle,
+                (Ordering::Greater, Ordering::Greater) => low = middle,
+                (one, other) => return one.cmp(&other),
+            }
+        }
+    }
+
+    /// How it compares with a double.
+    pub fn cmp_double(&self, t: f64) -> Ordering {
         if t.is_infinite() {
             return if t > 0.0 { Ordering::Less } else { Ordering::Greater };
         }
