@@ -189,6 +189,27 @@ fn spheres_and_planes() {
 }
 
 #[test]
+fn t_is_rounded_to_nearest_even() {
+    let big = 24f32.exp2();
+    let wall = |x| Body::Plane(Plane { point: vec3(x, 0.0, 0.0), normal: Vec3::X });
+    let ball = |x| Body::Sphere(Sphere { center: vec3(x + 2.0, 0.0, 0.0), radius: 2.0 });
+    // From x = -1 both lie half way between two numbers, at 2^24 + 1 and at 2^24 + 3.
+    let along_x = ray([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
+    for tier in [Tier::Auto, Tier::Small, Tier::Narrow, Tier::Widest] {
+        for (x, rounded) in [(big, big), (big + 2.0, big + 4.0)] {
+            let t = |body| meet_with(tier, &along_x, body).and_then(|meeting| meeting.t);
+            assert!(t(wall(x)).is_none_or(|t| t == rounded), "{tier:?} {x}");
+            assert!(t(ball(x)).is_none_or(|t| t == rounded), "{tier:?} {x}");
+            assert!(t(wall(x)).is_some() || tier == Tier::Small);
+        }
+    }
+    // Beyond the largest number a hit is a hit, and its t is rounded to infinity; below the smallest, to zero.
+    let slow = Ray::new(Vec3::ZERO, vec3(1e-30, 0.0, 0.0));
+    assert_eq!(met(&slow, wall(1e30)), (Verdict::In, Some(f32::INFINITY)));
+    assert_eq!(met(&Ray::new(Vec3::ZERO, vec3(1e30, 0.0, 0.0)), wall(1e-30)), (Verdict::In, Some(0.0)));
+}
+
+#[test]
 fn cylinders_and_cones() {
     let can = Body::Cylinder(Cylinder { base: Vec3::ZERO, top: vec3(0.0, 0.0, 2.0), radius: 1.0 });
     let tip = Body::Cone(Cone { base: Vec3::ZERO, apex: Vec3::Z, radius: 1.0 });
