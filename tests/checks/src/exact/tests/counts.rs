@@ -13,49 +13,47 @@ thread_local! {
     static LARGEST: Cell<u32> = const { Cell::new(0) };
 }
 
-/// An exact integer that knows how many roundings a double would have met on the way to it.
+/// An exact integer that knows how many roundings a double would have met on the way to it, and how many bits any
+/// integer has at most that is made in the same way: a bound for all inputs of these scales, not for these alone.
 #[derive(Clone, Copy)]
 struct Counted {
     value: Wide<WIDEST>,
     roundings: u32,
+    bits: u32,
 }
 
-fn counted(value: Wide<WIDEST>, roundings: u32) -> Counted {
-    let (m, e) = value.rounded();
-    if m != 0.0 {
-        // 2^(exponent of m) <= |m| < twice that, but for the rounding of m, which can only make it larger.
-        let bits = (m.to_bits() >> 52 & 0x7ff) as i32 - 1023 + 1 + e;
-        let least = bits - i32::from(m.abs() == crate::exact::ring::power(bits - 1 - e));
-        LARGEST.set(LARGEST.get().max(least as u32));
-    }
-    Counted { value, roundings }
+fn counted(value: Wide<WIDEST>, roundings: u32, bits: u32) -> Counted {
+    LARGEST.set(LARGEST.get().max(bits));
+    Counted { value, roundings, bits }
 }
 
 impl Add for Counted {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        counted(self.value + other.value, self.roundings.max(other.roundings) + 1)
+        let roundings = self.roundings.max(other.roundings) + 1;
+        counted(self.value + other.value, roundings, self.bits.max(other.bits) + 1)
     }
 }
 
 impl Sub for Counted {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        counted(self.value - other.value, self.roundings.max(other.roundings) + 1)
+        self + -other
     }
 }
 
 impl Mul for Counted {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        counted(self.value * other.value, self.roundings + other.roundings + 1)
+        let roundings = self.roundings + other.roundings + 1;
+        counted(self.value * other.value, roundings, self.bits + other.bits)
     }
 }
 
 impl Neg for Counted {
     type Output = Self;
     fn neg(self) -> Self {
-        counted(-self.value, self.roundings)
+        counted(-self.value, self.roundings, self.bits)
     }
 }
 
@@ -63,12 +61,17 @@ impl Ring for Counted {
     const EXACT: bool = true;
 
     fn input(x: f32, scale: Scale) -> Self {
-        counted(Ring::input(x, scale), 0)
+        counted(Ring::input(x, scale), 0, scale.bits())
     }
 
     fn fraction(t: f64, unit: i32) -> (Self, Self) {
         let (n, d) = Ring::fraction(t, unit);
-        (counted(n, 0), counted(d, 0))
+        let bits = |number: Wide<WIDEST>| {
+            let (m, e) = number.rounded();
+            // Exact: a fraction has 53 bits at most, and a power of two one.
+            if m == 0.0 { 0 } else { ((m.to_bits() >> 52 & 0x7ff) as i32 - 1023 + 1 + e) as u32 }
+        };
+        (counted(n, 0, bits(n)), counted(d, 0, bits(d)))
     }
 
     fn sign(&self) -> Option<i32> {

@@ -1,5 +1,6 @@
 //! The tiers against big integers, and what they promise about themselves.
 
+mod boxes;
 #[path = "../../../examples/oracle/cases.rs"]
 #[expect(dead_code, reason = "some of it is for measuring")]
 mod cases;
