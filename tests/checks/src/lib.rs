@@ -5,6 +5,7 @@
 
 pub mod broken;
 pub mod double;
+pub mod exact;
 pub mod generate;
 pub mod golden;
 pub mod judge;

@@ -1,0 +1,214 @@
+//! Inputs on which exact answers are hard: aimed at edges and corners, on lattices, slivers, far, tiny, of any exponent.
+
+use glam::{Vec3, vec3};
+use raykata::ray::Ray;
+use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
+
+/// A small stream of random bits: SplitMix64 (Steele, Lea and Flood 2014).
+pub struct Random(u64);
+
+impl Random {
+    /// The stream of one case.
+    pub fn new(seed: u64, case: u64) -> Self {
+        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ case.wrapping_mul(0xd134_2543_de82_ef95))
+    }
+
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
+    }
+
+    /// In `0..1`.
+    fn unit(&mut self) -> f32 {
+        (self.bits() >> 40) as f32 * (-24f32).exp2()
+    }
+
+    fn signed(&mut self) -> f32 {
+        2.0 * self.unit() - 1.0
+    }
+
+    fn vector(&mut self, style: Style) -> Vec3 {
+        vec3(self.number(style), self.number(style), self.number(style))
+    }
+
+    fn number(&mut self, style: Style) -> f32 {
+        match style {
+            Style::Unit => self.signed(),
+            Style::Lattice => self.below(17) as f32 - 8.0,
+            Style::Fine => self.below(2_000_001) as f32 - 1e6,
+            Style::Far => 148_376.0 + self.signed(),
+            Style::Tiny => 1.0 + 1e-6 * self.signed(),
+            Style::Scales => self.signed() * (self.below(200) as f32 - 100.0).exp2(),
+            Style::Any => match self.below(8) {
+                0 => 0.0,
+                1 => -0.0,
+                2 => f32::MAX,
+                3 => f32::from_bits(self.below(8) as u32),
+                _ => loop {
+                    let x = f32::from_bits(self.bits() as u32);
+                    if x.is_finite() {
+                        break x;
+                    }
+                },
+            },
+        }
+    }
+}
+
+/// How large numbers are and how they share bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Style {
+    /// In `-1..1`.
+    Unit,
+    /// Whole numbers: exact ties abound.
+    Lattice,
+    /// Whole numbers up to a million: ties of more bits.
+    Fine,
+    /// Far from the origin, of size one.
+    Far,
+    /// A few ulps around one.
+    Tiny,
+    /// From `2^-100` to `2^100`.
+    Scales,
+    /// Any finite number, denormals, zeros and the largest included.
+    Any,
+}
+
+/// A ray and one shape of every kind.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    pub ray: Ray,
+    pub triangle: Triangle,
+    pub plane: Plane,
+    pub disk: Disk,
+    pub sphere: Sphere,
+    pub cuboid: Cuboid,
+    pub cylinder: Cylinder,
+    pub cone: Cone,
+}
+
+/// Random numbers of size one, as typical scenes have: half of the rays aim at the inside of the triangle.
+pub fn typical(seed: u64, case: u64) -> Case {
+    let mut random = Random::new(seed, case);
+    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(Style::Unit));
+    let inside = a.lerp(b, random.unit()).lerp(c, random.unit());
+    let target = if case.is_multiple_of(2) { inside } else { q };
+    shapes(Ray::new(o, target - o), [a, b, c], q, 0.5 * random.unit())
+}
+
+/// Whole numbers: every ray hits its triangle exactly on an edge (unless that is degenerate), and much else is tied.
+pub fn tied(seed: u64, case: u64) -> Case {
+    tied_on(Style::Lattice, seed, case)
+}
+
+/// The same on whole numbers up to a million.
+pub fn finely_tied(seed: u64, case: u64) -> Case {
+    tied_on(Style::Fine, seed, case)
+}
+
+/// Numbers from `2^-100` to `2^100` in one case.
+pub fn of_all_scales(seed: u64, case: u64) -> Case {
+    make(&mut Random::new(seed, case), Style::Scales, case % 8)
+}
+
+fn tied_on(lattice: Style, seed: u64, case: u64) -> Case {
+    let mut random = Random::new(seed, case);
+    let [o, a, b, c, q] = [(); 5].map(|()| random.vector(lattice));
+    // The middle of an edge between even corners is on the lattice.
+    shapes(Ray::new(o, a + b - o), [2.0 * a, 2.0 * b, 2.0 * c], q, 2.0)
+}
+
+/// One of all kinds.
+pub fn any(seed: u64, case: u64) -> Case {
+    let mut random = Random::new(seed, case);
+    let styles =
+        [Style::Unit, Style::Lattice, Style::Far, Style::Tiny, Style::Scales, Style::Any, Style::Fine];
+    let style = styles[random.below(7) as usize];
+    let aim = random.below(8);
+    make(&mut random, style, aim)
+}
+
+fn make(random: &mut Random, style: Style, aim: u64) -> Case {
+    let mut p = || random.vector(style);
+    let (o, a, b, mut c, q) = (p(), p(), p(), p(), p());
+    let clamp = |v: Vec3| v.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
+    match random.below(12) {
+        0 => c = clamp(a.lerp(b, random.unit()) + 1e-5 * random.vector(style)), // a sliver
+        1 => c = clamp(b + 1e-3 * (b - a).any_orthogonal_vector().normalize_or_zero()), // a needle
+        2 => c = [a, b][random.below(2) as usize],
+        _ => {}
+    }
+    let size = match style {
+        Style::Far => 1.0,
+        Style::Tiny => 1e-6,
+        _ => random.number(style).abs(),
+    };
+    let radius = if random.below(20) == 0 { -size } else { size };
+    let l = random.unit();
+    let target = match aim {
+        1 | 2 => a.lerp(b, l),
+        3 => [a, b, c][random.below(3) as usize],
+        4 => a + radius * (b - a).any_orthogonal_vector().normalize_or_zero(), // the rim, or a tangent point
+        5 => a.lerp(b, l).lerp(c, random.unit()),
+        _ => q,
+    };
+    let mut dir = clamp(if aim == 0 { q - o } else { target - o });
+    if !dir.is_finite() {
+        dir = q;
+    }
+    if aim == 6 || aim == 7 {
+        dir = random.vector(style);
+        for axis in 0..3 {
+            if random.below(2) == 0 {
+                dir[axis] = if random.below(2) == 0 { 0.0 } else { -0.0 };
+            }
+        }
+    }
+    // In a plane of the box, now and then, or on the far side of the shape.
+    let mut o = o;
+    match random.below(10) {
+        0 => o.x = a.x.min(b.x),
+        1 => o = a,
+        2 => dir = -dir,
+        _ => {}
+    }
+    let mut ray = Ray::new(o, dir);
+    match random.below(8) {
+        0 => ray = ray.with_range(random.number(style), random.number(style).abs()),
+        1 => ray = ray.with_range(f32::NEG_INFINITY, 1.0),
+        2 => ray = ray.with_range(-1.0, f32::MAX),
+        3 => ray = ray.with_range(1e-4, 1e30),
+        _ => {}
+    }
+    let finite = |v: Vec3| if v.is_finite() { v } else { q };
+    let mut case = shapes(ray, [a, b, finite(c)], q, radius);
+    let Cuboid { min, max } = &mut case.cuboid;
+    if random.below(6) == 0 {
+        min.z = max.z;
+    }
+    if random.below(30) == 0 {
+        std::mem::swap(min, max);
+    }
+    case
+}
+
+/// One shape of every kind from a few points.
+fn shapes(ray: Ray, [a, b, c]: [Vec3; 3], q: Vec3, radius: f32) -> Case {
+    let finite = |v: Vec3| if v.is_finite() { v } else { q };
+    Case {
+        ray,
+        triangle: Triangle { a, b, c },
+        plane: Plane { point: a, normal: finite(b - c) },
+        disk: Disk { center: a, normal: finite(b - a), radius },
+        sphere: Sphere { center: a, radius },
+        cuboid: Cuboid { min: a.min(b), max: a.max(b) },
+        cylinder: Cylinder { base: a, top: b, radius },
+        cone: Cone { base: a, apex: b, radius },
+    }
+}

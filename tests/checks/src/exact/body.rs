@@ -1,0 +1,299 @@
+//! The shapes that a ray can be asked about, and the questions.
+
+use super::ring::{Ring, Vector, dot, minus};
+use super::root::{Root, RootBits, Rounded, in_range};
+use super::scale::{Frame, Scale};
+use super::{Question, Verdict, aabb, quadric, solid, sphere, triangle};
+use glam::Vec3;
+use raykata::ray::Ray;
+use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
+use std::cmp::Ordering;
+
+/// A shape whose first hit is known exactly. Solids are met where the ray enters or leaves them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)] // the names are those of `raykata::shape`
+pub enum Body {
+    Triangle(Triangle),
+    Plane(Plane),
+    Disk(Disk),
+    Sphere(Sphere),
+    Cuboid(Cuboid),
+    Cylinder(Cylinder),
+    Cone(Cone),
+}
+
+/// The first root in the range of the ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit<R> {
+    pub root: Root<R>,
+    /// Whether the ray only touches.
+    pub touches: bool,
+}
+
+impl<R> Hit<R> {
+    fn verdict(&self) -> Verdict {
+        if self.touches { Verdict::On } else { Verdict::In }
+    }
+}
+
+impl Body {
+    /// Whether every number of the shape is finite.
+    #[inline(always)]
+    pub(super) fn is_finite(&self) -> bool {
+        match self {
+            Body::Triangle(t) => t.a.is_finite() && t.b.is_finite() && t.c.is_finite(),
+            Body::Plane(p) => p.point.is_finite() && p.normal.is_finite(),
+            Body::Disk(d) => d.center.is_finite() && d.normal.is_finite() && d.radius.is_finite(),
+            Body::Sphere(s) => s.center.is_finite() && s.radius.is_finite(),
+            Body::Cuboid(c) => c.min.is_finite() && c.max.is_finite(),
+            Body::Cylinder(c) => c.base.is_finite() && c.top.is_finite() && c.radius.is_finite(),
+            Body::Cone(c) => c.base.is_finite() && c.apex.is_finite() && c.radius.is_finite(),
+        }
+    }
+
+    /// Points, a length (or 0), and a normal (or 0).
+    fn groups(&self) -> ([Vec3; 3], f32, Vec3) {
+        match *self {
+            Body::Triangle(t) => ([t.a, t.b, t.c], 0.0, Vec3::ZERO),
+            Body::Plane(p) => ([p.point; 3], 0.0, p.normal),
+            Body::Disk(d) => ([d.center; 3], d.radius, d.normal),
+            Body::Sphere(s) => ([s.center; 3], s.radius, Vec3::ZERO),
+            Body::Cuboid(c) => ([c.min, c.max, c.max], 0.0, Vec3::ZERO),
+            Body::Cylinder(c) => ([c.base, c.top, c.top], c.radius, Vec3::ZERO),
+            Body::Cone(c) => ([c.base, c.apex, c.apex], c.radius, Vec3::ZERO),
+        }
+    }
+
+    /// The frame of a question about this shape alone.
+    #[inline(always)]
+    fn frame(&self, ray: &Ray, fine: bool) -> Frame {
+        // Of degree three, a triangle's polynomials can neither overflow nor underflow in doubles.
+        if !fine && matches!(self, Body::Triangle(_)) {
+            return Frame::UNSCALED;
+        }
+        if let Body::Triangle(t) = self {
+            let places = [t.a, t.b, t.c, ray.origin].map(|p| p.to_array());
+            let place = Scale::fine(places.as_flattened().iter().copied());
+            return Frame { place, dir: Scale::fine(ray.dir.to_array()), normal: Scale::NONE };
+        }
+        joint_frame(ray, self, self, fine)
+    }
+
+    /// Bits of the largest root, and of all other integers made on the way to it.
+    fn bits(&self, frame: &Frame) -> (RootBits, u32) {
+        let (place, dir, normal) = (frame.place.bits() + 1, frame.dir.bits(), frame.normal.bits());
+        match self {
+            Body::Triangle(_) => triangle::bits(place, dir),
+            Body::Plane(_) | Body::Disk(_) => {
+                let ratio = RootBits { p: place + normal + 2, a: dir + normal + 2, disc: 0 };
+                // The rim: |a f + p d|² against r² a².
+                (ratio, 2 * (place + dir + normal + 3) + 3)
+            }
+            Body::Sphere(_) => sphere::bits(place, dir),
+            Body::Cuboid(_) => {
+                let ratio = RootBits { p: place, a: dir, disc: 0 };
+                (ratio, ratio.between(ratio))
+            }
+            Body::Cylinder(_) => quadric::cylinder_bits(place, dir),
+            Body::Cone(_) => quadric::cone_bits(place, dir),
+        }
+    }
+
+    /// Bits that the first hit takes, its comparison with both ends of the range included.
+    fn first_bits(&self, ray: &Ray, frame: &Frame) -> (RootBits, u32) {
+        let (root, mut most) = self.bits(frame);
+        for end in [ray.t_min, ray.t_max] {
+            if end.is_finite() {
+                most = most.max(root.against(frame.fraction_bits(f64::from(end))));
+            }
+        }
+        (root, most)
+    }
+
+    /// The first hit in the range of the ray.
+    #[inline(always)]
+    pub(super) fn first<R: Ring>(&self, ray: &Ray, frame: &Frame) -> Option<Option<Hit<R>>> {
+        match self {
+            Body::Triangle(t) => triangle::first(ray, t, frame),
+            Body::Plane(p) => flat(ray, p, None, frame),
+            Body::Disk(d) => flat(ray, &Plane { point: d.center, normal: d.normal }, Some(d.radius), frame),
+            Body::Sphere(s) => solid::first(sphere::span(ray, s, frame)?, ray, frame),
+            Body::Cuboid(c) => solid::first(aabb::span(ray, c, frame)?, ray, frame),
+            Body::Cylinder(c) => solid::first(quadric::cylinder(ray, c, frame)?, ray, frame),
+            Body::Cone(c) => solid::first(quadric::cone(ray, c, frame)?, ray, frame),
+        }
+    }
+}
+
+/// One frame for two shapes, so that their `t` count the same unit.
+fn joint_frame(ray: &Ray, one: &Body, other: &Body, fine: bool) -> Frame {
+    let scale = |numbers: &[f32]| {
+        let numbers = numbers.iter().copied();
+        if fine { Scale::fine(numbers) } else { Scale::rough(numbers) }
+    };
+    let ((p, r, n), (p2, r2, n2)) = (one.groups(), other.groups());
+    let mut places = [0.0; 23];
+    for (slot, point) in places.chunks_exact_mut(3).zip([ray.origin].iter().chain(&p).chain(&p2)) {
+        slot.copy_from_slice(&point.to_array());
+    }
+    places[21..].copy_from_slice(&[r, r2]);
+    let normals = [n.to_array(), n2.to_array()];
+    Frame { place: scale(&places), dir: scale(&ray.dir.to_array()), normal: scale(normals.as_flattened()) }
+}
+
+/// A plane, or of it what lies within `radius` of its point.
+fn flat<R: Ring>(ray: &Ray, plane: &Plane, radius: Option<f32>, frame: &Frame) -> Option<Option<Hit<R>>> {
+    let f = minus(frame.point::<R>(ray.origin), frame.point(plane.point));
+    let d: Vector<R> = frame.dir(ray.dir);
+    let n = plane.normal.to_array().map(|x| R::input(x, frame.normal));
+    let slope = dot(d, n);
+    if plane.normal == Vec3::ZERO || ray.dir == Vec3::ZERO || radius.is_some_and(|r| r <= 0.0) {
+        return Some(None);
+    }
+    if slope.sign()? == 0 {
+        return Some(None);
+    }
+    let root = Root::ratio(-dot(f, n), slope)?;
+    if !in_range(&root, ray.t_min, ray.t_max, frame)? {
+        return Some(None);
+    }
+    let Some(radius) = radius else {
+        return Some(Some(Hit { root, touches: false }));
+    };
+    let offset = [0, 1, 2].map(|i| root.a * f[i] + root.p * d[i]);
+    let reach = root.a * R::input(radius, frame.place);
+    let outside = (dot(offset, offset) - reach * reach).sign()?;
+    Some((outside <= 0).then_some(Hit { root, touches: outside == 0 }))
+}
+
+/// Only the verdict.
+pub(super) struct First<'a> {
+    pub ray: &'a Ray,
+    pub body: Body,
+}
+
+impl Question for First<'_> {
+    type Answer = Verdict;
+
+    #[inline(always)]
+    fn frame(&self, fine: bool) -> Frame {
+        self.body.frame(self.ray, fine)
+    }
+
+    fn bits(&self, frame: &Frame) -> u32 {
+        self.body.first_bits(self.ray, frame).1
+    }
+
+    #[inline(always)]
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Verdict> {
+        Some(self.body.first::<R>(self.ray, frame)?.map_or(Verdict::Out, |hit| hit.verdict()))
+    }
+}
+
+/// Verdict and `t`.
+pub(super) struct Meet<'a> {
+    pub ray: &'a Ray,
+    pub body: Body,
+}
+
+impl Question for Meet<'_> {
+    type Answer = Option<(Verdict, Rounded)>;
+
+    #[inline(always)]
+    fn frame(&self, fine: bool) -> Frame {
+        self.body.frame(self.ray, fine)
+    }
+
+    fn bits(&self, frame: &Frame) -> u32 {
+        self.body.first_bits(self.ray, frame).1
+    }
+
+    #[inline(always)]
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Self::Answer> {
+        let Some(hit) = self.body.first::<R>(self.ray, frame)? else {
+            return Some(None);
+        };
+        Some(Some((hit.verdict(), Rounded::new(hit.root.approx()?, frame.unit::<R>())?)))
+    }
+}
+
+/// The first `t` as a double.
+pub(super) struct InDouble<'a> {
+    pub ray: &'a Ray,
+    pub body: Body,
+}
+
+impl Question for InDouble<'_> {
+    type Answer = Option<f64>;
+
+    fn frame(&self, fine: bool) -> Frame {
+        self.body.frame(self.ray, fine)
+    }
+
+    fn bits(&self, frame: &Frame) -> u32 {
+        self.body.first_bits(self.ray, frame).1
+    }
+
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Option<f64>> {
+        let Some(hit) = self.body.first::<R>(self.ray, frame)? else {
+            return Some(None);
+        };
+        let t = hit.root.approx()?;
+        (t.error < 1e-13).then_some(Some(t.value(frame.unit::<R>())))
+    }
+}
+
+/// How the first `t`, of a ray that hits, compares with a number.
+pub(super) struct Against<'a> {
+    pub ray: &'a Ray,
+    pub body: Body,
+    pub t: f64,
+}
+
+impl Question for Against<'_> {
+    type Answer = Ordering;
+
+    fn frame(&self, fine: bool) -> Frame {
+        self.body.frame(self.ray, fine)
+    }
+
+    fn bits(&self, frame: &Frame) -> u32 {
+        let (root, most) = self.body.first_bits(self.ray, frame);
+        most.max(root.against(frame.fraction_bits(self.t)))
+    }
+
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Ordering> {
+        let hit = self.body.first::<R>(self.ray, frame)??;
+        Some(hit.root.compare_to(R::fraction(self.t, frame.unit::<R>()))?.cmp(&0))
+    }
+}
+
+/// Which of two shapes is met first, `None` if not both are met.
+pub(super) struct Order<'a> {
+    pub ray: &'a Ray,
+    pub one: Body,
+    pub other: Body,
+}
+
+impl Question for Order<'_> {
+    type Answer = Option<Ordering>;
+
+    fn frame(&self, fine: bool) -> Frame {
+        joint_frame(self.ray, &self.one, &self.other, fine)
+    }
+
+    fn bits(&self, frame: &Frame) -> u32 {
+        let (one, most) = self.one.first_bits(self.ray, frame);
+        let (other, most_other) = self.other.first_bits(self.ray, frame);
+        most.max(most_other).max(one.between(other))
+    }
+
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Self::Answer> {
+        let (Some(one), Some(other)) =
+            (self.one.first::<R>(self.ray, frame)?, self.other.first::<R>(self.ray, frame)?)
+        else {
+            return Some(None);
+        };
+        Some(Some(one.root.compare(&other.root)?.cmp(&0)))
+    }
+}
