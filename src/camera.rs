@@ -115,6 +115,7 @@ impl Camera {
     ///
     /// The direction comes from the axes alone and never as the difference of two far points, so a camera a
     /// million units from the origin sees as many distinct directions as one at the origin (hard case K1).
+    #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {
         let film = Vec2::new((2.0 * x - 1.0) * self.aspect, 1.0 - 2.0 * y) * self.half_height;
         Ray::new(self.position, (self.towards + film.x * self.right + film.y * self.up).normalize())

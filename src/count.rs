@@ -17,6 +17,8 @@ pub enum Event {
     Reflection,
     /// A ray through a surface.
     Transmission,
+    /// A surface that one of those rays met, shadow rays apart.
+    Hit,
     /// A node of a hierarchy whose contents were looked at.
     NodeVisit,
     /// A ray tested against a box.
@@ -40,6 +42,8 @@ pub struct Counts {
     pub reflection: u64,
     /// Rays through surfaces.
     pub transmission: u64,
+    /// Surfaces that rays met, shadow rays apart.
+    pub hits: u64,
     /// Nodes looked at.
     pub node_visits: u64,
     /// Box tests.
@@ -65,6 +69,7 @@ impl AddAssign for Counts {
         self.shadow += other.shadow;
         self.reflection += other.reflection;
         self.transmission += other.transmission;
+        self.hits += other.hits;
         self.node_visits += other.node_visits;
         self.box_tests += other.box_tests;
         self.primitive_tests += other.primitive_tests;
@@ -90,6 +95,7 @@ impl Tally for Counts {
             Event::Shadow => &mut self.shadow,
             Event::Reflection => &mut self.reflection,
             Event::Transmission => &mut self.transmission,
+            Event::Hit => &mut self.hits,
             Event::NodeVisit => &mut self.node_visits,
             Event::BoxTest => &mut self.box_tests,
             Event::PrimitiveTest => &mut self.primitive_tests,

@@ -139,8 +139,9 @@ impl Effect {
     ];
 
     /// `scene` as it would be if it did not call for this effect: lamps cast no shadow, area lights shine from their
-    /// middle, weights of mirrors or of glass are 0 (what glass itself mirrors by Fresnel goes with the glass), rough is sharp, the lens is a pinhole, what moves stands where it
-    /// is when the shutter opens, meshes are flat, images are left out.
+    /// middle, weights of mirrors or of glass are 0 (what glass itself mirrors by Fresnel goes with the glass), rough is
+    /// sharp, the lens is a pinhole, what moves stands where it is when the shutter opens, meshes are flat, images are
+    /// left out.
     pub fn removed_from(self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         match self {

@@ -48,6 +48,9 @@ pub struct Points {
 }
 
 impl Points {
+    /// For who draws nothing.
+    pub const UNUSED: Points = Points { sampler: Sampler::Center, key: 0, index: 0, count: 1 };
+
     /// The numbers of sample `sample` of `samples` of pixel number `pixel`.
     pub fn new(sampler: Sampler, seed: u64, pixel: u64, sample: u32, samples: u32) -> Points {
         Points { sampler, key: mix(seed ^ mix(pixel)), index: sample, count: samples }

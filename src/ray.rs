@@ -23,21 +23,25 @@ pub struct Ray {
 
 impl Ray {
     /// A ray from `origin` along `dir` that counts every hit in front of it.
+    #[inline]
     pub fn new(origin: Vec3, dir: Vec3) -> Self {
         Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
     }
 
     /// The same ray, counting hits in `t_min < t < t_max` only.
+    #[inline]
     pub fn with_range(self, t_min: f32, t_max: f32) -> Self {
         Ray { t_min, t_max, ..self }
     }
 
     /// The point `origin + t * dir`.
+    #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + t * self.dir
     }
 
     /// Whether a hit at `t` counts. Both ends are open, and NaN never counts.
+    #[inline]
     pub fn contains(&self, t: f32) -> bool {
         self.t_min < t && t < self.t_max
     }

@@ -28,26 +28,38 @@ pub struct Eye {
 }
 
 impl Eye {
-    /// The ray of a sample, and how much the sample counts in its pixel.
-    pub fn ray(&self, sample: &CameraSample) -> (Ray, f32) {
-        let place = match &sample.pixel {
+    /// The ray of a sample.
+    #[inline(always)]
+    pub fn ray(&self, sample: &CameraSample) -> Ray {
+        let on_film = (uvec2(sample.column, sample.row).as_vec2() + self.place(sample)) / self.film;
+        let mut ray = self.camera.ray(on_film.x, on_film.y);
+        if let (Some(lens), Some(stratum)) = (&self.camera.lens, &sample.lens) {
+            ray = lens_ray(&self.camera, &ray, lens, on_disk(jittered(stratum)));
+        }
+        ray.time = self.time(sample);
+        ray
+    }
+
+    /// How much a sample counts in its pixel.
+    #[inline(always)]
+    pub fn weight(&self, sample: &CameraSample) -> f32 {
+        match self.sampler {
+            Sampler::Gaussian if self.weights => gaussian_weight(self.place(sample) - 0.5),
+            _ => 1.0,
+        }
+    }
+
+    /// Where in its pixel a sample lies.
+    #[inline(always)]
+    fn place(&self, sample: &CameraSample) -> Vec2 {
+        match &sample.pixel {
             None => Vec2::splat(0.5),
             Some(stratum) if self.positions => pixel_position(self.sampler, stratum),
             Some(stratum) => stratum.u,
-        };
-        let on_film = (uvec2(sample.column, sample.row).as_vec2() + place) / self.film;
-        let pinhole = self.camera.ray(on_film.x, on_film.y);
-        let ray = match (&self.camera.lens, &sample.lens) {
-            (Some(lens), Some(stratum)) => lens_ray(&self.camera, &pinhole, lens, on_disk(jittered(stratum))),
-            _ => pinhole,
-        };
-        let weight = match self.sampler {
-            Sampler::Gaussian if self.weights => gaussian_weight(place - 0.5),
-            _ => 1.0,
-        };
-        (Ray { time: self.time(sample), ..ray }, weight)
+        }
     }
 
+    #[inline(always)]
     fn time(&self, sample: &CameraSample) -> f32 {
         let Some(shutter) = &self.camera.shutter else { return 0.0 };
         let Some(stratum) = &sample.time else { return shutter.open };
@@ -63,6 +75,7 @@ impl Eye {
     }
 
     /// The colour that the samples of a pixel make.
+    #[inline(always)]
     pub fn develop(&self, samples: &[WeightedColor]) -> Vec3 {
         match samples {
             [only] => only.color,

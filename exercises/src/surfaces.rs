@@ -56,6 +56,7 @@ pub struct Looks {
 }
 
 /// The point that was hit, with a bound on its error, its normals, and what is there.
+#[inline(always)]
 pub fn surface(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Place {
     let (found, material) = match *hit {
         Hit::Plane { t, index } => {
@@ -89,6 +90,7 @@ fn point_on_sphere(ray: &Ray, t: f32, sphere: &Sphere) -> Found {
     Found { point, error, normal, smooth: None }
 }
 
+#[inline(always)]
 fn point_on_triangle(
     world: &World,
     looks: Looks,
@@ -115,6 +117,7 @@ fn point_on_triangle(
 }
 
 /// `(α, β, γ)` of the point in which the ray meets the plane of the triangle, none below 0.
+#[inline(always)]
 fn barycentric(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> Vec3 {
     let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
     let (beta, gamma) = meet_triangle(method, &unbounded, triangle)
@@ -150,6 +153,7 @@ pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit
 }
 
 /// `(t, β, γ)` by the method that the scene asks for.
+#[inline(always)]
 pub fn meet_triangle(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> Option<(f32, f32, f32)> {
     let hit = match method {
         TriangleMethod::Watertight => stage2_triangles::triangle_choice(ray, triangle),

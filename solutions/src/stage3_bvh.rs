@@ -71,6 +71,7 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 /// Where the formula lies: `t_b⁻ ≥ 0` rejects every box that the ray starts in; "corner cases are covered by IEEE"
 /// is untrue for `0 · ∞`, which is NaN, and for a direction of -0.0; `<` in place of `≤` loses flat boxes; and rounding
 /// loses 6 of 100 rays that are aimed at a corner.
+#[inline]
 pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     let (mut near, mut far) = (ray.t_min, ray.t_max);

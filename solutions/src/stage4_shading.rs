@@ -114,8 +114,11 @@ pub fn shade(
         let Some(ray) = shadow_ray(surface, light) else { continue };
         let normal = surface.shading_normal;
         let diffuse = material.diffuse * diffuse_term(normal, light.direction);
-        let specular =
-            material.specular * specular_term(normal, light.direction, to_viewer, material.exponent);
+        // A power takes as long as a ray/triangle test, so dull surfaces do without.
+        let specular = match material.specular {
+            Vec3::ZERO => Vec3::ZERO,
+            strength => strength * specular_term(normal, light.direction, to_viewer, material.exponent),
+        };
         let unshadowed = light.radiance * (diffuse + specular);
         if unshadowed != Vec3::ZERO && visible(index, &ray) {
             color += unshadowed;

@@ -39,7 +39,8 @@ pub trait Frames {
     /// Renders `job`. `None` if `watch` cancelled it.
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering>;
 
-    /// The rays behind the pixel in column `x` and row `y` of `job`, one sample in its centre, parents before children.
+    /// The rays behind the first sample of the pixel in column `x` and row `y` of `job`, the very ones that a frame
+    /// traces, parents before children.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 }
 

@@ -8,6 +8,7 @@ use glam::Vec3;
 impl Light {
     /// The light that would arrive at `point` from the middle of the lamp if nothing stood in its way. The way to a ball
     /// ends at its surface, so that a ball that is seen as well does not stand in its own light.
+    #[inline]
     pub fn from_its_middle(&self, point: Vec3) -> LightSample {
         match &self.emitter {
             Emitter::Point { position, .. } => self.from_place(*position, point),
@@ -23,10 +24,12 @@ impl Light {
     }
 
     /// The light that would arrive at `point` from `place` on the lamp.
+    #[inline]
     pub fn from_place(&self, place: Vec3, point: Vec3) -> LightSample {
         let way = place - point;
         let distance = way.length();
-        self.arriving(way.normalize_or(Vec3::Y), distance, distance)
+        let direction = if distance > 0.0 { way / distance } else { Vec3::Y };
+        self.arriving(direction, distance, distance)
     }
 
     /// The light that would arrive at `point` from where the unit direction `direction` meets `ball`. It weakens with the
@@ -36,6 +39,7 @@ impl Light {
         self.arriving(direction, distance, point.distance(ball.center))
     }
 
+    #[inline]
     fn arriving(&self, direction: Vec3, distance: f32, weakening_distance: f32) -> LightSample {
         let falloff = match &self.emitter {
             Emitter::Point { falloff, .. } | Emitter::Area { falloff, .. } => *falloff,

@@ -1,5 +1,7 @@
-//! `raykata generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, so that the repository needs
-//! nobody else's model.
+//! `raykata generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, and the images of the scenes,
+//! so that the repository needs nobody else's work.
+
+mod images;
 
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
@@ -11,16 +13,24 @@ use std::path::Path;
 const ALONG: usize = 960;
 const AROUND: usize = 30;
 
-/// Writes the knot as a binary PLY file with normals.
-pub fn write(out: &Path) -> Result<()> {
-    if let Some(folder) = out.parent() {
-        std::fs::create_dir_all(folder)
+/// Writes the knot as a binary PLY file with normals, and the images, into folders of `scenes`.
+pub fn write(scenes: &Path) -> Result<()> {
+    for folder in ["meshes", "images"].map(|name| scenes.join(name)) {
+        std::fs::create_dir_all(&folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
     }
+    let knot = scenes.join("meshes/knot.ply");
     let bytes = ply();
-    raykata::film::write_atomically(out, |file| file.write_all(&bytes))
-        .with_context(|| format!("cannot write {}", out.display()))?;
-    println!("wrote {}: {} triangles", out.display(), 2 * ALONG * AROUND);
+    raykata::film::write_atomically(&knot, |file| file.write_all(&bytes))
+        .with_context(|| format!("cannot write {}", knot.display()))?;
+    println!("wrote {}: {} triangles", knot.display(), 2 * ALONG * AROUND);
+    for (name, picture) in images::all() {
+        let out = scenes.join("images").join(name);
+        picture
+            .write_png(&out, raykata::film::encode_srgb)
+            .with_context(|| format!("cannot write {}", out.display()))?;
+        println!("wrote {}: {} × {} pixels", out.display(), picture.width, picture.height);
+    }
     Ok(())
 }
 

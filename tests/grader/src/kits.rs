@@ -26,6 +26,14 @@ pub enum Source {
 }
 
 impl Source {
+    /// Gets the kit ready; the exercises are those of the folder in which we are, or above it.
+    pub fn here(which: Which) -> Result<Source> {
+        match which {
+            Which::Solutions => Ok(Source::Solutions),
+            Which::Exercises => Source::prepare(which, &root()?),
+        }
+    }
+
     /// Gets the kit ready; builds the exercises if need be.
     pub fn prepare(which: Which, root: &Path) -> Result<Source> {
         match which {

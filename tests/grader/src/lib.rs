@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod corpus;
+pub mod explain;
 pub mod generate;
 pub mod kits;
 pub mod render;

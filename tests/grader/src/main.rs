@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, corpus, generate, render, strip, sync, tree};
+use grader::{check, corpus, explain, generate, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -25,9 +25,11 @@ struct Cli {
 enum Command {
     /// Render a scene to a picture.
     Render(render::Options),
+    /// Say what a scene calls for, why, what it costs, and what is left out.
+    Explain(explain::Options),
     /// Render a scene at growing depths of recursion, side by side.
     Strip(strip::Options),
-    /// Show the rays behind one pixel.
+    /// Show the rays behind one pixel, for the first of its samples.
     Tree(tree::Options),
     /// Grade your exercises and print the scorecard.
     Check {
@@ -58,11 +60,11 @@ enum Command {
     },
     /// Try the checks on known mistakes and on other right solutions (for authors).
     Corpus(corpus::Options),
-    /// Make the mesh of the showcase scene (for authors).
+    /// Make the meshes and images of the scenes (for authors).
     Generate {
-        /// Where to write it.
-        #[arg(default_value = "scenes/meshes/knot.ply")]
-        out: PathBuf,
+        /// The folder that has, or will have, meshes/ and images/.
+        #[arg(default_value = "scenes")]
+        scenes: PathBuf,
     },
 }
 
@@ -83,6 +85,7 @@ fn run(cli: Cli) -> Result<bool> {
     match cli.command {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
         Some(Command::Render(options)) => render::run(&options)?,
+        Some(Command::Explain(options)) => explain::run(&options)?,
         Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {
@@ -93,7 +96,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
         Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
-        Some(Command::Generate { out }) => generate::write(&out)?,
+        Some(Command::Generate { scenes }) => generate::write(&scenes)?,
     }
     Ok(true)
 }

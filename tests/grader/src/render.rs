@@ -1,6 +1,6 @@
 //! `raykata render`: a scene becomes a picture.
 
-use crate::kits::{Source, Which, root};
+use crate::kits::{Source, Which};
 use crate::report::{Thousands, load_scene};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -77,7 +77,7 @@ enum TriangleName {
 /// As in scene files: 2²⁸, three gigabytes of film.
 const MOST_PIXELS: u64 = 1 << 28;
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
+pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let parsed: Option<(u32, u32)> =
         text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match parsed {
@@ -125,10 +125,7 @@ pub fn run(options: &Options) -> Result<()> {
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
     }
 
-    let source = match options.kit {
-        Which::Solutions => Source::Solutions,
-        Which::Exercises => Source::prepare(options.kit, &root()?)?,
-    };
+    let source = Source::here(options.kit)?;
     let kit = source.fresh();
     let view = if options.normals { View::Normals } else { View::Shaded };
     let job = RenderJob {
@@ -202,10 +199,10 @@ fn write_exr(film: &Film, out: &Path) -> Result<()> {
 }
 
 /// A progress bar; draws nothing when nobody sees it.
-struct Bar(ProgressBar);
+pub(crate) struct Bar(pub(crate) ProgressBar);
 
 impl Bar {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let bar = ProgressBar::new(0);
         let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

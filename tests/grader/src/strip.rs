@@ -1,7 +1,7 @@
 //! `raykata strip`: one scene at growing depths of recursion, side by side (lecture "Example: Reflection", "Example:
 //! Refraction").
 
-use crate::kits::{Source, Which, root};
+use crate::kits::{Source, Which};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene};
 use anyhow::{Context, Result};
@@ -39,10 +39,7 @@ pub fn run(options: &Options) -> Result<()> {
         std::fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
     }
-    let source = match options.kit {
-        Which::Solutions => Source::Solutions,
-        Which::Exercises => Source::prepare(options.kit, &root()?)?,
-    };
+    let source = Source::here(options.kit)?;
     let kit = source.fresh();
     let (width, height) = (scene.film.width, scene.film.height);
     let n = options.depths.len() as u32;

@@ -1,6 +1,6 @@
-//! `raykata tree`: the rays behind one pixel, as text, JSON or a graph.
+//! `raykata tree`: the rays behind the first sample of one pixel, as text, JSON or a graph.
 
-use crate::kits::{Source, Which, root};
+use crate::kits::{Source, Which};
 use crate::report::load_scene;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -41,7 +41,7 @@ fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
     parsed.ok_or_else(|| "a pixel is a column and a row with a comma between them, such as 320,200".into())
 }
 
-/// Traces the pixel and prints its tree.
+/// Traces the first sample of the pixel and prints its tree.
 pub fn run(options: &Options) -> Result<()> {
     let scene = load_scene(&options.scene)?;
     let ((x, y), film) = (options.pixel, scene.film);
@@ -52,10 +52,7 @@ pub fn run(options: &Options) -> Result<()> {
             film.height - 1
         );
     }
-    let source = match options.kit {
-        Which::Solutions => Source::Solutions,
-        Which::Exercises => Source::prepare(options.kit, &root()?)?,
-    };
+    let source = Source::here(options.kit)?;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
     let rays = mishap::catch(|| source.fresh().trace(&job, x, y))?;
     print!("{}", show(&rays, options.format)?);

@@ -1,0 +1,234 @@
+//! No effect costs anything, or changes anything, where it is not called for: shown for all 2⁹ sets of the nine effects
+//! of `scenes/effects.toml`. `raykata explain scenes/effects.toml --subsets` prints what each set costs.
+
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::count::Counts;
+use raykata::effects::Effect;
+use raykata::film::Film;
+use raykata::frame::Unwatched;
+use raykata::kit::{Economy, Frames, RayKind, RenderJob, TracedRay, View};
+use raykata::mesh::Mesh;
+use raykata::scene::{Scene, load};
+use std::path::Path;
+use std::sync::Arc;
+
+const EFFECTS: [Effect; 9] = [
+    Effect::Shadows,
+    Effect::AreaLights,
+    Effect::Mirrors,
+    Effect::Transmission,
+    Effect::Gloss,
+    Effect::Lens,
+    Effect::Motion,
+    Effect::SmoothNormals,
+    Effect::Textures,
+];
+
+/// A set of effects, one bit each.
+#[derive(Clone, Copy, PartialEq, Debug)]
+struct Set(usize);
+
+impl Set {
+    fn all() -> impl Iterator<Item = Set> {
+        (0..1 << EFFECTS.len()).map(Set)
+    }
+    fn has(self, effect: Effect) -> bool {
+        EFFECTS.iter().position(|&other| other == effect).is_some_and(|bit| self.0 & 1 << bit != 0)
+    }
+    fn without(self, effect: Effect) -> Set {
+        Set(EFFECTS.iter().position(|&other| other == effect).map_or(self.0, |bit| self.0 & !(1 << bit)))
+    }
+    fn absent(self) -> impl Iterator<Item = Effect> {
+        EFFECTS.into_iter().filter(move |&effect| !self.has(effect))
+    }
+}
+
+fn text() -> String {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/effects.toml");
+    std::fs::read_to_string(file).expect("a scene of this kit")
+}
+
+fn parse(text: &str) -> Scene {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
+    load::parse(&beside, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene in few pixels, with one sample each, and with a coarse smooth mesh in place of the vase.
+fn small(mut scene: Scene) -> Scene {
+    (scene.film.width, scene.film.height) = (20, 12);
+    scene.quality.samples_per_pixel = 1;
+    scene.meshes[0].mesh = Arc::new(Mesh {
+        positions: [Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z].map(|p| p + Vec3::Y).to_vec(),
+        triangles: [[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]]
+            .to_vec(),
+        ..Mesh::default()
+    });
+    scene
+}
+
+fn only(set: Set) -> Scene {
+    set.absent().fold(small(parse(&text())), |scene, effect| effect.removed_from(&scene))
+}
+
+/// A frame of a set, and the rays behind each of its pixels.
+struct Frame {
+    film: Film,
+    counts: Counts,
+    trees: Vec<Vec<TracedRay>>,
+}
+
+fn frame(set: Set) -> Frame {
+    let job = RenderJob { scene: only(set), view: View::Shaded, seed: 3, threads: 1, count: true };
+    let rendering = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+    let film = job.scene.film;
+    let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
+    let trees = pixels.map(|(x, y)| solutions::Kit.trace(&job, x, y)).collect();
+    Frame { film: rendering.film, counts: rendering.counts, trees }
+}
+
+/// The tree without rays of this kind and all that is behind them.
+fn pruned(tree: &[TracedRay], kind: RayKind) -> Vec<TracedRay> {
+    let mut kept: Vec<TracedRay> = Vec::new();
+    let mut place = Vec::new();
+    for ray in tree {
+        let parent = ray.parent.map(|parent| place[parent]);
+        if ray.kind == kind || parent == Some(None) {
+            place.push(None);
+            continue;
+        }
+        place.push(Some(kept.len()));
+        kept.push(TracedRay { parent: parent.flatten(), ..ray.clone() });
+    }
+    kept
+}
+
+/// Whether some ray of the tree met one of these materials.
+fn meets(tree: &[TracedRay], materials: &[&str]) -> bool {
+    tree.iter().any(|ray| ray.hit.as_ref().is_some_and(|(_, name)| materials.contains(&name.as_str())))
+}
+
+/// Whether some ray of the tree, were it endless, would pass where the toy ball goes.
+fn passes_the_toy(tree: &[TracedRay]) -> bool {
+    let way = Aabb::new(vec3(0.34, 0.0, 1.34), vec3(1.76, 0.92, 2.31));
+    tree.iter().any(|ray| {
+        let (a, b) = ((way.min - ray.origin) / ray.dir, (way.max - ray.origin) / ray.dir);
+        a.min(b).max_element().max(0.0) <= a.max(b).min_element()
+    })
+}
+
+#[test]
+fn each_set_of_effects_is_seen_to_be_what_it_is() {
+    for set in Set::all() {
+        let effects = &solutions::Kit.effects(&[only(set)])[0];
+        for effect in EFFECTS {
+            // The one thing that is rough is a mirror.
+            let expected = set.has(effect) && (effect != Effect::Gloss || set.has(Effect::Mirrors));
+            assert_eq!(
+                effects.calls_for(effect),
+                expected,
+                "{effect} in {:?}",
+                set.absent().collect::<Vec<_>>()
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_left_out_of_the_file_and_what_is_switched_off_are_the_same() {
+    let keys = [
+        (Effect::Mirrors, "mirror ="),
+        (Effect::Transmission, "transmission ="),
+        (Effect::Gloss, "roughness ="),
+        (Effect::Lens, "lens ="),
+        (Effect::Motion, "transform_end ="),
+        (Effect::Textures, "texture ="),
+    ];
+    let text = text();
+    for set in Set::all() {
+        let absent =
+            |line: &&str| !keys.iter().any(|(effect, key)| !set.has(*effect) && line.starts_with(key));
+        let lines: Vec<&str> = text.lines().filter(absent).collect();
+        let others = set.absent().filter(|effect| keys.iter().all(|(other, _)| other != effect));
+        let written =
+            others.fold(small(parse(&lines.join("\n"))), |scene, effect| effect.removed_from(&scene));
+        assert_eq!(written, only(set), "without {:?}", set.absent().collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
+    let frames: Vec<Frame> = Set::all().map(frame).collect();
+    for set in Set::all() {
+        let with = &frames[set.0];
+        counts_are_what_the_rays_add_up_to(set, with);
+        for effect in EFFECTS.into_iter().filter(|&effect| set.has(effect)) {
+            let without = &frames[set.without(effect).0];
+            let told = || format!("{effect}, without {:?}", set.absent().collect::<Vec<_>>());
+            assert_eq!(with.counts.primary, without.counts.primary, "{}", told());
+            for (pixel, (tree, old)) in with.trees.iter().zip(&without.trees).enumerate() {
+                let (same_rays, acts) = match effect {
+                    // These add branches to the tree and leave the rest of it as it was.
+                    Effect::Shadows => (
+                        pruned(tree, RayKind::Shadow) == *old,
+                        tree.iter().any(|ray| ray.kind == RayKind::Shadow),
+                    ),
+                    Effect::Mirrors => {
+                        (pruned(tree, RayKind::Reflection) == *old, meets(tree, &["mirror", "brushed"]))
+                    }
+                    Effect::Transmission => {
+                        (pruned(tree, RayKind::Transmission) == *old, meets(tree, &["glass"]))
+                    }
+                    Effect::AreaLights => {
+                        let both = [tree, old].map(|tree| pruned(tree, RayKind::Shadow));
+                        (both[0] == both[1], tree[0].hit.is_some())
+                    }
+                    // These change no ray at all,
+                    Effect::Textures => (tree == old, meets(tree, &["floor", "toy"])),
+                    // and these none that stays away.
+                    Effect::Gloss => (tree == old || meets(tree, &["brushed"]), meets(tree, &["brushed"])),
+                    Effect::SmoothNormals => (tree == old || meets(tree, &["clay"]), meets(tree, &["clay"])),
+                    Effect::Motion => {
+                        let near = passes_the_toy(tree) || passes_the_toy(old);
+                        (tree == old || near, near)
+                    }
+                    _ => (true, true),
+                };
+                assert!(same_rays, "pixel {pixel} has other rays: {}", told());
+                let same_color = with.film.pixels[pixel] == without.film.pixels[pixel];
+                assert!(same_color || acts, "pixel {pixel} has another colour: {}", told());
+            }
+        }
+    }
+}
+
+/// Rays, hits, random numbers and reads of images are those that the trees call for, and no more.
+fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
+    let Frame { counts, trees, .. } = frame;
+    let rays = |wanted: &dyn Fn(&[TracedRay], &TracedRay) -> bool| {
+        trees.iter().map(|tree| tree.iter().filter(|ray| wanted(tree, ray)).count() as u64).sum::<u64>()
+    };
+    let of_kind = |kind| rays(&|_, ray| ray.kind == kind);
+    assert_eq!(counts.primary, of_kind(RayKind::Primary));
+    assert_eq!(counts.shadow, of_kind(RayKind::Shadow));
+    assert_eq!(counts.reflection, of_kind(RayKind::Reflection));
+    assert_eq!(counts.transmission, of_kind(RayKind::Transmission));
+    let hits = rays(&|_, ray| ray.kind != RayKind::Shadow && ray.hit.is_some());
+    assert_eq!(counts.hits, hits);
+
+    let is_at =
+        |ray: &TracedRay, names: &[&str]| ray.hit.as_ref().is_some_and(|hit| names.contains(&hit.1.as_str()));
+    let covered = rays(&|_, ray| is_at(ray, &["floor", "toy"]));
+    assert_eq!(counts.texture_reads, if set.has(Effect::Textures) { covered } else { 0 });
+
+    // Two numbers a place on the lens, on the lamp (two places a hit) and in the lobe, one a moment.
+    let blurred = rays(&|tree, ray| {
+        ray.kind == RayKind::Reflection && ray.parent.is_some_and(|parent| is_at(&tree[parent], &["brushed"]))
+    });
+    let each = |effect: Effect, numbers: u64| if set.has(effect) { numbers } else { 0 };
+    let numbers = each(Effect::Lens, 2 * counts.primary)
+        + each(Effect::Motion, counts.primary)
+        + each(Effect::AreaLights, 2 * 2 * hits)
+        + each(Effect::Gloss, 2 * blurred);
+    assert_eq!(counts.random_numbers, numbers, "without {:?}", set.absent().collect::<Vec<_>>());
+}

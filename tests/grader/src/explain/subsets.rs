@@ -1,0 +1,52 @@
+//! What each set of effects takes.
+
+use super::{Explained, render};
+use crate::render::Bar;
+use crate::report::Thousands;
+use anyhow::{Result, bail};
+use raykata::effects::Effect;
+
+/// One line for each set of the effects that the scene calls for, from none to all.
+pub fn print(explained: &Explained<'_>) -> Result<()> {
+    let called = explained.called_for();
+    if called.len() > 9 {
+        bail!("the scene calls for {} effects: {} sets are too many", called.len(), 1u64 << called.len());
+    }
+    for (effect, letter) in called.iter().zip('A'..) {
+        println!("  {letter}  {effect}");
+    }
+    let head =
+        ["from camera", "to lamps", "mirrored", "refracted", "random numbers", "image reads", "box tests"];
+    let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
+    println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
+    let bar = Bar::new();
+    bar.0.set_length(1 << called.len());
+    for set in 0..1usize << called.len() {
+        let has = |bit: usize| set & (1 << bit) != 0;
+        let absent = (0..called.len()).filter(|&bit| !has(bit)).map(|bit| called[bit]);
+        let scene = absent.fold(explained.scene.clone(), |scene, effect: Effect| effect.removed_from(&scene));
+        let (counts, _) = render(explained.kit, scene)?;
+        let letters: String = ('A'..)
+            .take(called.len())
+            .enumerate()
+            .map(|(bit, letter)| if has(bit) { letter } else { '·' })
+            .collect();
+        let numbers = [
+            counts.primary,
+            counts.shadow,
+            counts.reflection,
+            counts.transmission,
+            counts.random_numbers,
+            counts.texture_reads,
+            counts.box_tests,
+        ];
+        let numbers: Vec<String> =
+            numbers.iter().map(|&n| format!("{:>14}", Thousands(n).to_string())).collect();
+        bar.0.suspend(|| {
+            println!("{letters:<width$}  {}", numbers.join("  "), width = called.len().max(7));
+        });
+        bar.0.inc(1);
+    }
+    bar.0.finish_and_clear();
+    Ok(())
+}

@@ -1,0 +1,146 @@
+//! Which part of a scene asks for an effect, and why nothing asks for the others.
+
+use glam::Vec3;
+use raykata::effects::{Effect, Effects};
+use raykata::material::{AreaShape, Emitter, Fresnel, Light, Material};
+use raykata::scene::Scene;
+use raykata::shape::Shape;
+
+/// The parts of `scene` that ask for `effect`, in words; none if it is not called for.
+pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String> {
+    let seen = |light: usize| effects.materials.iter().any(|material| material.lights.contains(&light));
+    let lamps = |wants: &dyn Fn(usize) -> bool| {
+        (0..scene.lights.len())
+            .filter(|&light| seen(light) && wants(light))
+            .map(|light| lamp(scene, light))
+            .collect()
+    };
+    let materials = |wants: &dyn Fn(usize) -> bool| {
+        (0..scene.materials.len()).filter(|&index| wants(index)).map(|index| material(scene, index)).collect()
+    };
+    match effect {
+        Effect::Shadows => lamps(&|light| effects.lights[light].samples > 0 && effects.lights[light].shadows),
+        Effect::AreaLights => lamps(&|light| effects.lights[light].area),
+        Effect::Mirrors => materials(&|index| effects.materials[index].mirror),
+        Effect::Transmission => materials(&|index| effects.materials[index].transmission),
+        Effect::Gloss => materials(&|index| effects.materials[index].gloss),
+        Effect::Textures => materials(&|index| effects.materials[index].texture),
+        Effect::Lens => scene
+            .camera
+            .lens
+            .filter(|_| effects.lens)
+            .map(|lens| format!("camera: opening {}, sharp at {}", lens.aperture, lens.focal_distance))
+            .into_iter()
+            .collect(),
+        Effect::Motion if effects.motion => {
+            scene.shown().iter().filter(|shape| shape.moves).map(|shape| node(scene, shape.node)).collect()
+        }
+        Effect::SmoothNormals => scene
+            .shown()
+            .iter()
+            .filter(|shape| shape.mesh.is_some_and(|mesh| effects.smooth_meshes[mesh]))
+            .map(|shape| node(scene, shape.node))
+            .collect(),
+        Effect::IndirectLight if effects.indirect_light => vec!["[environment]: indirect_light".into()],
+        Effect::Motion | Effect::IndirectLight => Vec::new(),
+    }
+}
+
+/// Why nothing asks for `effect`.
+pub fn not_asked(effect: Effect, scene: &Scene) -> String {
+    let shown = scene.shown();
+    let has = |wants: &dyn Fn(&Material) -> bool, what: &str| {
+        let idle: Vec<String> = scene
+            .materials
+            .iter()
+            .zip(&scene.material_names)
+            .filter(|(material, _)| wants(material))
+            .map(|(_, name)| format!("`{name}`"))
+            .collect();
+        (!idle.is_empty()).then(|| format!("{} {what}", list(&idle)))
+    };
+    let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
+    let unused = "could, but nothing is made of it, or max_depth is 0";
+    match effect {
+        Effect::Shadows if scene.lights.is_empty() => "there is no lamp".into(),
+        Effect::Shadows => "no lamp that lights something casts them".into(),
+        Effect::AreaLights if scene.lights.iter().any(area) && scene.quality.light_samples == 0 => {
+            "light_samples is 0: lamps shine from their middle".into()
+        }
+        Effect::AreaLights if scene.lights.iter().any(area) => {
+            "the lamps that have an extent light nothing".into()
+        }
+        Effect::AreaLights => "no lamp has an extent".into(),
+        Effect::Mirrors => has(&|m| m.mirror != Vec3::ZERO || m.fresnel != Fresnel::None, unused)
+            .unwrap_or_else(|| "nothing mirrors".into()),
+        Effect::Transmission => has(&|m| m.transmission != Vec3::ZERO, unused)
+            .unwrap_or_else(|| "nothing lets light through".into()),
+        Effect::Gloss => {
+            has(&|m| m.roughness > 0.0, "is rough, but nothing made of it mirrors or lets light through")
+                .unwrap_or_else(|| "no material is rough".into())
+        }
+        Effect::Lens if scene.camera.lens.is_some() => "the opening of the lens is 0".into(),
+        Effect::Lens => "the camera is a pinhole".into(),
+        Effect::Motion if !shown.iter().any(|shape| shape.moves) => "nothing moves".into(),
+        Effect::Motion => "the shutter is not open for any time".into(),
+        Effect::SmoothNormals if scene.meshes.is_empty() => "there is no mesh".into(),
+        Effect::SmoothNormals => "no mesh that is shown is smooth".into(),
+        Effect::Textures => has(&|m| m.texture.is_some(), "has an image, but nothing shows it")
+            .unwrap_or_else(|| "no material has an image".into()),
+        Effect::IndirectLight => "[environment] does not ask for it".into(),
+    }
+}
+
+fn lamp(scene: &Scene, light: usize) -> String {
+    let kind = match &scene.lights[light].emitter {
+        Emitter::Point { .. } => "point",
+        Emitter::Directional { .. } => "directional",
+        Emitter::Area { shape: AreaShape::Rectangle { .. }, .. } => "rectangle",
+        Emitter::Area { shape: AreaShape::Disk(_), .. } => "disk",
+        Emitter::Area { shape: AreaShape::Sphere(_), .. } => "ball",
+    };
+    format!("lamp {} ({kind})", light + 1)
+}
+
+/// A material and the first things that are made of it.
+fn material(scene: &Scene, index: usize) -> String {
+    let mut nodes: Vec<String> = scene
+        .shown()
+        .iter()
+        .filter(|shape| shape.materials.contains(&index))
+        .map(|shape| node(scene, shape.node))
+        .collect();
+    nodes.dedup();
+    format!("`{}` ({})", scene.material_names[index], list(&nodes))
+}
+
+fn node(scene: &Scene, index: usize) -> String {
+    let node = &scene.nodes[index];
+    let unnamed = format!("node {}", index + 1);
+    if node.name != unnamed {
+        return node.name.clone();
+    }
+    let kind = match &node.shape {
+        Some(Shape::Sphere(_)) => "sphere",
+        Some(Shape::Plane(_)) => "plane",
+        Some(Shape::Triangle(_)) => "triangle",
+        Some(Shape::Cuboid(_)) => "box",
+        Some(Shape::Cylinder(_)) => "cylinder",
+        Some(Shape::Cone(_)) => "cone",
+        Some(Shape::Disk(_)) => "disk",
+        Some(Shape::Polygon(_)) => "polygon",
+        Some(Shape::Mesh(_)) => "mesh",
+        None => "nothing",
+    };
+    format!("{kind} of {unnamed}")
+}
+
+/// The first three, and how many more.
+pub fn list(parts: &[String]) -> String {
+    match parts {
+        [first, second, third, more @ ..] if !more.is_empty() => {
+            format!("{first}, {second}, {third} and {} more", more.len())
+        }
+        parts => parts.join(", "),
+    }
+}
