@@ -184,3 +184,38 @@ fn a_strip_shows_one_picture_a_depth() {
         |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
     assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32));
 }
+
+#[test]
+fn a_scene_is_explained_and_predictions_hold() {
+    let output =
+        raykata(&["explain", "scenes/effects.toml", "--size", "24x15", "--spp", "2", "--rounds", "1"]);
+    let (said, complained) = told(&output);
+    assert!(output.status.success(), "{complained}");
+    for line in [
+        "  shadows         lamp 1 (rectangle), lamp 2 (point)",
+        "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
+        "  gloss           `brushed` (brass ball)",
+        "  lens            camera: opening 0.12, sharp at 7",
+        "  motion          toy ball",
+        "  indirect light  [environment] does not ask for it",
+    ] {
+        assert!(said.contains(line), "no `{line}` in\n{said}");
+    }
+    // 24 × 15 pixels, 2 samples each: as predicted.
+    let primary =
+        said.lines().find(|line| line.contains("from the camera")).expect("a line about the camera");
+    assert_eq!(primary.split_whitespace().filter(|&word| word == "720").count(), 2, "{primary}");
+}
+
+#[test]
+fn every_set_of_effects_has_its_line() {
+    let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
+    let (said, complained) = told(&output);
+    assert!(output.status.success(), "{complained}");
+    // Shadows, mirrors and transmission: eight sets, each with its rays from the camera.
+    assert_eq!(
+        said.lines().filter(|line| line.split_whitespace().nth(1) == Some("360")).count(),
+        8,
+        "{said}"
+    );
+}
