@@ -112,8 +112,8 @@ fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError>
     }
 }
 
-/// All parts in one mesh. Normals and texture coordinates stay only if every corner has them: a mesh has one for
-/// each vertex or none at all, and a made-up one would be seen in the picture.
+/// All parts in one mesh. Normals stay only if every corner has one: a mesh has one for each vertex or none at all, and a
+/// made-up one would be seen in the picture. A part without texture coordinates shows the middle of its image.
 fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     let vec3s = |numbers: &[f32]| -> Vec<Vec3> { numbers.chunks_exact(3).map(Vec3::from_slice).collect() };
     let mut mesh = Mesh::default();
@@ -124,6 +124,9 @@ fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
         mesh.positions.extend(vec3s(&part.positions));
         mesh.normals.extend(vec3s(&part.normals));
         mesh.uvs.extend(part.texcoords.chunks_exact(2).map(Vec2::from_slice));
+        if mesh.uvs.len() != mesh.positions.len() {
+            mesh.uvs.resize(mesh.positions.len(), Vec2::splat(0.5));
+        }
         for corners in part.indices.chunks_exact(3) {
             mesh.triangles.push([first + corners[0], first + corners[1], first + corners[2]]);
             mesh.face_materials.push(material);
@@ -133,7 +136,7 @@ fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     if mesh.normals.len() != mesh.positions.len() {
         mesh.normals.clear();
     }
-    if mesh.uvs.len() != mesh.positions.len() {
+    if parts.iter().all(|part| part.texcoords.is_empty()) {
         mesh.uvs.clear();
     }
     if !has_materials {

@@ -82,6 +82,12 @@ fn each_combination_of_indices_is_a_vertex() {
 }
 
 #[test]
+fn a_part_without_texture_coordinates_shows_the_middle() {
+    let mixed = mesh(format!("{SQUARE}vt 0 1\nf 1/1 2/1 3/1\nusemtl plain\nf 1 3 4\n"));
+    assert_eq!(mixed.uvs, [[Vec2::Y; 3], [Vec2::splat(0.5); 3]].concat());
+}
+
+#[test]
 fn one_corner_without_a_normal_costs_them_all() {
     let tables = format!("{SQUARE}vn 0 0 1\nvn 0 0 0\nvn nan 0 1\n");
     for faces in

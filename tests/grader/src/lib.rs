@@ -5,6 +5,7 @@ pub mod corpus;
 pub mod explain;
 pub mod generate;
 pub mod kits;
+pub mod knobs;
 pub mod render;
 pub mod report;
 pub mod strip;

@@ -27,7 +27,7 @@ enum Command {
     Render(render::Options),
     /// Say what a scene calls for, why, what it costs, and what is left out.
     Explain(explain::Options),
-    /// Render a scene at growing depths of recursion, side by side.
+    /// Render a scene at growing depths of recursion, or with each sampler, side by side.
     Strip(strip::Options),
     /// Show the rays behind one pixel, for the first of its samples.
     Tree(tree::Options),

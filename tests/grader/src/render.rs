@@ -1,14 +1,15 @@
 //! `raykata render`: a scene becomes a picture.
 
 use crate::kits::{Source, Which};
+use crate::knobs::Knobs;
 use crate::report::{Thousands, load_scene};
 use anyhow::{Context, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Watch;
 use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
-use raykata::scene::{Accelerator, Encoding, Scene, Split, TriangleMethod};
+use raykata::scene::Encoding;
 use std::path::{Path, PathBuf};
 
 /// What to render and how.
@@ -22,70 +23,20 @@ pub struct Options {
     /// Whose code makes it.
     #[arg(long, value_enum, default_value_t = Which::Solutions)]
     kit: Which,
-    /// Size in pixels, such as 640x360 [default: the scene's].
-    #[arg(long, value_parser = parse_size)]
-    size: Option<(u32, u32)>,
-    /// Samples a pixel [default: the scene's].
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    spp: Option<u32>,
     /// Threads; 0 takes one a core.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
     /// Picks the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Split strategy of the hierarchy [default: the scene's].
-    #[arg(long, value_enum)]
-    split: Option<SplitName>,
-    /// Most primitives in a leaf [default: the scene's].
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    leaf_size: Option<u32>,
-    /// What finds the closest hit [default: the scene's].
-    #[arg(long, value_enum)]
-    accelerator: Option<AcceleratorName>,
-    /// Ray/triangle test [default: the scene's].
-    #[arg(long, value_enum)]
-    triangles: Option<TriangleName>,
+    #[command(flatten)]
+    knobs: Knobs,
     /// Show normals instead of light.
     #[arg(long)]
     normals: bool,
     /// Do not count work: a little faster.
     #[arg(long)]
     no_counts: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum SplitName {
-    ObjectMedian,
-    SpatialMedian,
-    SurfaceArea,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum AcceleratorName {
-    BruteForce,
-    Bvh,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum TriangleName {
-    Cramer,
-    Gram,
-    Watertight,
-}
-
-/// As in scene files: 2²⁸, three gigabytes of film.
-const MOST_PIXELS: u64 = 1 << 28;
-
-pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let parsed: Option<(u32, u32)> =
-        text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match parsed {
-        Some((width, height)) if (1..=MOST_PIXELS).contains(&(u64::from(width) * u64::from(height))) => {
-            Ok((width, height))
-        }
-        _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
-    }
 }
 
 /// Which kind of file a picture becomes.
@@ -112,7 +63,7 @@ fn format_of(file: &Path) -> Result<Format> {
 /// Renders and tells what it took.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    apply(options, &mut scene);
+    options.knobs.apply(&mut scene);
     let out = match &options.out {
         Some(out) => out.clone(),
         None => Path::new("out")
@@ -147,29 +98,6 @@ pub fn run(options: &Options) -> Result<()> {
     write.with_context(|| format!("cannot write {}", out.display()))?;
     tell(&out, &job, &rendering);
     Ok(())
-}
-
-fn apply(options: &Options, scene: &mut Scene) {
-    if let Some((width, height)) = options.size {
-        (scene.film.width, scene.film.height) = (width, height);
-    }
-    let quality = &mut scene.quality;
-    quality.samples_per_pixel = options.spp.unwrap_or(quality.samples_per_pixel);
-    quality.leaf_size = options.leaf_size.unwrap_or(quality.leaf_size);
-    quality.split = options.split.map_or(quality.split, |split| match split {
-        SplitName::ObjectMedian => Split::ObjectMedian,
-        SplitName::SpatialMedian => Split::SpatialMedian,
-        SplitName::SurfaceArea => Split::SurfaceArea,
-    });
-    quality.accelerator = options.accelerator.map_or(quality.accelerator, |accelerator| match accelerator {
-        AcceleratorName::BruteForce => Accelerator::BruteForce,
-        AcceleratorName::Bvh => Accelerator::Bvh,
-    });
-    quality.triangle_method = options.triangles.map_or(quality.triangle_method, |method| match method {
-        TriangleName::Cramer => TriangleMethod::Cramer,
-        TriangleName::Gram => TriangleMethod::Gram,
-        TriangleName::Watertight => TriangleMethod::Watertight,
-    });
 }
 
 /// Gamma 2 is an exercise, so the kit that made the picture encodes it.
@@ -241,6 +169,9 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         println!("  shadow rays      {}", Thousands(counts.shadow));
         println!("  reflected rays   {}", Thousands(counts.reflection));
         println!("  refracted rays   {}", Thousands(counts.transmission));
+        println!("  surfaces met     {}", Thousands(counts.hits));
+        println!("  random numbers   {}", Thousands(counts.random_numbers));
+        println!("  image reads      {}", Thousands(counts.texture_reads));
         println!("  node visits      {}", Thousands(counts.node_visits));
         println!("  box tests        {}", Thousands(counts.box_tests));
         println!("  primitive tests  {}", Thousands(counts.primitive_tests));

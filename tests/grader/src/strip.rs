@@ -1,14 +1,16 @@
-//! `raykata strip`: one scene at growing depths of recursion, side by side (lecture "Example: Reflection", "Example:
-//! Refraction").
+//! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), or
+//! with each way to place samples ("Antialiasing", "Generate pixel samples"), side by side.
 
 use crate::kits::{Source, Which};
+use crate::knobs::{Knobs, SamplerName};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene};
 use anyhow::{Context, Result};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, View, mishap};
+use raykata::scene::{Quality, Scene};
 use std::path::{Path, PathBuf};
 
 /// Pixels between two pictures.
@@ -22,6 +24,11 @@ pub struct Options {
     /// How often rays may be mirrored or refracted, one picture each.
     #[arg(long, value_delimiter = ',', default_values_t = [1, 2, 5, 10], value_parser = clap::value_parser!(u32).range(0..=1000))]
     depths: Vec<u32>,
+    /// Instead of depths: where the samples of a pixel lie, one picture each.
+    #[arg(long, value_delimiter = ',', value_enum, conflicts_with = "depths")]
+    samplers: Vec<SamplerName>,
+    #[command(flatten)]
+    knobs: Knobs,
     /// Where the PNG goes [default: out/NAME-strip.png].
     #[arg(long, short)]
     out: Option<PathBuf>,
@@ -32,7 +39,8 @@ pub struct Options {
 
 /// Renders the strip and tells what each picture took.
 pub fn run(options: &Options) -> Result<()> {
-    let scene = load_scene(&options.scene)?;
+    let mut scene = load_scene(&options.scene)?;
+    options.knobs.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
@@ -41,18 +49,17 @@ pub fn run(options: &Options) -> Result<()> {
     }
     let source = Source::here(options.kit)?;
     let kit = source.fresh();
+    let pictures = pictures(options, &scene);
     let (width, height) = (scene.film.width, scene.film.height);
-    let n = options.depths.len() as u32;
+    let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height);
-    println!("{:>6}  {:>14}  {:>14}  {:>9}", "depth", "reflected rays", "refracted rays", "seconds");
-    for (column, &depth) in options.depths.iter().enumerate() {
-        let mut scene = scene.clone();
-        scene.quality.max_depth = depth;
+    println!("{:>15}  {:>14}  {:>14}  {:>9}", "picture", "reflected rays", "refracted rays", "seconds");
+    for (column, (what, scene)) in pictures.into_iter().enumerate() {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
         let rendering = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         let (counts, seconds) = (rendering.counts, rendering.render_seconds);
         println!(
-            "{depth:>6}  {:>14}  {:>14}  {seconds:>9.3}",
+            "{what:>15}  {:>14}  {:>14}  {seconds:>9.3}",
             Thousands(counts.reflection),
             Thousands(counts.transmission)
         );
@@ -62,6 +69,24 @@ pub fn run(options: &Options) -> Result<()> {
         .with_context(|| format!("cannot write {}", out.display()))?;
     println!("{}", out.display());
     Ok(())
+}
+
+/// The scene once for each depth or sampler, with its name.
+fn pictures(options: &Options, scene: &Scene) -> Vec<(String, Scene)> {
+    let with = |change: &dyn Fn(&mut Quality)| {
+        let mut scene = scene.clone();
+        change(&mut scene.quality);
+        scene
+    };
+    if options.samplers.is_empty() {
+        let depths = options.depths.iter();
+        return depths.map(|&n| (format!("depth {n}"), with(&|quality| quality.max_depth = n))).collect();
+    }
+    let named = |sampler: &SamplerName| {
+        let name = sampler.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned());
+        (name, with(&|quality| quality.sampler = (*sampler).into()))
+    };
+    options.samplers.iter().map(named).collect()
 }
 
 fn paste(picture: &Film, strip: &mut Film, x: u32) {

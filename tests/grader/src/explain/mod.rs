@@ -4,7 +4,8 @@ mod subsets;
 mod why;
 
 use crate::kits::{Source, Which};
-use crate::render::{Bar, parse_size};
+use crate::knobs::Knobs;
+use crate::render::Bar;
 use crate::report::{Thousands, load_scene};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -26,12 +27,8 @@ pub struct Options {
     /// How often each picture is made: once with everything and once without each effect, by turns.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
-    /// Size in pixels, such as 64x40 [default: the scene's].
-    #[arg(long, value_parser = parse_size)]
-    size: Option<(u32, u32)>,
-    /// Samples a pixel [default: the scene's].
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
-    spp: Option<u32>,
+    #[command(flatten)]
+    knobs: Knobs,
     /// Instead: what each set of the effects takes that the scene calls for, 2ⁿ lines for n effects.
     #[arg(long)]
     subsets: bool,
@@ -53,10 +50,7 @@ impl Explained<'_> {
 /// Looks through the scene, measures, and prints.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    if let Some((width, height)) = options.size {
-        (scene.film.width, scene.film.height) = (width, height);
-    }
-    scene.quality.samples_per_pixel = options.spp.unwrap_or(scene.quality.samples_per_pixel);
+    options.knobs.apply(&mut scene);
     let source = Source::here(options.kit)?;
     let kit = &*source.fresh();
     let effects = mishap::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
@@ -160,7 +154,8 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     );
     println!(
         "  Each line is what the picture costs less without that effect; they need not add up, for a mirror shows\n  \
-         shadows. Times are medians of {rounds} rounds with their median deviation, all pictures by turns.\n"
+         shadows. Times are medians of {rounds} {} with their median deviation, all pictures by turns.\n",
+        if rounds == 1 { "round" } else { "rounds" }
     );
     Ok(())
 }

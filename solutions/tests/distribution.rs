@@ -1,0 +1,259 @@
+//! Whole frames of the reference with many rays where one was: what has no extent changes nothing, what is sharp stays
+//! sharp, half a lamp makes half a shadow, and whatever moves is found by every search on any number of threads.
+
+use glam::Vec3;
+use raykata::frame::Unwatched;
+use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::scene::{Accelerator, Sampler, Scene, load};
+use std::path::Path;
+
+const SAMPLERS: [Sampler; 5] =
+    [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian, Sampler::LowDiscrepancy];
+
+fn scene(text: &str) -> Scene {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
+    load::parse(&beside, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn job(scene: &Scene, threads: usize) -> RenderJob {
+    RenderJob { scene: scene.clone(), view: View::Shaded, seed: 5, threads, count: true }
+}
+
+fn render(scene: &Scene) -> Rendering {
+    solutions::Kit.render(&job(scene, 1), &Unwatched).expect("nobody cancels")
+}
+
+/// Everything that is spread over something, over a floor with tiles.
+fn full(samples: u32) -> Scene {
+    scene(&format!(
+        r#"
+[film]
+width = 48
+height = 30
+[camera]
+position = [0, 2, 6]
+look_at = [0, 0.8, 0]
+lens = {{ aperture = 0.2, focal_distance = 6 }}
+shutter = {{ open = 0.1, close = 0.9 }}
+[environment]
+background = 0.3
+ambient = 0.1
+[quality]
+samples_per_pixel = {samples}
+light_samples = 2
+gloss_samples = 2
+max_depth = 3
+[textures.tiles]
+file = "images/tiles.png"
+[materials.floor]
+texture = "tiles"
+[materials.rough]
+diffuse = 0.1
+mirror = 0.7
+roughness = 0.3
+[materials.frosted]
+diffuse = 0.1
+transmission = 0.8
+roughness = 0.2
+[[lights]]
+area = {{ rectangle = {{ corner = [-3, 5, 2], edges = [[1, 0, 0], [0, 0, 1]] }} }}
+intensity = 0.5
+[[lights]]
+area = {{ disk = {{ center = [3, 4, 2], normal = [-1, -1, 0], radius = 0.5 }} }}
+intensity = 0.3
+[[lights]]
+area = {{ sphere = {{ center = [0, 5, -2], radius = 0.5 }} }}
+intensity = 0.2
+[meshes.vase]
+file = "meshes/vase.ply"
+[[nodes]]
+material = "floor"
+shape = {{ plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
+transform_end = [{{ translate = [0.1, 0, 0] }}]
+[[nodes]]
+material = "rough"
+shape = {{ sphere = {{ center = [-1.4, 0.8, 0], radius = 0.8 }} }}
+[[nodes]]
+material = "frosted"
+shape = {{ sphere = {{ center = [0, 0.5, 1.5], radius = 0.5 }} }}
+transform_end = [{{ translate = [0.6, 0.3, 0] }}]
+[[nodes]]
+shape = {{ mesh = "vase" }}
+transform = [{{ scale = 0.7 }}, {{ translate = [1.4, 0, 0] }}]
+transform_end = [{{ scale = 0.7 }}, {{ rotate = {{ axis = [0, 0, 1], degrees = 10 }} }}, {{ translate = [1.4, 0.2, 0] }}]
+"#
+    ))
+}
+
+#[test]
+fn every_search_finds_what_moves_and_threads_change_nothing() {
+    for sampler in SAMPLERS {
+        let mut scene = full(3);
+        scene.quality.sampler = sampler;
+        let found = render(&scene);
+        assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
+        for threads in [2, 5] {
+            let other = solutions::Kit.render(&job(&scene, threads), &Unwatched).expect("nobody cancels");
+            assert_eq!(
+                (&other.film, other.counts),
+                (&found.film, found.counts),
+                "{sampler:?}, {threads} threads"
+            );
+        }
+        scene.quality.accelerator = Accelerator::BruteForce;
+        assert_eq!(render(&scene).film, found.film, "{sampler:?}: brute force finds other hits");
+    }
+}
+
+#[test]
+fn what_has_no_extent_changes_no_bit() {
+    for sampler in SAMPLERS {
+        let mut plain = full(4);
+        plain.quality.sampler = sampler;
+        (plain.camera.lens, plain.camera.shutter) = (None, None);
+        plain.materials.iter_mut().for_each(|material| material.roughness = 0.0);
+        let mut none = plain.clone();
+        let mut narrow = full(4).camera;
+        if let (Some(lens), Some(shutter)) = (&mut narrow.lens, &mut narrow.shutter) {
+            lens.aperture = 0.0;
+            (shutter.open, shutter.close) = (0.0, 0.0);
+        }
+        (none.camera.lens, none.camera.shutter) = (narrow.lens, narrow.shutter);
+        let (plain, none) = (render(&plain), render(&none));
+        assert_eq!(plain.film, none.film, "{sampler:?}");
+        assert_eq!(plain.counts, none.counts, "{sampler:?}");
+    }
+}
+
+/// All first rays of the frame, with many samples' worth of seeds, and where they go `distance` along the view.
+fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
+    let place = |seed| {
+        let ray = &solutions::Kit.trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
+        let along = ray.dir.dot(scene.camera.towards);
+        ray.origin
+            + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along * ray.dir
+    };
+    (0..64).map(place).collect()
+}
+
+#[test]
+fn what_lies_on_the_plane_of_focus_is_sharp_for_every_ray_of_the_lens() {
+    let mut scene = full(1);
+    scene.nodes.clear();
+    scene.roots.clear();
+    let spread = |scene: &Scene, distance: f32| {
+        let places = on_plane(scene, 3, 27, distance);
+        places.iter().map(|place| place.distance(places[0])).fold(0.0, f32::max)
+    };
+    // Roundings of coordinates up to 6.
+    assert!(spread(&scene, 6.0) < 4e-6, "{}", spread(&scene, 6.0));
+    // At half the distance circles are half as wide as the opening, twice as far away as wide as it is: about 0.2.
+    assert!(spread(&scene, 3.0) > 0.05 && spread(&scene, 12.0) > 0.1);
+    if let Some(lens) = &mut scene.camera.lens {
+        lens.aperture = 0.0;
+    }
+    assert_eq!(spread(&scene, 6.0), 0.0);
+}
+
+#[test]
+fn half_a_lamp_makes_half_a_shadow() {
+    // Each pixel sees a point of the floor straight below. A wall hides one half of the lamp from the middle column.
+    let lamp = |shape: &str| {
+        scene(&format!(
+            r#"
+[film]
+width = 41
+height = 1
+[camera]
+position = [0, 1, 0]
+direction = [0, -1, 0]
+up = [0, 0, -1]
+vertical_fov = 1
+[quality]
+samples_per_pixel = 4096
+[materials.floor]
+diffuse = 1
+[[lights]]
+area = {{ {shape} }}
+[[nodes]]
+material = "floor"
+shape = {{ plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
+[[nodes]]
+shape = {{ polygon = {{ corners = [[0, 5, -90], [90, 5, -90], [90, 5, 90], [0, 5, 90]] }} }}
+"#
+        ))
+    };
+    for shape in [
+        "rectangle = { corner = [-1, 10, -1], edges = [[2, 0, 0], [0, 0, 2]] }",
+        "disk = { center = [0, 10, 0], normal = [0, -1, 0], radius = 1 }",
+        "sphere = { center = [0, 10, 0], radius = 1 }",
+    ] {
+        for sampler in SAMPLERS {
+            let mut scene = lamp(shape);
+            scene.quality.sampler = sampler;
+            scene.film.width = 1;
+            let shadowed = render(&scene).film.pixels[0].x;
+            scene.nodes.pop();
+            scene.roots.pop();
+            let lit = render(&scene).film.pixels[0].x;
+            // One sample is off by 1/2 of what is lit, 4,096 random ones by 1/128: four times that.
+            assert!((shadowed / lit - 0.5).abs() < 4.0 / 128.0, "{shape}, {sampler:?}: {shadowed} of {lit}");
+        }
+    }
+}
+
+#[test]
+fn a_moving_edge_is_blurred_evenly_over_the_time() {
+    // A white wall slides over a black background: how long it covers a pixel is how bright the pixel is.
+    let mut scene = scene(
+        r#"
+[film]
+width = 16
+height = 1
+[camera]
+position = [0, 0, 8]
+look_at = [0, 0, 0]
+vertical_fov = 14.25
+shutter = { open = 0, close = 1 }
+[environment]
+ambient = 1
+[quality]
+samples_per_pixel = 4096
+[materials.white]
+diffuse = 1
+[[nodes]]
+material = "white"
+shape = { polygon = { corners = [[-60, -9, 0], [-16, -9, 0], [-16, 9, 0], [-60, 9, 0]] } }
+transform_end = [{ translate = [32, 0, 0] }]
+"#,
+    );
+    for sampler in SAMPLERS {
+        scene.quality.sampler = sampler;
+        let film = render(&scene).film;
+        for (column, pixel) in film.pixels.iter().enumerate() {
+            // Pixels are 2 wide (16 of them from -16 to 16); the edge passes this one from start to end of 1/16.
+            let expected = 1.0 - (column as f32 + 0.5) / 16.0;
+            // Random: a standard deviation of at most 1/128. Four times that, and the Gaussian looks 1.5 pixels around.
+            assert!(
+                (pixel.x - expected).abs() < 4.0 / 128.0,
+                "{sampler:?}, column {column}: {pixel} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_shutter_that_does_not_open_shows_the_moment() {
+    let mut moving = full(2);
+    moving.camera.shutter = Some(raykata::camera::Shutter { open: 0.5, close: 0.5 });
+    let found = render(&moving);
+    // What moves stands still in the middle of its way.
+    moving.nodes.iter_mut().for_each(|node| {
+        node.transform = node.transform_at(0.5);
+        node.transform_end = None;
+    });
+    let still = render(&moving);
+    // Matrices blended and points blended differ by roundings, which may move a ray past an edge.
+    let off = found.film.pixels.iter().zip(&still.film.pixels).filter(|(a, b)| (**a - **b).length() > 0.02);
+    assert!(off.count() * 100 <= found.film.pixels.len());
+}

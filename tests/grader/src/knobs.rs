@@ -1,0 +1,125 @@
+//! The knobs of a scene on the command line, the same for all commands that render.
+
+use clap::{Args, ValueEnum};
+use raykata::scene::{Accelerator, Sampler, Scene, Split, TriangleMethod};
+
+/// Accuracy against time; what is not named stays as the scene says.
+#[derive(Args)]
+pub struct Knobs {
+    /// Size in pixels, such as 640x360 [default: the scene's].
+    #[arg(long, value_parser = parse_size)]
+    size: Option<(u32, u32)>,
+    /// Samples a pixel [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    spp: Option<u32>,
+    /// Where the samples of a pixel lie [default: the scene's].
+    #[arg(long, value_enum)]
+    sampler: Option<SamplerName>,
+    /// Places on an area light that a hit asks about [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=65_536))]
+    light_samples: Option<u32>,
+    /// Rays that go on from a rough surface [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    gloss_samples: Option<u32>,
+    /// How often a ray may be mirrored or refracted [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    depth: Option<u32>,
+    /// Split strategy of the hierarchy [default: the scene's].
+    #[arg(long, value_enum)]
+    split: Option<SplitName>,
+    /// Most primitives in a leaf [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    leaf_size: Option<u32>,
+    /// What finds the closest hit [default: the scene's].
+    #[arg(long, value_enum)]
+    accelerator: Option<AcceleratorName>,
+    /// Ray/triangle test [default: the scene's].
+    #[arg(long, value_enum)]
+    triangles: Option<TriangleName>,
+}
+
+impl Knobs {
+    /// Turns the knobs of the scene that were named.
+    pub fn apply(&self, scene: &mut Scene) {
+        if let Some((width, height)) = self.size {
+            (scene.film.width, scene.film.height) = (width, height);
+        }
+        let quality = &mut scene.quality;
+        quality.samples_per_pixel = self.spp.unwrap_or(quality.samples_per_pixel);
+        quality.sampler = self.sampler.map_or(quality.sampler, Sampler::from);
+        quality.light_samples = self.light_samples.unwrap_or(quality.light_samples);
+        quality.gloss_samples = self.gloss_samples.unwrap_or(quality.gloss_samples);
+        quality.max_depth = self.depth.unwrap_or(quality.max_depth);
+        quality.leaf_size = self.leaf_size.unwrap_or(quality.leaf_size);
+        quality.split = self.split.map_or(quality.split, |split| match split {
+            SplitName::ObjectMedian => Split::ObjectMedian,
+            SplitName::SpatialMedian => Split::SpatialMedian,
+            SplitName::SurfaceArea => Split::SurfaceArea,
+        });
+        quality.accelerator = self.accelerator.map_or(quality.accelerator, |accelerator| match accelerator {
+            AcceleratorName::BruteForce => Accelerator::BruteForce,
+            AcceleratorName::Bvh => Accelerator::Bvh,
+        });
+        quality.triangle_method = self.triangles.map_or(quality.triangle_method, |method| match method {
+            TriangleName::Cramer => TriangleMethod::Cramer,
+            TriangleName::Gram => TriangleMethod::Gram,
+            TriangleName::Watertight => TriangleMethod::Watertight,
+        });
+    }
+}
+
+/// A sampler by the name that scene files use, with `-` for `_`.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum SamplerName {
+    Center,
+    Random,
+    Jittered,
+    Gaussian,
+    LowDiscrepancy,
+}
+
+impl From<SamplerName> for Sampler {
+    fn from(name: SamplerName) -> Sampler {
+        match name {
+            SamplerName::Center => Sampler::Center,
+            SamplerName::Random => Sampler::Random,
+            SamplerName::Jittered => Sampler::Jittered,
+            SamplerName::Gaussian => Sampler::Gaussian,
+            SamplerName::LowDiscrepancy => Sampler::LowDiscrepancy,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum SplitName {
+    ObjectMedian,
+    SpatialMedian,
+    SurfaceArea,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum AcceleratorName {
+    BruteForce,
+    Bvh,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum TriangleName {
+    Cramer,
+    Gram,
+    Watertight,
+}
+
+/// As in scene files: 2²⁸, three gigabytes of film.
+const MOST_PIXELS: u64 = 1 << 28;
+
+pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let parsed: Option<(u32, u32)> =
+        text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parsed {
+        Some((width, height)) if (1..=MOST_PIXELS).contains(&(u64::from(width) * u64::from(height))) => {
+            Ok((width, height))
+        }
+        _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
+    }
+}
