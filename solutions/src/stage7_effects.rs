@@ -244,12 +244,11 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 /// Where the formula lies: the colour of a pixel belongs to its middle, so pixel 0 is at half a pixel and not at 0.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     // <solution>
+    // Large ones may overflow on the way.
+    let finite = |share: f32, size: f32| if (share * size).is_finite() { share } else { 0.0 };
+    let (width, height) = (texture.width as f32, texture.height as f32);
     // In pixels from the middle of the first one.
-    let pixels = |share: f32, size: u32| {
-        let place = share * size as f32 - 0.5;
-        if place.is_finite() { place } else { -0.5 }
-    };
-    let (x, y) = (pixels(uv.x, texture.width), pixels(1.0 - uv.y, texture.height));
+    let (x, y) = (finite(uv.x, width) * width - 0.5, (1.0 - finite(uv.y, height)) * height - 0.5);
     let (left, top) = (x.floor(), y.floor());
     let (right_share, lower_share) = (x - left, y - top);
     let pixel = |column: i64, row: i64| {

@@ -17,7 +17,7 @@ const CAUGHT: usize = 990;
 
 /// The statistical checks, and how many chi-square and t-tests each makes.
 const STATISTICAL: [(&str, u32); 10] = [
-    ("jittered_samples_cover_the_pixel_evenly", 1),
+    ("jittered_samples_cover_the_pixel_evenly", 2),
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
     ("places_on_a_round_lamp_are_even", 1),

@@ -49,8 +49,8 @@ pub fn mean_score(values: &[f64], expected: f64) -> f64 {
     if standard_error > 0.0 { (mean - expected) / standard_error } else { (mean - expected) * f64::MAX }
 }
 
-/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call; `diagnose` may say what cells
-/// that are hit too often or too rarely look like.
+/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call; `diagnosis` may say what cells
+/// that are hit too often or too rarely look like, and [`pattern`] does where it has nothing to say.
 pub fn covers_evenly(
     what: &str,
     places: &[(f64, f64)],
@@ -89,7 +89,28 @@ pub fn covers_evenly(
     let broken =
         Broken::told(input, yours, format!("about {expected:.0}"), "chi-square, 1 false alarm in 10,000");
     let diagnosis = diagnosis(&counts);
-    Err(broken.looks_like((!diagnosis.is_empty()).then_some(diagnosis)))
+    Err(broken.looks_like(match diagnosis.is_empty() {
+        true => pattern(&counts, axes),
+        false => Some(diagnosis.to_owned()),
+    }))
+}
+
+/// What uneven cells look like, whatever they are cells of.
+fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
+    let sums = [columns(counts), counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect()];
+    for (sums, axis) in sums.iter().zip(axes) {
+        let (first, last) = (sums[0], sums[CELLS as usize - 1]);
+        if sums.contains(&0) {
+            return Some(format!("of {axis} only a part comes up"));
+        }
+        // Far outside of chance: thousands of samples in each of them, give or take two in a hundred.
+        if 2 * first > 3 * last || 2 * last > 3 * first {
+            return Some(format!("crowded where {axis} is {}", if first > last { "small" } else { "large" }));
+        }
+    }
+    let hit = counts.iter().filter(|count| **count > 0).count();
+    (hit <= counts.len() / 2)
+        .then(|| "one random number for both: u.x is for one of them, u.y for the other".into())
 }
 
 /// Checks that the mean of `values` is `expected`.

@@ -40,7 +40,7 @@ fn told(children: &[Child]) -> String {
     }
 }
 
-fn find(children: &[Child], bounce: Bounce) -> Option<&Child> {
+pub(super) fn find(children: &[Child], bounce: Bounce) -> Option<&Child> {
     children.iter().find(|child| child.bounce == bounce)
 }
 
@@ -57,7 +57,7 @@ fn share(query: &ChildrenQuery) -> (f32, f32, f64) {
     (n1, n2, share)
 }
 
-fn queries() -> impl Strategy<Value = ChildrenQuery> + Clone {
+pub(super) fn queries() -> impl Strategy<Value = ChildrenQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
     (arrival(), any::<bool>(), point(1), point(1), 8..=16i32, fresnel, point(1)).prop_map(
         |((dir, normal), entering, mirror, transmission, index, fresnel, weight)| ChildrenQuery {
@@ -84,7 +84,7 @@ pub(super) fn children_weigh_what_the_surface_says(trial: &Trial<'_>) -> Outcome
 }
 
 /// A surface that mirrors and lets through, glass that mirrors its share alone, and one channel in each child.
-fn drawn() -> [ChildrenQuery; 3] {
+pub(super) fn drawn() -> [ChildrenQuery; 3] {
     let query = |mirror: Vec3, transmission: Vec3, fresnel: Fresnel| ChildrenQuery {
         dir: vec3(0.96, -0.28, 0.0),
         normal: Vec3::Y,

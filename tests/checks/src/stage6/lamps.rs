@@ -34,14 +34,26 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
                 "a point of the rectangle",
                 "the definition",
             );
-            let centered = inside(u + 0.5) && inside(v + 0.5);
-            return Err(
-                broken.looks_like(centered.then_some("the corner is not the middle of the rectangle"))
-            );
+            let to_corners =
+                (1.0 - query.u.x - query.u.y) * corner + query.u.x * edges.0 + query.u.y * edges.1;
+            let diagnosis = match () {
+                () if (point - to_corners).length() < 1e-5 => {
+                    "edges are ways from the corner, not the places of other corners"
+                }
+                () if (-1.0..1.0).contains(&u) && (-1.0..1.0).contains(&v) => {
+                    "the corner is not the middle of the rectangle"
+                }
+                () => "",
+            };
+            return Err(broken.looks_like(crate::judge::known(diagnosis)));
         }
         shares.push((u, v));
     }
-    covers_evenly("on_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |_| "")
+    covers_evenly("on_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
+        // 28 of 64 cells lie beyond the diagonal.
+        let hit = counts.iter().filter(|count| **count > 0).count();
+        if hit == 36 { "a triangle: half of the rectangle is left out" } else { "" }
+    })
 }
 
 pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
@@ -64,7 +76,9 @@ pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
             );
             let beside = !(offset.dot(normal).abs() < 5e-6);
             let diagnosis = match () {
-                () if beside && (offset.dot(disk.normal) / 5.0).abs() > 2.5 => "",
+                () if beside && (offset.y == 0.0 || offset.z == 0.0) => {
+                    "the normal is left out: the disk lies flat, whatever its position"
+                }
                 () if beside => "beside the plane of the disk: normal need not be of unit length",
                 () => "farther from the centre than its radius",
             };
@@ -126,7 +140,9 @@ pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
     let shares = seen(trial, ball, from)?;
     covers_evenly("toward_ball from 1.25 radii away", &shares, AXES, |counts| {
         let rings = columns(counts);
-        if 2 * rings[0] > 3 * rings[7] {
+        if rings[7] == 0 {
+            "part of the ball is never asked: it is seen up to its rim, where sin θ is radius / distance"
+        } else if 2 * rings[0] > 3 * rings[7] {
             "crowded in the middle: slices of equal height, not rings of equal width, have equal area"
         } else if 2 * rings[7] > 3 * rings[0] {
             "crowded at the rim"

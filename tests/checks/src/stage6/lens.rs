@@ -21,7 +21,9 @@ pub(super) fn polar(place: Vec2) -> (f64, f64) {
 /// What is wrong with a disk that is not covered evenly, by its rings of equal area from the middle outwards.
 pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
     let rings = columns(counts);
-    if rings[0] > 2 * rings[7] {
+    if rings[7] == 0 {
+        "only the middle of the disk: all up to its radius belongs to it, and the radius is no diameter"
+    } else if rings[0] > 2 * rings[7] {
         "crowded in the middle: area grows with the square of the radius, so take the root of u"
     } else if rings[7] > 2 * rings[0] {
         "crowded at the rim"
@@ -133,7 +135,7 @@ fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
 }
 
 pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
-    trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
+    let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
             // A few roundings of the direction, over the distance; near the rim of a wide lens they are stretched.
@@ -141,16 +143,23 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
             if off < 1e-5 {
                 return Ok(());
             }
-            // The same distance along the ray is a sphere.
-            let on_sphere = f64::from(query.lens.focal_distance) * query.pinhole.dir.as_dvec3().normalize();
+            let distance = f64::from(query.lens.focal_distance);
+            let [dir, towards] = [query.pinhole.dir, query.camera.towards].map(Vec3::as_dvec3);
             let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
-            let to_sphere = (on_sphere - start).normalize();
+            let aims = |way: DVec3| (yours.dir.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
             let diagnosis = match () {
                 () if yours.is_nan_anywhere() => "NaN",
-                () if (yours.dir.as_dvec3().normalize() - to_sphere).length() < 1e-5 => {
+                () if aims(distance * dir - start) => {
                     "focal_distance along the ray is a sphere: divide it by the cosine with camera.towards"
                 }
-                () if (yours.dir - query.pinhole.dir).length() < 1e-6 => {
+                () if aims(distance * dir.dot(towards) * dir - start) => {
+                    "multiplied by the cosine with camera.towards: along the ray it is farther, so divide"
+                }
+                () if aims(distance * towards - start) => {
+                    "every ray aims at the middle of the plane of focus: aim where its pinhole ray meets it"
+                }
+                () if aims(expected + start) => "turned away from the focus: take the offset off",
+                () if aims(dir) => {
                     "parallel to the ray through the middle: aim at where that ray meets the plane of focus"
                 }
                 () => "",
@@ -163,7 +172,20 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
             )
             .looks_like(known(diagnosis)))
         })
-    })
+    };
+    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
+}
+
+/// A ray well off the axis from well off the middle of a wide lens: there all mistakes make different rays.
+fn drawn() -> LensQuery {
+    let camera = camera(vec3(1.0, 2.0, 3.0));
+    LensQuery {
+        camera,
+        pinhole: camera.ray(0.25, 0.125),
+        lens: Lens { aperture: 0.5, focal_distance: 3.0 },
+        on_lens: vec2(0.5, -0.75),
+    }
 }
 
 trait NanAnywhere {
@@ -177,7 +199,7 @@ impl NanAnywhere for Ray {
 }
 
 pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
-    trial.forall(1000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
+    let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let camera = &query.camera;
             let place = 0.5 * query.lens.aperture * query.on_lens;
@@ -193,12 +215,22 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
                 () if !unit => "its direction is not of unit length",
                 () if near(double) => "aperture is the diameter of the opening, not its radius",
                 () if near(camera.position) => "every ray starts in the middle: the lens is a pinhole",
+                () if near(camera.position + place.x * camera.right)
+                    || near(camera.position + place.y * camera.up) =>
+                {
+                    "a slit: the lens extends along camera.right and along camera.up"
+                }
+                () if near(camera.position + place.extend(0.0)) => {
+                    "along x and y of the world: the lens extends along camera.right and camera.up"
+                }
                 () => "",
             };
             Err(Broken::new(paste(query), yours, expected, "its origin is position + aperture / 2 · on_lens")
                 .looks_like(known(diagnosis)))
         })
-    })
+    };
+    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    trial.forall(1000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
 }
 
 pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcome {

@@ -7,11 +7,11 @@ use crate::generate::{magnitude, point, rough_point};
 use crate::judge::{compare, known};
 use crate::paste::{Paste, call};
 use crate::statistics::{SAMPLES, columns, covers_evenly, pairs};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
-use raykata::kit::TimeQuery;
+use raykata::kit::{Mishap, TimeQuery, mishap};
 
 /// The table of the slide.
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
@@ -20,24 +20,45 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
     // A block that begins anywhere holds each slot once, because blocks repeat.
     for (left, top) in [(0, 0), (4, 8), (1, 3), (1022, 765)] {
         let cells: Vec<(u32, u32)> = (0..16).map(|index| (left + index % 4, top + index / 4)).collect();
-        let slots = trial.kit.temporal_slot(&cells);
+        let repeat = "blocks repeat: take x and y modulo 4";
+        let slots = match mishap::catch(|| trial.kit.temporal_slot(&cells)) {
+            Ok(slots) => slots,
+            Err(Mishap::Panicked { message, place }) => {
+                let input =
+                    format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
+                let yours = format!("a panic at {place}: {message}");
+                let broken = Broken::told(input, yours, "each of 1..=16 once", "the definition");
+                return Err(broken.looks_like((left > 0).then_some(repeat)));
+            }
+            Err(mishap) => mishap::unwind(mishap),
+        };
         let mut sorted = slots.clone();
         sorted.sort_unstable();
         if sorted != (1..=16).collect::<Vec<_>>() {
             let input = format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
             let broken = Broken::new(input, &slots, "each of 1..=16 once", "the table is a permutation");
-            let from_zero = sorted == (0..16).collect::<Vec<_>>();
-            return Err(broken.looks_like(from_zero.then_some("slots are counted from 1")));
+            let diagnosis = match () {
+                () if sorted == (0..16).collect::<Vec<_>>() => "slots are counted from 1",
+                () if left > 0 => repeat,
+                () => "a misprint: some slot is in the table twice, and another is not",
+            };
+            return Err(broken.looks_like(Some(diagnosis)));
         }
         for ((x, y), slot) in cells.into_iter().zip(slots) {
             let expected = TABLE[y as usize % 4][x as usize % 4];
             if slot != expected {
-                let turned = slot == TABLE[x as usize % 4][y as usize % 4];
+                let diagnosis = match () {
+                    () if slot == TABLE[x as usize % 4][y as usize % 4] => {
+                        "rows and columns are exchanged: y picks the row"
+                    }
+                    () if slot == 1 + 4 * (y % 4) + x % 4 => {
+                        "in order, so that neighbours have nearly one time: take the table"
+                    }
+                    () => "",
+                };
                 let input = format!("temporal_slot({x}, {y})");
                 let broken = Broken::new(input, slot, expected, "the table of the slide");
-                return Err(
-                    broken.looks_like(turned.then_some("rows and columns are exchanged: y picks the row"))
-                );
+                return Err(broken.looks_like(known(diagnosis)));
             }
         }
     }
@@ -67,11 +88,14 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
             u,
         },
     );
-    trial.forall(3000, queries, |queries| {
+    let judge = |queries: &[TimeQuery]| {
         compare(queries, trial.kit.time_in_shutter(queries), |query, yours| {
             let (open, close) = (f64::from(query.shutter.open), f64::from(query.shutter.close));
-            let at = |slot: f64| open + (slot + f64::from(query.u)) / f64::from(query.slots) * (close - open);
-            let expected = at(f64::from(query.slot) - 1.0);
+            let u = f64::from(query.u);
+            let share = |slot: u32| (f64::from(slot) - 1.0 + u) / f64::from(query.slots);
+            let here = share(query.slot);
+            let at = |share: f64| open + share * (close - open);
+            let expected = at(here);
             let near = |time: f64| (f64::from(yours) - time).abs() < 3e-7; // a few roundings of numbers up to 1
             let open_then = (query.shutter.open..=query.shutter.close).contains(&yours);
             if near(expected) && open_then {
@@ -79,17 +103,24 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
             }
             let diagnosis = match () {
                 () if near(expected) => "the shutter is closed then, by a rounding: clamp",
-                () if near(at(f64::from(query.slot))) => {
+                () if near(at(share(query.slot + 1))) => {
                     "slots are counted from 1: slot 1 begins when it opens"
                 }
-                () if near((expected - open) / (close - open)) => {
-                    "a share of the time: scale it to open..close"
+                () if near(here) => "a share of the time: scale it to open..close",
+                () if near(expected - open) => "the shutter opens at open, not at 0",
+                () if near((open + here * close).clamp(open, close)) => {
+                    "the time while it is open is close - open: open + share * (close - open)"
                 }
+                () if near(at(u)) => "the slot is left out: u is the place in the slot",
                 () => "",
             };
             Err(Broken::new(paste(query), yours, expected, "double precision").looks_like(known(diagnosis)))
         })
-    })
+    };
+    // A shutter for which all mistakes give different times.
+    let drawn = TimeQuery { shutter: Shutter { open: 0.25, close: 0.875 }, slot: 2, slots: 4, u: 0.375 };
+    judge(&[drawn]).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, queries, judge)
 }
 
 pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
@@ -128,11 +159,14 @@ pub(super) fn between_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
             let expected = if query.2 == 0.0 { query.0 } else { query.1 };
             let broken = || Broken::new(told(query), yours, expected, "bit for bit");
             let near = (yours - expected).length() < 1e-3;
+            let smaller = yours == query.0.min(query.1);
             match yours == expected {
                 true => Ok(()),
                 false if near => Err(broken()
                     .looks_like(Some("off by a rounding: start + t (end - start) does not reach the end"))),
-                false => Err(broken()),
+                false => Err(broken().looks_like(smaller.then_some(
+                    "clamped as if start were the smaller: take start.min(end) and start.max(end)",
+                ))),
             }
         })
     })?;
@@ -152,7 +186,7 @@ pub(super) fn between_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
     let near_each_other = (point(4), point(4), magnitude(-7.0, 3.0))
         .prop_map(|(start, step, scale)| (start, start + scale * step));
     let queries = (near_each_other, 0.0..=1.0f32).prop_map(|((start, end), time)| (start, end, time));
-    trial.forall(4000, queries, |queries| {
+    let judge = |queries: &[Move]| {
         compare(queries, trial.kit.between(queries), |query, yours| {
             let (start, end, time) = *query;
             let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
@@ -163,24 +197,31 @@ pub(super) fn between_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
             if near && inside {
                 return Ok(());
             }
-            let backwards = end.as_dvec3().lerp(start.as_dvec3(), f64::from(time));
+            let at = |time: f64| start.as_dvec3().lerp(end.as_dvec3(), time);
+            let is = |place: DVec3| (yours.as_dvec3() - place).length() <= 2.0 * slack;
+            let (start_at, t) = (start.as_dvec3(), f64::from(time));
             let diagnosis = match () {
                 () if near => {
                     "outside of the box around its ends, by a rounding: the structure would lose it"
                 }
-                () if (yours.as_dvec3() - backwards).length() <= slack => "start and end are exchanged",
+                () if is(at(1.0 - t)) => "start and end are exchanged",
+                () if is(start_at + t * end.as_dvec3()) => "end is a place, not the way to it",
+                () if is(at(t * t * (3.0 - 2.0 * t))) => "slow at both ends: it moves evenly",
+                () if is(at(0.5)) => "half the way at any time",
                 () => "",
             };
             Err(Broken::new(told(query), yours, exact.as_vec3(), "double precision, within the ends")
                 .looks_like(known(diagnosis)))
         })
-    })
+    };
+    judge(&[(vec3(1.0, 2.0, -3.0), vec3(2.0, -2.0, 4.5), 0.25)]).into_iter().collect::<Outcome>()?;
+    trial.forall(4000, queries, judge)
 }
 
 pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
     let around = || (point(4), point(2)).prop_map(|(min, size)| Aabb::new(min, min + size.abs()));
     let ways = (around(), around()).prop_map(|(start, end)| (start, end));
-    trial.forall(2000, ways, |queries| {
+    let judge = |queries: &[(Aabb, Aabb)]| {
         compare(queries, trial.kit.sweep(queries), |(start, end), yours| {
             let expected = Aabb::new(start.min.min(end.min), start.max.max(end.max));
             if yours == expected {
@@ -193,9 +234,21 @@ pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
             let outside = |(min, max): (DVec3, DVec3)| {
                 !(yours.min.as_dvec3().cmple(min).all() && max.cmple(yours.max.as_dvec3()).all())
             };
+            let way = 0.5 * (end.min + end.max - start.min - start.max);
+            let moved = Aabb::new(start.min.min(start.min + way), start.max.max(start.max + way));
             let diagnosis = match () {
                 () if yours == *start => "only where it starts: what moves leaves this box",
                 () if yours == *end => "only where it ends",
+                () if yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max)) => {
+                    "only where it is half way"
+                }
+                () if yours == Aabb::new(start.min.max(end.min), start.max.min(end.max)) => {
+                    "what both boxes have in common: it is in either of them"
+                }
+                () if yours == Aabb::new(start.min, end.max) => {
+                    "from the lower corner at the start to the upper one at the end: it may move whatever way"
+                }
+                () if yours == moved => "the box of the start, moved: a box that grows or turns is cut",
                 () if [0.0, 0.5, 1.0].into_iter().any(|time| outside(at(time))) => {
                     "part of the way is outside"
                 }
@@ -205,5 +258,10 @@ pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
             Err(Broken::new(input, yours, expected, "the corners move along straight lines")
                 .looks_like(known(diagnosis)))
         })
-    })
+    };
+    // A box that moves to all sides and changes its size.
+    let drawn =
+        (Aabb::new(Vec3::ZERO, vec3(1.0, 1.0, 2.0)), Aabb::new(vec3(0.5, -1.0, 1.0), vec3(4.0, 0.5, 1.5)));
+    judge(&[drawn]).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, ways, judge)
 }
