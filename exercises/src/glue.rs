@@ -198,6 +198,9 @@ impl Recursion for Kit {
             stage5_recursion::children(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
         })
     }
+    fn leave(&self, queries: &[(Surface, Child)]) -> Vec<Ray> {
+        each(queries, |(surface, child)| stage5_recursion::leave(surface, child))
+    }
 }
 
 impl Distribution for Kit {

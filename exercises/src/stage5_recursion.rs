@@ -7,8 +7,9 @@
 //! yours to say, with [`children`]; the tracer follows them and adds up what they find, each times its weight.
 
 use glam::Vec3;
-use raykata::kit::{Bounce, Child, Limits};
+use raykata::kit::{Bounce, Child, Limits, Surface};
 use raykata::material::{Fresnel, Material};
+use raykata::ray::Ray;
 
 /// The direction of a mirrored ray: `d' = d - 2 n (d·n)`, of unit length.
 ///
@@ -61,4 +62,13 @@ pub fn children(
     limits: &Limits,
 ) -> Vec<Child> {
     todo!("weigh the mirrored and the refracted ray, and return those that are worth tracing")
+}
+
+/// The endless ray that follows `child`. It starts just off the surface, on the side to which it goes: what is mirrored
+/// on the side of `surface.geometric_normal`, what goes through on the other one.
+///
+/// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
+/// there meet their own surface again. Move it by its error, as for shadow rays.
+pub fn leave(surface: &Surface, child: &Child) -> Ray {
+    todo!("start off the surface, on the side to which the ray goes")
 }

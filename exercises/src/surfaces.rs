@@ -4,7 +4,7 @@ use crate::camera_rays::{geometry_at, plane_at};
 use crate::{stage1_shapes, stage2_triangles, stage4_shading};
 use glam::{Vec2, Vec3, vec2};
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{Bounce, Child, LightSample, Surface};
+use raykata::kit::Surface;
 use raykata::ray::Ray;
 use raykata::scene::TriangleMethod;
 use raykata::shape::{Plane, Sphere, Triangle};
@@ -163,18 +163,6 @@ pub fn meet_triangle(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> 
         }
     };
     hit.map(|hit| (hit.t, hit.beta, hit.gamma))
-}
-
-/// A ray that goes on, starting as far from the surface as a shadow ray does.
-pub fn leave(surface: &Surface, child: &Child) -> Ray {
-    let side = match child.bounce {
-        Bounce::Reflection => surface.geometric_normal,
-        Bounce::Transmission => -surface.geometric_normal,
-    };
-    let from = Surface { geometric_normal: side, shading_normal: side, ..*surface };
-    let ahead = LightSample { direction: side, distance: f32::INFINITY, radiance: Vec3::ONE };
-    let start = stage4_shading::shadow_ray(&from, &ahead).map_or(surface.point, |ray| ray.at(ray.t_min));
-    Ray::new(start, child.direction)
 }
 
 /// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.

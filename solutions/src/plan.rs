@@ -8,7 +8,7 @@ use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::camera::{Camera, Lens, Shutter};
 use raykata::effects::Effects;
-use raykata::kit::{Limits, Mishap, RenderJob, Surface, View, mishap};
+use raykata::kit::{Bounce, Child, Limits, Mishap, RenderJob, Surface, View, mishap};
 use raykata::material::{Emitter, Light, Material, Texture};
 use raykata::mesh::Mesh;
 use raykata::random::Stratum;
@@ -71,10 +71,11 @@ impl Plan {
     fn leave_out_mirrors(&mut self, scene: &Scene) {
         let limits = Limits { max_depth: 0, min_contribution: 0.0 };
         let material = Material::default();
-        let written = written(|| {
+        let child = Child { bounce: Bounce::Reflection, direction: Vec3::Z, weight: Vec3::ONE };
+        let children = written(|| {
             stage5_recursion::children(Vec3::NEG_Z, Vec3::Z, true, &material, Vec3::ONE, 0, &limits)
         });
-        if written {
+        if children && written(|| stage5_recursion::leave(&nowhere(), &child)) {
             return;
         }
         let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;
@@ -162,6 +163,10 @@ fn nothing() -> Scene {
     Scene::empty(Camera::new(Vec3::ZERO, Vec3::Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along z"))
 }
 
+fn nowhere() -> Surface {
+    Surface { point: Vec3::ZERO, error: Vec3::ZERO, geometric_normal: Vec3::Z, shading_normal: Vec3::Z }
+}
+
 fn lens_is_written() -> bool {
     let camera = nothing().camera;
     let (ray, lens) = (camera.ray(0.5, 0.5), Lens { aperture: 0.0, focal_distance: 1.0 });
@@ -212,11 +217,9 @@ fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
 }
 
 fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {
-    let nowhere =
-        Surface { point: Vec3::ZERO, error: Vec3::ZERO, geometric_normal: Vec3::Z, shading_normal: Vec3::Z };
     let material = Material::default();
     let shades =
-        written(|| stage4_shading::shade(&nowhere, Vec3::Z, &material, Vec3::ONE, &[], |_, _| false));
+        written(|| stage4_shading::shade(&nowhere(), Vec3::Z, &material, Vec3::ONE, &[], |_, _| false));
     if wanted == View::Shaded && !shades {
         notes.push("normals are shown as colours: stage 4 is not written yet".into());
         return View::Normals;

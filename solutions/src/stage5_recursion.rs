@@ -7,8 +7,13 @@
 //! yours to say, with [`children`]; the tracer follows them and adds up what they find, each times its weight.
 
 use glam::Vec3;
-use raykata::kit::{Bounce, Child, Limits};
+use raykata::kit::{Bounce, Child, Limits, Surface};
 use raykata::material::{Fresnel, Material};
+use raykata::ray::Ray;
+
+// <solution>
+use crate::stage4_shading::off_surface;
+// </solution>
 
 /// The direction of a mirrored ray: `d' = d - 2 n (d·n)`, of unit length.
 ///
@@ -132,5 +137,21 @@ pub fn children(
     }
     children
     // <stub> todo!("weigh the mirrored and the refracted ray, and return those that are worth tracing")
+    // </solution>
+}
+
+/// The endless ray that follows `child`. It starts just off the surface, on the side to which it goes: what is mirrored
+/// on the side of `surface.geometric_normal`, what goes through on the other one.
+///
+/// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
+/// there meet their own surface again. Move it by its error, as for shadow rays.
+pub fn leave(surface: &Surface, child: &Child) -> Ray {
+    // <solution>
+    let side = match child.bounce {
+        Bounce::Reflection => surface.geometric_normal,
+        Bounce::Transmission => -surface.geometric_normal,
+    };
+    Ray::new(off_surface(&Surface { geometric_normal: side, ..*surface }), child.direction)
+    // <stub> todo!("start off the surface, on the side to which the ray goes")
     // </solution>
 }

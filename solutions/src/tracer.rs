@@ -4,7 +4,7 @@
 
 use crate::camera_rays::{Eye, blurred, from_area, geometry_at, outline, plane_at};
 use crate::plan::{Plan, Search};
-use crate::surfaces::{self, Hit, Looks, Place, leave, meet_triangle, texture_coordinates};
+use crate::surfaces::{self, Hit, Looks, Place, meet_triangle, texture_coordinates};
 use crate::{
     stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
     stage7_effects,
@@ -237,7 +237,7 @@ impl<'a> Tracer<'a> {
                 } else {
                     child
                 };
-                let ray = Ray { time: path.ray.time, ..leave(&at.surface, &child) };
+                let ray = Ray { time: path.ray.time, ..stage5_recursion::leave(&at.surface, &child) };
                 let points = path.points.beyond(child.bounce, part, parts);
                 let (weight, depth) = (child.weight, path.depth + 1);
                 desk.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(this) });

@@ -209,6 +209,8 @@ door! {
         FresnelExact fn fresnel_exact(FresnelQuery) -> f32;
         /// The rays that go on from a surface.
         Children fn children(ChildrenQuery) -> Vec<Child>;
+        /// The ray that follows a child, off the surface.
+        Leave fn leave((Surface, Child)) -> Ray;
     }
 
     /// Stage 6: distributed ray tracing.

@@ -2,133 +2,103 @@
 
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
+use crate::generate::{magnitude, rough_point, unit};
+use crate::judge::{compare, known};
+use crate::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
-use raykata::camera::Camera;
-use raykata::kit::{
-    ChildrenQuery, LightSample, RayKind, RenderJob, ShadeQuery, ShadowQuery, Surface, TracedRay, View,
-};
-use raykata::material::{Fresnel, Material};
-use raykata::scene::{FilmSettings, Node, Quality, Scene};
-use raykata::shape::{Shape, Sphere};
+use proptest::prelude::*;
+use raykata::kit::{Bounce, Child, Surface};
+use raykata::ray::Ray;
 
-/// Pixels along each side of the picture.
-const SIDE: u32 = 12;
+/// A ray that goes on from a surface, and the unit normal on the side to which it goes.
+type Leaving = (Surface, Child);
 
-/// A ball that mirrors and lets through, large in the picture and nowhere near the origin.
-fn scene(size: f32) -> (Scene, Sphere) {
-    let ball = Sphere { center: size * vec3(0.7, -0.3, 0.45), radius: size };
-    let eye = ball.center + size * vec3(0.4, 0.8, 3.0);
-    let camera =
-        Camera::new(eye, ball.center - eye, Vec3::Y, 34.0, 1.0).expect("a camera that looks at the ball");
-    let mut scene = Scene::empty(camera);
-    scene.film = FilmSettings { width: SIDE, height: SIDE, encoding: Default::default() };
-    scene.quality = Quality { max_depth: 3, min_contribution: 0.0, ..Quality::default() };
-    scene.materials.push(Material {
-        mirror: Vec3::splat(0.5),
-        transmission: Vec3::splat(0.5),
-        index_of_refraction: 1.5,
-        fresnel: Fresnel::None,
-        ..Material::default()
-    });
-    scene.material_names.push("glass".into());
-    scene.nodes.push(Node { shape: Some(Shape::Sphere(ball)), material: Some(1), ..Node::default() });
-    scene.roots.push(0);
-    (scene, ball)
+fn leaving(point: Vec3, normal: Vec3, lean: Vec3, bounce: Bounce, error: f32) -> Leaving {
+    let side = side(normal, bounce);
+    let surface =
+        Surface { point, error: Vec3::splat(error), geometric_normal: normal, shading_normal: normal };
+    (surface, Child { bounce, direction: (side + 0.8 * lean).normalize(), weight: Vec3::ONE })
+}
+
+fn side(normal: Vec3, bounce: Bounce) -> Vec3 {
+    match bounce {
+        Bounce::Reflection => normal,
+        Bounce::Transmission => -normal,
+    }
+}
+
+/// Points at coordinates of all sizes, on surfaces in any position.
+fn at_any_scale() -> impl Strategy<Value = Leaving> + Clone {
+    let bounce = prop_oneof![Just(Bounce::Reflection), Just(Bounce::Transmission)];
+    (unit(), unit(), rough_point(1.0), magnitude(-3.0, 5.0), bounce).prop_map(
+        |(normal, lean, at, size, bounce)| {
+            // Seven roundings of each coordinate, as for a point of a triangle of this size.
+            leaving(size * at, normal, lean, bounce, 4e-7 * size)
+        },
+    )
+}
+
+fn told((surface, child): &Leaving) -> String {
+    let direction = child.direction.paste();
+    let child =
+        format!("&Child {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
+    format!("leave({}, {child})", surface.paste())
 }
 
 /// R6: the slide starts the ray at `hit.Point()`, which is rounded: in half of all cases the ray meets its own surface.
 pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome {
-    ask_what_it_takes(trial);
-    for size in [1.0, 1e-3, 1e5] {
-        let (scene, ball) = scene(size);
-        let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
-        let mut judged = 0;
-        for pixel in 0..SIDE * SIDE {
-            let rays = trial.kit.trace(&job, pixel % SIDE, pixel / SIDE);
-            for ray in
-                rays.iter().filter(|ray| matches!(ray.kind, RayKind::Reflection | RayKind::Transmission))
-            {
-                judged += 1;
-                judge(ray, &ball)?;
+    // Large and far from the origin, where mistakes differ most.
+    let drawn = [Bounce::Reflection, Bounce::Transmission]
+        .map(|bounce| leaving(vec3(3e4, -2e4, 1e4), vec3(0.0, 0.6, 0.8), vec3(0.6, 0.0, 0.8), bounce, 0.01));
+    compare(&drawn, trial.kit.leave(&drawn), judge).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, at_any_scale(), |queries| compare(queries, trial.kit.leave(queries), judge))
+}
+
+fn judge(query: &Leaving, ray: Ray) -> Outcome {
+    let (surface, child) = query;
+    let broken = |yours: String, expected: String, diagnosis: &'static str| {
+        Err(Broken::told(told(query), yours, expected, "closed form").looks_like(known(diagnosis)))
+    };
+    let dir = ray.dir.as_dvec3();
+    if !((dir.normalize() - child.direction.as_dvec3()).length() < 1e-5) {
+        return broken(
+            format!("direction {}", ray.dir),
+            format!("direction {}", child.direction),
+            "the direction is that of the child",
+        );
+    }
+    if ray.t_max != f32::INFINITY {
+        return broken(format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the ray has no end");
+    }
+    let side = side(surface.geometric_normal, child.bounce).as_dvec3();
+    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * dir;
+    let moved: DVec3 = start - surface.point.as_dvec3();
+    let height = moved.dot(side);
+    let bound = surface.error.as_dvec3().dot(side.abs());
+    let starts = || format!("starts {height:.3e} beyond the point, on the side to which the ray goes");
+    // A hundredth for the rounding of the bound itself.
+    if !(height >= 0.99 * bound) {
+        let along = moved.normalize_or_zero();
+        let diagnosis = match () {
+            () if height == 0.0 => {
+                "the ray starts on the surface itself, and hits it again in half of all cases"
             }
-        }
-        if judged == 0 {
-            let input =
-                format!("the rays behind {SIDE} × {SIDE} pixels, in front of a ball of radius {size}");
-            let broken = Broken::told(input, "no ray goes on", "mirrored and refracted rays", "the scene");
-            return Err(
-                broken.looks_like(Some("the ball is not found or not lit: run the checks of stages 1 to 4"))
-            );
-        }
+            () if height <= -0.99 * bound => {
+                "the ray starts on the other side: what is mirrored stays on the side of the normal, what goes \
+                 through does not"
+            }
+            () if along.dot(child.direction.as_dvec3()) > 0.99 && along.dot(side) < 0.97 => {
+                "the offset goes along the ray, which may be nearly along the surface: go along the normal"
+            }
+            () => "a fixed offset is too small here: move by the error of the point, error · |n|",
+        };
+        return broken(starts(), format!("{bound:.3e} or more"), diagnosis);
+    }
+    // 64 steps of the largest coordinate: anything farther away than that must be seen.
+    let most = 64.0 * 2.0 * crate::double::U * f64::from(surface.point.abs().max_element()) + 4.0 * bound;
+    if height > most {
+        let diagnosis = "a fixed offset is too large here: what touches the surface is not seen";
+        return broken(starts(), format!("at most {most:.3e}"), diagnosis);
     }
     Ok(())
-}
-
-/// Says what is not written yet of this stage, and else of stage 4: where a ray starts is the work of both.
-fn ask_what_it_takes(trial: &Trial<'_>) {
-    let material = Material::default();
-    let normal = Vec3::Y;
-    let surface =
-        Surface { point: Vec3::ZERO, error: Vec3::ZERO, geometric_normal: normal, shading_normal: normal };
-    let light = LightSample { direction: normal, distance: 1.0, radiance: Vec3::ONE };
-    trial.kit.children(&[ChildrenQuery {
-        dir: -normal,
-        normal,
-        entering: true,
-        material: material.clone(),
-        weight: Vec3::ONE,
-        depth: 0,
-        limits: super::children::FAR,
-    }]);
-    trial.kit.shadow_ray(&[ShadowQuery { surface, light }]);
-    trial.kit.shade(&[ShadeQuery {
-        surface,
-        to_viewer: normal,
-        material,
-        ambient: Vec3::ONE,
-        lights: vec![light],
-        visible: vec![true],
-    }]);
-}
-
-/// Looks in double precision on which side of the ball a ray starts, and whether that is the one it goes to.
-fn judge(ray: &TracedRay, ball: &Sphere) -> Outcome {
-    let [origin, dir, center] = [ray.origin, ray.dir, ball.center].map(Vec3::as_dvec3);
-    let radius = f64::from(ball.radius);
-    let out = origin - center;
-    // Along the surface either side will do.
-    let slope = out.normalize().dot(dir.normalize());
-    if slope.abs() < 1e-3 {
-        return Ok(());
-    }
-    let height = (out.length() - radius) * slope.signum();
-    // Eight roundings of the way from the centre and of the place, each at most a step of the largest coordinate, and
-    // the steps beyond. A fixed offset that is right for a ball of one size is not for others.
-    let reach = radius + origin.abs().max_element();
-    let most = 64.0 * 2.0 * crate::double::U * reach;
-    let diagnosis = match () {
-        () if 0.0 < height && height < most => return Ok(()),
-        () if height >= most => "a fixed offset is too large here: what touches the surface is not seen",
-        () if height > -most => {
-            "the ray starts on the surface, or a rounding beyond it, and hits it again: move it by the error of the \
-             point, to the side to which it goes"
-        }
-        () => {
-            "the ray starts on the other side: what is mirrored stays on this side, what goes through does not"
-        }
-    };
-    let goes = if slope > 0.0 { "away from" } else { "into" };
-    let input = format!(
-        "a ray {goes} the ball around {:?} of radius {:?},\n{:?} of depth {}",
-        ball.center, ball.radius, ray.kind, ray.depth
-    );
-    let told = |height: f64| {
-        let side = if (height > 0.0) == (slope > 0.0) { "outside" } else { "inside" };
-        format!("starts {:.1e} of the radius {side} of its surface", height.abs() / radius)
-    };
-    let yours =
-        if origin.is_finite() { told(height) } else { format!("starts at {}", DVec3::to_string(&origin)) };
-    let side = if slope > 0.0 { "outside" } else { "inside" };
-    let expected = format!("{side}, by {:.0e} of the radius at most", most / radius);
-    Err(Broken::told(input, yours, expected, "double precision").looks_like(Some(diagnosis)))
 }
