@@ -104,14 +104,17 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let gamma = edge(a, b);
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
     let sum = alpha + beta + gamma;
-    if (least < 0.0 && most > 0.0) || sum == 0.0 {
+    // Beyond a size of 1e19 the products overflow.
+    if (least < 0.0 && most > 0.0) || sum == 0.0 || !sum.is_finite() {
         return None;
     }
 
     // The paper takes t from the sheared z of the corners, which loses all digits on a needle seen from inside.
-    // The plane does not: t = (a - o)·n / d·n.
-    let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
-    let t = (triangle.a - ray.origin).dot(normal) / ray.dir.dot(normal);
+    // The plane does not: t = (a - o)·n / d·n. In double, for that is rounded once, and the normal of a triangle of
+    // size 1e14 is too long for single precision; it is worked out for hits only, and costs nothing measurable.
+    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a);
+    let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
     ray.contains(t).then_some(TriangleHit { t, beta: beta / sum, gamma: gamma / sum })
     // <stub> todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
     // </solution>

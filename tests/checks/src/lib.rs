@@ -6,12 +6,14 @@
 pub mod broken;
 pub mod double;
 pub mod exact;
+pub mod gauntlet;
 pub mod generate;
 pub mod golden;
 pub mod judge;
 pub mod paste;
 pub mod picture;
 pub mod rubric;
+pub mod splitmix;
 pub mod stage1;
 pub mod stage2;
 pub mod stage3;

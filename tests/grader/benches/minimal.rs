@@ -8,9 +8,9 @@
 
 use anyhow::{Result, ensure};
 use glam::Vec3;
+use grader::gauntlet::traversal::{Triangles, hierarchy};
 use grader::kits::root;
-use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, Probe};
+use raykata::bvh::Bvh;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, LightSample, RenderJob, Surface, View};
 use raykata::material::{Emitter, Light};
@@ -95,8 +95,7 @@ impl<'a> Caster<'a> {
                 triangles.push(Triangle { a, b, c });
             }
         }
-        let bounds: Vec<Aabb> = triangles.iter().map(stage3_bvh::triangle_bounds).collect();
-        let bvh = stage3_bvh::build(&bounds, scene.quality.split, scene.quality.leaf_size as usize);
+        let bvh = hierarchy(&triangles, scene.quality.split, scene.quality.leaf_size as usize);
         let lamp = |light: &Light| match light.emitter {
             Emitter::Point { position, .. } => (position, light.radiance(), light.shadows),
             _ => panic!("a point light"),
@@ -150,7 +149,7 @@ impl<'a> Caster<'a> {
     }
 
     fn probe(&self, ray: &Ray) -> Triangles<'_> {
-        Triangles { caster: self, inverse_dir: ray.dir.recip() }
+        Triangles::new(&self.bvh, &self.triangles, ray)
     }
 }
 
@@ -167,28 +166,5 @@ fn surface(ray: &Ray, triangle: &Triangle) -> Surface {
         error: 3.5 * f32::EPSILON * (terms[0].abs() + terms[1].abs() + terms[2].abs()),
         geometric_normal: normal,
         shading_normal: normal,
-    }
-}
-
-struct Triangles<'a> {
-    caster: &'a Caster<'a>,
-    inverse_dir: Vec3,
-}
-
-impl Probe for Triangles<'_> {
-    #[inline]
-    fn open(&mut self, node: u32) -> Contents {
-        self.caster.bvh.nodes[node as usize].contents
-    }
-
-    #[inline]
-    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
-        let bounds = &self.caster.bvh.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, self.inverse_dir, bounds).map(|(t_enter, _)| t_enter)
-    }
-
-    #[inline]
-    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        stage2_triangles::triangle_choice(ray, &self.caster.triangles[primitive as usize]).map(|hit| hit.t)
     }
 }

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod corpus;
 pub mod explain;
+pub mod gauntlet;
 pub mod generate;
 pub mod kits;
 pub mod knobs;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, corpus, explain, generate, render, strip, sync, tree};
+use grader::{check, corpus, explain, gauntlet, generate, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -31,6 +31,8 @@ enum Command {
     Strip(strip::Options),
     /// Show the rays behind one pixel, for the first of its samples.
     Tree(tree::Options),
+    /// Show what accuracy costs: ways to intersect a triangle against hard inputs, judged exactly.
+    Gauntlet(gauntlet::Options),
     /// Grade your exercises and print the scorecard.
     Check {
         /// One stage only.
@@ -86,6 +88,7 @@ fn run(cli: Cli) -> Result<bool> {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
         Some(Command::Render(options)) => render::run(&options)?,
         Some(Command::Explain(options)) => explain::run(&options)?,
+        Some(Command::Gauntlet(options)) => return gauntlet::run(&options),
         Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {

@@ -1,38 +1,17 @@
 //! Inputs on which exact answers are hard: aimed at edges and corners, on lattices, slivers, far, tiny, of any exponent.
 
+use super::Random;
 use glam::{Vec3, vec3};
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
 
-/// A small stream of random bits: SplitMix64 (Steele, Lea and Flood 2014).
-pub struct Random(u64);
+/// Draws numbers of a style.
+trait Styled {
+    fn vector(&mut self, style: Style) -> Vec3;
+    fn number(&mut self, style: Style) -> f32;
+}
 
-impl Random {
-    /// The stream of one case.
-    pub fn new(seed: u64, case: u64) -> Self {
-        Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ case.wrapping_mul(0xd134_2543_de82_ef95))
-    }
-
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
-    }
-
-    /// In `0..1`.
-    fn unit(&mut self) -> f32 {
-        (self.bits() >> 40) as f32 * (-24f32).exp2()
-    }
-
-    fn signed(&mut self) -> f32 {
-        2.0 * self.unit() - 1.0
-    }
-
+impl Styled for Random {
     fn vector(&mut self, style: Style) -> Vec3 {
         vec3(self.number(style), self.number(style), self.number(style))
     }

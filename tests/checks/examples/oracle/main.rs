@@ -10,6 +10,7 @@ mod reference;
 
 use cases::Case;
 use checks::exact::{Body, Tier, Verdict, aabb, meet, meet_with, order, triangle, verdict};
+use checks::splitmix::Random;
 use raykata::aabb::Aabb;
 use std::hint::black_box;
 use std::process::ExitCode;

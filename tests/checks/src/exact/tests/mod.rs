@@ -10,6 +10,7 @@ mod hard;
 mod reference;
 
 use super::{Body, Tier, Verdict, aabb, meet_with, order_with, verdict_with};
+use crate::splitmix::Random;
 use cases::Case;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;

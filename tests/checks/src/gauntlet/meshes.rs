@@ -1,0 +1,256 @@
+//! Closed meshes: a ray from inside has to hit one, whatever it aims at.
+
+use crate::splitmix::Random;
+use glam::{Vec3, vec3};
+use raykata::shape::Triangle;
+use std::collections::HashMap;
+use std::f32::consts::TAU;
+
+/// A closed mesh around `inside`.
+pub struct Closed {
+    /// For tables.
+    pub name: &'static str,
+    /// Its corners.
+    pub positions: Vec<Vec3>,
+    /// Three indices each.
+    pub triangles: Vec<[u32; 3]>,
+    /// A point well inside.
+    pub inside: Vec3,
+    /// How far rays may start from there.
+    pub room: Vec3,
+    /// For each vertex, the triangles around it.
+    pub fans: Vec<Vec<u32>>,
+}
+
+impl Closed {
+    fn new(
+        name: &'static str,
+        positions: Vec<Vec3>,
+        triangles: Vec<[u32; 3]>,
+        inside: Vec3,
+        room: Vec3,
+    ) -> Self {
+        let mut fans = vec![Vec::new(); positions.len()];
+        for (index, triangle) in triangles.iter().enumerate() {
+            triangle.iter().for_each(|&vertex| fans[vertex as usize].push(index as u32));
+        }
+        Closed { name, positions, triangles, inside, room, fans }
+    }
+
+    /// Every position moved, and the inside with them.
+    fn placed(mut self, name: &'static str, place: impl Fn(Vec3) -> Vec3) -> Self {
+        let corner = place(self.inside + self.room);
+        self.positions.iter_mut().for_each(|position| *position = place(*position));
+        self.inside = place(self.inside);
+        self.room = (corner - self.inside).abs();
+        Closed { name, ..self }
+    }
+
+    /// Corners by index.
+    pub fn triangle(&self, index: u32) -> Triangle {
+        let [a, b, c] = self.triangles[index as usize].map(|vertex| self.positions[vertex as usize]);
+        Triangle { a, b, c }
+    }
+
+    /// All triangles.
+    pub fn all(&self) -> Vec<Triangle> {
+        (0..self.triangles.len() as u32).map(|index| self.triangle(index)).collect()
+    }
+}
+
+/// Ten of them and more.
+pub fn closed() -> Vec<Closed> {
+    let far = vec3(148_376.0, 1234.0, -223_423.0);
+    vec![
+        tetrahedron(),
+        icosphere(3),
+        rough_ball(),
+        lattice_cube(),
+        needle_prism(),
+        icosphere(3).placed("offset", |p| far + p),
+        rough_ball().placed("rough, offset", |p| far + p),
+        icosphere(1).placed("8 steps wide", |p| Vec3::ONE + 4.0 * f32::EPSILON * p),
+        icosphere(3).placed("1e-6 at 1", |p| Vec3::ONE + 1e-6 * p),
+        icosphere(3).placed("size 1e-14", |p| 1e-14 * p),
+        icosphere(3).placed("size 1e14", |p| 1e14 * p),
+        icosphere(3).placed("size 1e6", |p| 1e6 * p),
+    ]
+}
+
+fn tetrahedron() -> Closed {
+    let positions =
+        vec![vec3(1.0, 1.0, 1.0), vec3(1.0, -1.0, -1.0), vec3(-1.0, 1.0, -1.0), vec3(-1.0, -1.0, 1.0)];
+    let triangles = vec![[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+    Closed::new("tetrahedron", positions, triangles, Vec3::ZERO, Vec3::splat(0.1))
+}
+
+/// A ball of `20 * 4^levels` triangles.
+fn icosphere(levels: u32) -> Closed {
+    let g = 0.5 + 1.25f32.sqrt();
+    let mut positions: Vec<Vec3> = [
+        (-1.0, g, 0.0),
+        (1.0, g, 0.0),
+        (-1.0, -g, 0.0),
+        (1.0, -g, 0.0),
+        (0.0, -1.0, g),
+        (0.0, 1.0, g),
+        (0.0, -1.0, -g),
+        (0.0, 1.0, -g),
+        (g, 0.0, -1.0),
+        (g, 0.0, 1.0),
+        (-g, 0.0, -1.0),
+        (-g, 0.0, 1.0),
+    ]
+    .map(|(x, y, z)| vec3(x, y, z).normalize())
+    .to_vec();
+    let mut triangles: Vec<[u32; 3]> = vec![
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    for _ in 0..levels {
+        let mut middles = HashMap::new();
+        let mut middle = |p: u32, q: u32| {
+            *middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
+                positions.push(((positions[p as usize] + positions[q as usize]) / 2.0).normalize());
+                positions.len() as u32 - 1
+            })
+        };
+        triangles = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    Closed::new("icosphere", positions, triangles, Vec3::ZERO, Vec3::splat(0.3))
+}
+
+/// Longitudes and latitudes, each vertex at another distance.
+fn rough_ball() -> Closed {
+    const RINGS: u32 = 16;
+    const AROUND: u32 = 32;
+    let mut random = Random::new(7, 0);
+    let mut positions = vec![Vec3::Y];
+    for ring in 1..RINGS {
+        let (sin, cos) = (TAU / 2.0 * ring as f32 / RINGS as f32).sin_cos();
+        for i in 0..AROUND {
+            let (s, c) = (TAU * i as f32 / AROUND as f32).sin_cos();
+            positions.push((0.75 + 0.25 * random.unit()) * vec3(sin * c, cos, sin * s));
+        }
+    }
+    positions.push(-Vec3::Y);
+    let last = positions.len() as u32 - 1;
+    let at = |ring: u32, i: u32| 1 + (ring - 1) * AROUND + i % AROUND;
+    let mut triangles = Vec::new();
+    for i in 0..AROUND {
+        triangles.push([0, at(1, i + 1), at(1, i)]);
+        triangles.push([last, at(RINGS - 1, i), at(RINGS - 1, i + 1)]);
+        for ring in 1..RINGS - 1 {
+            triangles.push([at(ring, i), at(ring, i + 1), at(ring + 1, i)]);
+            triangles.push([at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)]);
+        }
+    }
+    Closed::new("rough ball", positions, triangles, Vec3::ZERO, Vec3::splat(0.2))
+}
+
+/// A cube whose faces are divided into squares of whole coordinates.
+fn lattice_cube() -> Closed {
+    const N: i32 = 8;
+    let mut positions = Vec::new();
+    let mut numbers = HashMap::new();
+    let mut number = |p: [i32; 3]| {
+        *numbers.entry(p).or_insert_with(|| {
+            positions.push(vec3(p[0] as f32, p[1] as f32, p[2] as f32) - N as f32 / 2.0);
+            positions.len() as u32 - 1
+        })
+    };
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        for side in [0, N] {
+            for i in 0..N {
+                for j in 0..N {
+                    let at = |i: i32, j: i32| {
+                        let mut p = [0; 3];
+                        (p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]) = (side, i, j);
+                        p
+                    };
+                    let [a, b, c, d] =
+                        [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(&mut number);
+                    triangles.extend([[a, b, c], [a, c, d]]);
+                }
+            }
+        }
+    }
+    Closed::new("lattice cube", positions, triangles, Vec3::ZERO, Vec3::splat(2.0))
+}
+
+/// A million times as long as wide.
+fn needle_prism() -> Closed {
+    const SIDES: u32 = 300;
+    let mut positions = vec![vec3(0.0, 0.0, -1000.0), vec3(0.0, 0.0, 1000.0)];
+    for i in 0..SIDES {
+        let (sin, cos) = (TAU * i as f32 / SIDES as f32).sin_cos();
+        positions.push(vec3(1e-3 * cos, 1e-3 * sin, -1000.0));
+        positions.push(vec3(1e-3 * cos, 1e-3 * sin, 1000.0));
+    }
+    let low = |i: u32| 2 + 2 * (i % SIDES);
+    let triangles = (0..SIDES)
+        .flat_map(|i| {
+            let [l0, l1] = [low(i), low(i + 1)];
+            [[0, l1, l0], [1, l0 + 1, l1 + 1], [l0, l1, l1 + 1], [l0, l1 + 1, l0 + 1]]
+        })
+        .collect();
+    Closed::new("needle prism", positions, triangles, Vec3::ZERO, vec3(3e-4, 3e-4, 300.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::{Body, verdict};
+    use raykata::ray::Ray;
+
+    #[test]
+    fn every_mesh_is_closed_around_its_inside() {
+        let meshes = closed();
+        assert!(meshes.len() >= 10);
+        for mesh in &meshes {
+            let mut edges = HashMap::new();
+            for &[a, b, c] in &mesh.triangles {
+                for (p, q) in [(a, b), (b, c), (c, a)] {
+                    *edges.entry((p.min(q), p.max(q))).or_insert(0) += 1;
+                }
+            }
+            assert!(edges.values().all(|&sides| sides == 2), "{}", mesh.name);
+            // Exactly: from within the room every ray hits it, an odd number of times unless it meets an edge.
+            let mut random = Random::new(1, 0);
+            for _ in 0..20 {
+                let ray = Ray::new(mesh.inside + mesh.room * random.in_cube(), random.direction());
+                let hits = mesh
+                    .all()
+                    .iter()
+                    .filter(|t| verdict(&ray, Body::Triangle(**t)).is_some_and(|v| v.is_hit()))
+                    .count();
+                assert!(hits >= 1, "{}: no hit from inside", mesh.name);
+            }
+        }
+    }
+}

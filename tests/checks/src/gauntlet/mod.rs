@@ -1,0 +1,11 @@
+//! The gauntlet: many methods against many distributions, judged by the exact oracle. Here accuracy shows its price.
+//!
+//! `distributions` (inputs) · `methods` and `printed` (ways to intersect) · `meshes` (closed ones) · `table` (wrong
+//! answers) · `leaks` (rays that escape)
+
+pub mod distributions;
+pub mod leaks;
+pub mod meshes;
+pub mod methods;
+mod printed;
+pub mod table;

@@ -1,0 +1,257 @@
+//! The long run: rays by the hundred million at edges and vertices of closed meshes, in every structure of the
+//! reference, and at corners of boxes. What is done is kept in a file, so that a run can be stopped and goes on.
+
+use super::traversal::{Triangles, hierarchy};
+use crate::render::Bar;
+use crate::report::Thousands;
+use anyhow::{Context, Result, bail};
+use checks::exact::aabb::overlap;
+use checks::gauntlet::leaks::{Aim, aimed};
+use checks::gauntlet::meshes::{Closed, closed};
+use checks::splitmix::Random;
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::bvh::Bvh;
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::shape::Triangle;
+use serde::{Deserialize, Serialize};
+use solutions::{stage2_triangles, stage3_bvh};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Rays of one piece of work.
+const PIECE: u64 = 250_000;
+/// How often progress is kept.
+const PAUSE: Duration = Duration::from_secs(2);
+
+/// What has been done.
+#[derive(Default, Serialize, Deserialize, PartialEq)]
+struct State {
+    seed: u64,
+    /// By what was tried: pieces of work that are finished.
+    done: BTreeMap<String, Done>,
+}
+
+#[derive(Default, Serialize, Deserialize, PartialEq)]
+struct Done {
+    /// Numbers of the pieces.
+    pieces: Vec<u64>,
+    rays: u64,
+    /// Leaks, or false misses.
+    failures: u64,
+}
+
+/// How closed meshes are searched.
+#[derive(Clone, Copy)]
+enum Structure {
+    BruteForce,
+    Bvh(Split),
+}
+
+impl Structure {
+    const ALL: [Structure; 4] = [
+        Structure::BruteForce,
+        Structure::Bvh(Split::ObjectMedian),
+        Structure::Bvh(Split::SpatialMedian),
+        Structure::Bvh(Split::SurfaceArea),
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Structure::BruteForce => "brute force",
+            Structure::Bvh(Split::ObjectMedian) => "bvh, object median",
+            Structure::Bvh(Split::SpatialMedian) => "bvh, spatial median",
+            Structure::Bvh(Split::SurfaceArea) => "bvh, surface area",
+        }
+    }
+}
+
+/// A mesh with a hierarchy for each strategy.
+struct Prepared {
+    mesh: Closed,
+    triangles: Vec<Triangle>,
+    hierarchies: Vec<(Split, Bvh)>,
+}
+
+impl Prepared {
+    fn new(mesh: Closed) -> Self {
+        let triangles = mesh.all();
+        let hierarchies = Split::ALL.map(|split| (split, hierarchy(&triangles, split, 4))).into();
+        Prepared { mesh, triangles, hierarchies }
+    }
+
+    fn hits(&self, structure: Structure, ray: &Ray, vertex: u32) -> bool {
+        match structure {
+            Structure::BruteForce => {
+                let hit = |ray: &Ray, triangle: &Triangle| {
+                    stage2_triangles::triangle_choice(ray, triangle).map(|hit| hit.t)
+                };
+                !checks::gauntlet::leaks::leaks(&self.mesh, ray, vertex, hit)
+            }
+            Structure::Bvh(split) => {
+                let bvh = self.hierarchies.iter().find(|(other, _)| *other == split).map(|(_, bvh)| bvh);
+                bvh.is_some_and(|bvh| {
+                    let mut probe = Triangles::new(bvh, &self.triangles, ray);
+                    stage3_bvh::closest_hit(bvh, &mut probe, ray).is_some()
+                })
+            }
+        }
+    }
+}
+
+/// What is tried in a piece of work.
+#[derive(Clone, Copy)]
+enum Trial {
+    Mesh(Structure, Aim),
+    Slab,
+}
+
+impl Trial {
+    fn all() -> Vec<Trial> {
+        let meshes =
+            Structure::ALL.into_iter().flat_map(|structure| Aim::ALL.map(|aim| Trial::Mesh(structure, aim)));
+        meshes.chain([Trial::Slab]).collect()
+    }
+
+    fn name(self) -> String {
+        match self {
+            Trial::Mesh(structure, Aim::Edge) => format!("{}, edges", structure.name()),
+            Trial::Mesh(structure, Aim::Vertex) => format!("{}, vertices", structure.name()),
+            Trial::Slab => "slab".into(),
+        }
+    }
+
+    /// Failures among the rays of piece `piece`.
+    fn failures(self, meshes: &[Prepared], seed: u64, piece: u64) -> u64 {
+        let mut random = Random::new(seed, piece);
+        let failed = |n| match self {
+            Trial::Slab => slab_misses(&mut random),
+            Trial::Mesh(structure, aim) => {
+                let prepared = &meshes[n as usize % meshes.len()];
+                let (ray, vertex) = aimed(&prepared.mesh, aim, &mut random);
+                !prepared.hits(structure, &ray, vertex)
+            }
+        };
+        (0..PIECE).map(failed).filter(|&failed| failed).count() as u64
+    }
+}
+
+/// Whether the slab test misses a box that the ray meets: aimed at a corner, along an edge, flat, or with a zero in the
+/// direction.
+fn slab_misses(random: &mut Random) -> bool {
+    let place = [Vec3::ZERO, Vec3::splat(1e5), Vec3::splat(1.0)][random.below(3) as usize];
+    let size = [1.0, 1e-3, 1e3][random.below(3) as usize];
+    let (p, mut q) = (place + size * random.in_cube(), place + size * random.in_cube());
+    if random.below(4) == 0 {
+        let axis = random.below(3) as usize;
+        q[axis] = p[axis];
+    }
+    let bounds = Aabb::new(p.min(q), p.max(q));
+    let corner =
+        Vec3::select(glam::BVec3::from_array([(); 3].map(|()| random.below(2) == 0)), bounds.min, bounds.max);
+    let mut origin = place + 4.0 * size * random.in_cube();
+    if random.below(4) == 0 {
+        let axis = random.below(3) as usize;
+        origin[axis] = corner[axis];
+    }
+    let ray = Ray::new(origin, corner - origin);
+    if ray.dir == Vec3::ZERO {
+        return false;
+    }
+    let meets = overlap(&ray, &bounds).is_some_and(|overlap| overlap.verdict.is_hit());
+    meets && stage3_bvh::slab(&ray, ray.dir.recip(), &bounds).is_none()
+}
+
+/// Runs until `rays` rays of each kind are done; whether nothing failed.
+pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
+    let mut state = read(file)?;
+    if state.seed != seed && !state.done.is_empty() {
+        bail!(
+            "{} is of a run with --seed {}: go on with that one, or name another file with --state",
+            file.display(),
+            state.seed
+        );
+    }
+    state.seed = seed;
+    let pieces = rays.div_ceil(PIECE);
+    let open = |trial: &Trial, piece: &u64| {
+        state.done.get(&trial.name()).is_none_or(|done| !done.pieces.contains(piece))
+    };
+    let work: Vec<(Trial, u64)> = Trial::all()
+        .into_iter()
+        .flat_map(|trial| (0..pieces).map(move |piece| (trial, piece)))
+        .filter(|(trial, piece)| open(trial, piece))
+        .collect();
+    let meshes: Vec<Prepared> = closed().into_iter().map(Prepared::new).collect();
+    let bar = Bar::new();
+    bar.0.set_length(work.len() as u64);
+    let (next, state) = (AtomicUsize::new(0), Mutex::new((state, Instant::now())));
+    let one = || -> Result<()> {
+        while let Some(&(trial, piece)) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let failures = trial.failures(&meshes, seed, piece);
+            bar.0.inc(1);
+            let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
+            let (state, kept) = &mut *guard;
+            let done = state.done.entry(trial.name()).or_default();
+            done.pieces.push(piece);
+            done.rays += PIECE;
+            done.failures += failures;
+            if kept.elapsed() > PAUSE {
+                write(state, file)?;
+                *kept = Instant::now();
+            }
+        }
+        Ok(())
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| -> Result<()> {
+        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(one)).collect();
+        for worker in workers {
+            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+        }
+        Ok(())
+    })?;
+    bar.0.finish_and_clear();
+    let (state, _) = state.into_inner().unwrap_or_else(|broken| broken.into_inner());
+    write(&state, file)?;
+    Ok(tell(&state, meshes.len()))
+}
+
+fn tell(state: &State, meshes: usize) -> bool {
+    println!("{meshes} closed meshes, seed {}", state.seed);
+    println!("{:<32}{:>16}{:>12}", "", "rays", "leaks");
+    for (name, done) in &state.done {
+        println!(
+            "{name:<32}{:>16}{:>12}",
+            Thousands(done.rays).to_string(),
+            Thousands(done.failures).to_string()
+        );
+    }
+    state.done.values().all(|done| done.failures == 0)
+}
+
+fn read(file: &Path) -> Result<State> {
+    match std::fs::read(file) {
+        Ok(bytes) => serde_json::from_slice(&bytes).with_context(|| {
+            format!("{} is not the state of a gauntlet: name another file with --state", file.display())
+        }),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(State::default()),
+        Err(error) => Err(error).with_context(|| format!("cannot read {}", file.display())),
+    }
+}
+
+fn write(state: &State, file: &Path) -> Result<()> {
+    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+    }
+    let bytes = serde_json::to_vec_pretty(state)?;
+    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, &bytes))
+        .with_context(|| format!("cannot write {}", file.display()))?;
+    Ok(())
+}
