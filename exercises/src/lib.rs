@@ -4,6 +4,7 @@
 mod camera_rays; // nothing to do here
 mod glue; // nothing to do here
 mod plan; // nothing to do here
+pub mod stage10_stability;
 pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_bvh;

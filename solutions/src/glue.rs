@@ -2,7 +2,7 @@
 
 use crate::{
     stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
-    stage7_effects, tracer,
+    stage7_effects, stage10_stability, tracer,
 };
 use glam::{Vec2, Vec3};
 use raykata::aabb::Aabb;
@@ -272,6 +272,27 @@ impl Economy for Kit {
     }
     fn texture_color(&self, queries: &[TextureQuery]) -> Vec<Vec3> {
         each(queries, |q| stage7_effects::texture_color(&q.texture, q.uv))
+    }
+}
+
+impl Stability for Kit {
+    fn stable_roots(&self, queries: &[[f32; 3]]) -> Vec<Option<[f32; 2]>> {
+        each(queries, |[a, b, c]| stage10_stability::stable_roots(*a, *b, *c))
+    }
+    fn watertight(&self, queries: &[TriangleQuery]) -> Vec<Option<TriangleHit>> {
+        each(queries, |q| stage10_stability::watertight(&q.ray, &q.triangle))
+    }
+    fn conservative_slab(&self, queries: &[SlabQuery]) -> Vec<Option<(f32, f32)>> {
+        each(queries, |q| stage10_stability::conservative_slab(&q.ray, q.ray.dir.recip(), &q.bounds))
+    }
+    fn offset_origin(&self, queries: &[OffsetQuery]) -> Vec<Vec3> {
+        each(queries, |q| stage10_stability::offset_origin(q.point, q.error, q.normal, q.direction))
+    }
+    fn safe_normalize(&self, queries: &[Vec3]) -> Vec<Option<Vec3>> {
+        each(queries, |v| stage10_stability::safe_normalize(*v))
+    }
+    fn transformed_bounds(&self, queries: &[BoundsQuery]) -> Vec<Aabb> {
+        each(queries, |q| stage10_stability::transformed_bounds(&q.to_world, &q.bounds))
     }
 }
 

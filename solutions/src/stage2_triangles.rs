@@ -126,7 +126,8 @@ fn edge(p: Vec2, q: Vec2) -> f32 {
     p.x * q.y - p.y * q.x
 }
 
-fn longest_axis(v: Vec3) -> usize {
+/// The axis along which `v` is longest.
+pub fn longest_axis(v: Vec3) -> usize {
     let v = v.abs();
     if v.x >= v.y && v.x >= v.z {
         0

@@ -26,11 +26,20 @@ pub struct Door<T>(pub T);
 
 /// Everything that students write.
 pub trait Kit:
-    Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Frames + Sync
+    Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Stability + Frames + Sync
 {
 }
 impl<T> Kit for T where
-    T: Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Frames + Sync
+    T: Shapes
+        + Triangles
+        + Hierarchies
+        + Shading
+        + Recursion
+        + Distribution
+        + Economy
+        + Stability
+        + Frames
+        + Sync
 {
 }
 
@@ -263,5 +272,20 @@ door! {
         Texel fn texel(TexelQuery) -> u32;
         /// The colour of an image.
         TextureColor fn texture_color(TextureQuery) -> Vec3;
+    }
+    /// Stage 10: answers that survive rounding.
+    trait Stability {
+        /// The roots of `a t² + b t + c`, for `[a, b, c]`.
+        StableRoots fn stable_roots([f32; 3]) -> Option<[f32; 2]>;
+        /// Ray against triangle, without leaks between neighbours.
+        Watertight fn watertight(TriangleQuery) -> Option<TriangleHit>;
+        /// Ray against box, without a miss of what is met.
+        ConservativeSlab fn conservative_slab(SlabQuery) -> Option<(f32, f32)>;
+        /// Where a ray starts that leaves a surface.
+        OffsetOrigin fn offset_origin(OffsetQuery) -> Vec3;
+        /// The unit vector along another, if it has a direction.
+        SafeNormalize fn safe_normalize(Vec3) -> Option<Vec3>;
+        /// The box around a transformed box.
+        TransformedBounds fn transformed_bounds(BoundsQuery) -> Aabb;
     }
 }

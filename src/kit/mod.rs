@@ -11,6 +11,7 @@ pub mod mishap;
 mod recursion;
 mod shading;
 mod shapes;
+mod stability;
 mod table;
 mod traced;
 mod triangles;
@@ -20,7 +21,7 @@ pub use distribution::{
 };
 pub use door::{
     Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Recursion, Request, Shading, Shapes,
-    Transport, Triangles,
+    Stability, Transport, Triangles,
 };
 pub use economy::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
@@ -29,6 +30,7 @@ pub use mishap::Mishap;
 pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
+pub use stability::{BoundsQuery, OffsetQuery};
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
 };

@@ -15,6 +15,7 @@ pub mod picture;
 pub mod rubric;
 pub mod splitmix;
 pub mod stage1;
+pub mod stage10;
 pub mod stage2;
 pub mod stage3;
 pub mod stage4;
@@ -37,6 +38,7 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (5, stage5::CHECKS),
     (6, stage6::CHECKS),
     (7, stage7::CHECKS),
+    (10, stage10::CHECKS),
 ];
 
 /// Lists the checks of a stage, and makes the macro that turns them into tests of a kit: `checks::stage1!(kit)`.

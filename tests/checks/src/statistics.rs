@@ -50,7 +50,7 @@ pub fn mean_score(values: &[f64], expected: f64) -> f64 {
 }
 
 /// Checks that `places`, each in the unit square, cover it evenly. `what` is the call; `diagnosis` may say what cells
-/// that are hit too often or too rarely look like, and [`pattern`] does where it has nothing to say.
+/// that are hit too often or too rarely look like, and where it has nothing to say the pattern of the counts may.
 pub fn covers_evenly(
     what: &str,
     places: &[(f64, f64)],

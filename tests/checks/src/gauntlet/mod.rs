@@ -1,8 +1,9 @@
 //! The gauntlet: many methods against many distributions, judged by the exact oracle. Here accuracy shows its price.
 //!
-//! `distributions` (inputs) · `methods` and `printed` (ways to intersect) · `meshes` (closed ones) · `table` (wrong
+//! `distributions` (inputs) · `methods` and `printed` (ways to intersect) · `meshes` (closed ones) · `boxes` · `table` (wrong
 //! answers) · `leaks` (rays that escape)
 
+pub mod boxes;
 pub mod distributions;
 pub mod leaks;
 pub mod meshes;

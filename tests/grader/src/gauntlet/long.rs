@@ -6,12 +6,12 @@ use crate::render::Bar;
 use crate::report::Thousands;
 use anyhow::{Context, Result, bail};
 use checks::exact::aabb::overlap;
+use checks::gauntlet::boxes::at_a_corner;
 use checks::gauntlet::leaks::{Aim, aimed};
 use checks::gauntlet::meshes::{Closed, closed};
 use checks::splitmix::Random;
-use glam::Vec3;
-use raykata::aabb::Aabb;
 use raykata::bvh::Bvh;
+use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
@@ -141,30 +141,12 @@ impl Trial {
     }
 }
 
-/// Whether the slab test misses a box that the ray meets: aimed at a corner, along an edge, flat, or with a zero in the
-/// direction.
+/// Whether the slab test misses a box that the ray meets.
 fn slab_misses(random: &mut Random) -> bool {
-    let place = [Vec3::ZERO, Vec3::splat(1e5), Vec3::splat(1.0)][random.below(3) as usize];
-    let size = [1.0, 1e-3, 1e3][random.below(3) as usize];
-    let (p, mut q) = (place + size * random.in_cube(), place + size * random.in_cube());
-    if random.below(4) == 0 {
-        let axis = random.below(3) as usize;
-        q[axis] = p[axis];
-    }
-    let bounds = Aabb::new(p.min(q), p.max(q));
-    let corner =
-        Vec3::select(glam::BVec3::from_array([(); 3].map(|()| random.below(2) == 0)), bounds.min, bounds.max);
-    let mut origin = place + 4.0 * size * random.in_cube();
-    if random.below(4) == 0 {
-        let axis = random.below(3) as usize;
-        origin[axis] = corner[axis];
-    }
-    let ray = Ray::new(origin, corner - origin);
-    if ray.dir == Vec3::ZERO {
-        return false;
-    }
-    let meets = overlap(&ray, &bounds).is_some_and(|overlap| overlap.verdict.is_hit());
-    meets && stage3_bvh::slab(&ray, ray.dir.recip(), &bounds).is_none()
+    at_a_corner(random).is_some_and(|SlabQuery { ray, bounds }| {
+        let meets = overlap(&ray, &bounds).is_some_and(|overlap| overlap.verdict.is_hit());
+        meets && stage3_bvh::slab(&ray, ray.dir.recip(), &bounds).is_none()
+    })
 }
 
 /// Runs until `rays` rays of each kind are done; whether nothing failed.

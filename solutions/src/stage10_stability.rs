@@ -1,0 +1,149 @@
+//! Stage 10 · stability: the same questions as before, asked so that roundings decide; and answers that survive it.
+//!
+//! Slides: "Ray-Sphere Intersection", "Inside Test", "Numerical precision", "Bounding Volumes"; Woop, Benthin and Wald
+//! 2013; Ize 2013; Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section 6.8.
+//!
+//! What you wrote in earlier stages may do already. `cargo run --release -- gauntlet --kit exercises` shows what it
+//! costs and where it fails.
+
+use glam::{Affine3A, Vec3};
+use raykata::aabb::Aabb;
+use raykata::kit::TriangleHit;
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+
+/// The real roots of `a t² + b t + c = 0`, the smaller one first; a double root is there twice. `None` if there is none,
+/// if `a` is 0, or if some number is not finite.
+///
+/// Where the formula lies: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` comes out as 0. Add
+/// numbers of the same sign, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
+pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
+    // <solution>
+    if a == 0.0 || !(a.is_finite() && b.is_finite() && c.is_finite()) {
+        return None;
+    }
+    // In double both products are exact, so the discriminant is rounded once and its sign is right.
+    let [a, b, c] = [a, b, c].map(f64::from);
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return None;
+    }
+    let q = -0.5 * (b + discriminant.sqrt().copysign(b));
+    // q is 0 only if b and c are.
+    let (first, second) = if q == 0.0 { (0.0, 0.0) } else { (q / a, c / q) };
+    Some([first.min(second) as f32, first.max(second) as f32])
+    // <stub> todo!("never subtract what is nearly the same: q first, then q / a and c / q")
+    // </solution>
+}
+
+/// Ray against triangle such that no ray slips through between two triangles that share an edge or a corner, at any size
+/// and any place; with the `t`, β and γ of the hit.
+///
+/// Where the formula lies: each triangle rounds for itself, and a ray at a shared edge is beside both. Decide on which
+/// side of an edge the ray passes by one computation on its two ends, which the neighbour repeats.
+pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
+    // <solution>
+    // As in stage 2, but in double precision throughout: then t, β and γ are right to the last digit as well, and sizes
+    // from 1e-38 to 1e38 fit. The corners seen from the origin of the ray are exact unless their sizes differ by 2²⁹.
+    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    let z = crate::stage2_triangles::longest_axis(ray.dir);
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    let shear = glam::DVec2::new(d[x], d[y]) / d[z];
+    let project = |corner: glam::DVec3| {
+        let corner = corner - o;
+        glam::DVec2::new(corner[x], corner[y]) - shear * corner[z]
+    };
+    let [p, q, r] = [a, b, c].map(project);
+
+    // Twice the area under an edge. Rounding is monotone: a product that is larger is never rounded to a smaller one, so
+    // the sign is never the wrong one, and 0 counts as inside for both neighbours.
+    let edge = |p: glam::DVec2, q: glam::DVec2| p.x * q.y - p.y * q.x;
+    let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
+    let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
+    let sum = alpha + beta + gamma;
+    if (least < 0.0 && most > 0.0) || sum == 0.0 || sum.is_nan() {
+        return None;
+    }
+    let normal = (b - a).cross(c - a);
+    let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
+    ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
+    // <stub> todo!("see the triangle from the ray, and decide each edge by its two ends alone")
+    // </solution>
+}
+
+/// Where `ray` enters and leaves `bounds`, as in stage 3, but never `None` for a box that the ray meets: not at its
+/// corners, not if it is flat, not far away, not along its faces, not for -0.0.
+///
+/// Where the formula lies: widening boxes by 1e-5 does nothing at 1000 and more. Make the way out longer by the error of
+/// its own three roundings instead: `1 + 2 γ₃`.
+pub fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
+    // <solution>
+    // That of stage 3 is.
+    crate::stage3_bvh::slab(ray, inverse_dir, bounds)
+    // <stub> todo!("compare so that NaN changes nothing, and let the way out be a little longer")
+    // </solution>
+}
+
+/// Where a ray along `direction` starts from a surface whose true place is within `error` of `point` along each axis:
+/// off the surface, on the side to which it goes, and no farther than it must.
+///
+/// Where the formula lies: any fixed distance is too small somewhere and too large elsewhere: at a size of 0.001 a ray
+/// that starts 0.0001 away misses what touches the surface.
+pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
+    // <solution>
+    let side = if normal.dot(direction) < 0.0 { -normal } else { normal };
+    let origin = point + error.dot(side.abs()) * side;
+    // The sum is rounded as well, so go one more step outwards on each axis.
+    Vec3::from_array([0, 1, 2].map(|axis| match side[axis] {
+        along if along > 0.0 => origin[axis].next_up(),
+        along if along < 0.0 => origin[axis].next_down(),
+        _ => origin[axis],
+    }))
+    // <stub> todo!("move the point along the normal by its error, and then by a step of the last digit")
+    // </solution>
+}
+
+/// `v / |v|` for every v that has a direction, however short or long; `None` for 0 and for what is not finite.
+///
+/// Where the formula lies: the squares of 1e-30 are 0 and those of 1e30 are infinite.
+pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
+    // <solution>
+    let largest = v.abs().max_element();
+    if largest == 0.0 || !v.is_finite() {
+        return None;
+    }
+    // In double the squares of all finite numbers fit.
+    Some(v.as_dvec3().normalize().as_vec3())
+    // <stub> todo!("scale by the largest coordinate first")
+    // </solution>
+}
+
+/// A box around `bounds` after the transform `to_world`, with no point of it outside and little room.
+///
+/// Where the formula lies: rounded to nearest, the largest corner ends up inside the true box in half of all cases, and
+/// a ray at it misses.
+pub fn transformed_bounds(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
+    // <solution>
+    if bounds.min.cmpgt(bounds.max).any() {
+        return Aabb::EMPTY;
+    }
+    let columns = [to_world.matrix3.x_axis, to_world.matrix3.y_axis, to_world.matrix3.z_axis].map(Vec3::from);
+    let translation = Vec3::from(to_world.translation);
+    let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
+    for row in 0..3 {
+        // Each axis of the box goes to one end or the other (Arvo, "Transforming axis-aligned bounding boxes", 1990).
+        let (mut low, mut high) = (f64::from(translation[row]), f64::from(translation[row]));
+        for (axis, column) in columns.iter().enumerate() {
+            let factor = f64::from(column[row]);
+            let ends = [factor * f64::from(bounds.min[axis]), factor * f64::from(bounds.max[axis])];
+            low += ends[0].min(ends[1]);
+            high += ends[0].max(ends[1]);
+        }
+        // Rounding to single precision may go inwards, one step at most; the sums in double by much less.
+        min[row] = (low as f32).next_down();
+        max[row] = (high as f32).next_up();
+    }
+    Aabb::new(min, max)
+    // <stub> todo!("transform what matters of the eight corners, and round outwards")
+    // </solution>
+}

@@ -1,0 +1,53 @@
+//! Stage 10: stability.
+//!
+//! `roots` · `triangles` · `boxes` (slabs, transforms) · `points` (offsets, directions)
+//!
+//! Judged by [`crate::exact`]: an answer may differ from the exact one only where at most [`STABLE`] roundings decide,
+//! and a mesh may not leak at all.
+
+mod boxes;
+mod points;
+mod roots;
+mod triangles;
+
+use crate::checks;
+use boxes::{
+    slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
+    transformed_boxes_contain_what_they_should, transformed_boxes_have_little_room,
+};
+use points::{
+    directions_have_length_one_at_every_length, nothing_has_no_direction,
+    offsets_are_as_small_as_they_can_be, offsets_leave_the_surface_at_any_scale,
+};
+use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that_touch_are_found};
+use triangles::{
+    watertight_errs_only_where_roundings_decide, watertight_has_a_good_t, watertight_meshes_do_not_leak,
+    watertight_of_special_numbers_is_finite, watertight_sees_size_alike,
+};
+
+/// Of how many roundings the worst wrong verdict of a stable method may be away from flipping. Stable methods stay below
+/// 30, broken ones begin at 1e5 (`raykata gauntlet` shows both).
+pub const STABLE: f64 = 64.0;
+
+/// Numbers that break formulas.
+pub const SPECIAL: [f32; 10] =
+    [0.0, -0.0, 1.0, -1.0, 1e-40, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+
+checks! { ($) 10 stage10 [
+    roots_do_not_cancel
+    roots_that_touch_are_found
+    roots_of_special_numbers_are_finite
+    watertight_errs_only_where_roundings_decide
+    watertight_meshes_do_not_leak
+    watertight_has_a_good_t
+    watertight_sees_size_alike
+    watertight_of_special_numbers_is_finite
+    slab_misses_no_box_that_is_met
+    slab_of_special_numbers_is_finite
+    offsets_leave_the_surface_at_any_scale
+    offsets_are_as_small_as_they_can_be
+    directions_have_length_one_at_every_length
+    nothing_has_no_direction
+    transformed_boxes_contain_what_they_should
+    transformed_boxes_have_little_room
+] }
