@@ -16,7 +16,7 @@ const SEEDS: u64 = 1000;
 const CAUGHT: usize = 990;
 
 /// The statistical checks, and how many chi-square and t-tests each makes.
-const STATISTICAL: [(&str, u32); 10] = [
+const STATISTICAL: [(&str, u32); 11] = [
     ("jittered_samples_cover_the_pixel_evenly", 2),
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
@@ -26,6 +26,7 @@ const STATISTICAL: [(&str, u32); 10] = [
     ("from_inside_a_ball_it_is_everywhere", 1),
     ("half_a_ball_makes_half_a_shadow", 4),
     ("gloss_falls_with_the_power_of_the_cosine", 6),
+    ("slightly_rough_is_not_a_few_angles", 1),
     ("times_are_even", 1),
 ];
 
@@ -204,6 +205,9 @@ const WRONG: &[Wrong] = &[
     }),
     ("gloss: an even cone", "gloss_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| 1.0 - u * 0.5 * rough * rough)
+    }),
+    ("gloss: little, 1 - cos θ rounded", "slightly_rough_is_not_a_few_angles", |r| {
+        lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 1.0)))
     }),
     ("gloss: always diffuse, √u", "gloss_falls_with_the_power_of_the_cosine", |r| lobe(r, |_, u| u.sqrt())),
     ("jitter: u²", "jittered_samples_cover_the_pixel_evenly", |r| cells(r, |u| u * u)),
