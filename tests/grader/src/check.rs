@@ -126,7 +126,7 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
     let passed = graded.iter().filter(|one| one.passed()).count();
     let (earned, all) = points(graded.iter().copied());
     format!(
-        "stage {number} · {title:<28} {passed:>2} of {:<2} checks   {earned:>3} of {all:<3} points",
+        "stage {number:>2} · {title:<28} {passed:>2} of {:<2} checks   {earned:>3} of {all:<3} points",
         graded.len()
     )
 }
