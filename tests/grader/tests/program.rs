@@ -95,7 +95,7 @@ fn the_reference_has_all_points() {
 #[test]
 fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
     let said = told(&raykata(&["check", "1", "--kit", "solutions"])).0;
-    assert!(said.contains("stage 1 ·") && !said.contains("stage 2 ·"), "{said}");
+    assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
     let output = raykata(&["check", "77", "--kit", "solutions"]);
     assert_eq!(output.status.code(), Some(1));
     assert!(told(&output).1.contains("there is no stage 77"));
