@@ -6,7 +6,7 @@
 //! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`: points on
 //! an edge belong to the triangle, and either side can be hit. The ray's range decides which `t` count.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use raykata::bvh::{PrimitiveHit, Probe};
 use raykata::kit::{GramScalars, TriangleHit};
 use raykata::mesh::Mesh;
