@@ -43,30 +43,8 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
 /// side of an edge the ray passes by one computation on its two ends, which the neighbour repeats.
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // As in stage 2, but in double precision throughout: then t, β and γ are right to the last digit as well, and sizes
-    // from 1e-38 to 1e38 fit. The corners seen from the origin of the ray are exact unless their sizes differ by 2²⁹.
-    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
-    let z = crate::stage2_triangles::longest_axis(ray.dir);
-    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    let shear = glam::DVec2::new(d[x], d[y]) / d[z];
-    let project = |corner: glam::DVec3| {
-        let corner = corner - o;
-        glam::DVec2::new(corner[x], corner[y]) - shear * corner[z]
-    };
-    let [p, q, r] = [a, b, c].map(project);
-
-    // Twice the area under an edge. Rounding is monotone: a product that is larger is never rounded to a smaller one, so
-    // the sign is never the wrong one, and 0 counts as inside for both neighbours.
-    let edge = |p: glam::DVec2, q: glam::DVec2| p.x * q.y - p.y * q.x;
-    let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
-    let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
-    let sum = alpha + beta + gamma;
-    if (least < 0.0 && most > 0.0) || sum == 0.0 || sum.is_nan() {
-        return None;
-    }
-    let normal = (b - a).cross(c - a);
-    let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
-    ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
+    // That of stage 2 does, in double precision throughout.
+    crate::stage2_triangles::triangle_choice(ray, triangle)
     // <stub> todo!("see the triangle from the ray, and decide each edge by its two ends alone")
     // </solution>
 }
