@@ -7,6 +7,8 @@ pub mod gauntlet;
 pub mod generate;
 pub mod kits;
 pub mod knobs;
+pub mod mutants;
+pub mod pictures;
 pub mod render;
 pub mod report;
 pub mod strip;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, corpus, explain, gauntlet, generate, render, strip, sync, tree};
+use grader::{check, corpus, explain, gauntlet, generate, mutants, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -62,6 +62,8 @@ enum Command {
     },
     /// Try the checks on known mistakes and on other right solutions (for authors).
     Corpus(corpus::Options),
+    /// Try the checks on changes that cargo-mutants makes to the solutions (for authors).
+    Mutants(mutants::Options),
     /// Make the meshes and images of the scenes (for authors).
     Generate {
         /// The folder that has, or will have, meshes/ and images/.
@@ -99,6 +101,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
         Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
+        Some(Command::Mutants(options)) => return mutants::run(&root()?, &options),
         Some(Command::Generate { scenes }) => generate::write(&scenes)?,
     }
     Ok(true)

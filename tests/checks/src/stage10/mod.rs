@@ -12,7 +12,7 @@ mod triangles;
 
 use crate::checks;
 use boxes::{
-    slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
+    slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
     transformed_boxes_contain_what_they_should, transformed_boxes_have_little_room,
 };
 use points::{
@@ -43,6 +43,7 @@ checks! { ($) 10 stage10 [
     watertight_sees_size_alike
     watertight_of_special_numbers_is_finite
     slab_misses_no_box_that_is_met
+    slab_meets_no_box_that_is_passed
     slab_of_special_numbers_is_finite
     offsets_leave_the_surface_at_any_scale
     offsets_are_as_small_as_they_can_be

@@ -97,11 +97,14 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> O
             if yours.is_some_and(|yours| (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U) {
                 return Ok(());
             }
-            let length = query.as_dvec3().length();
-            let diagnosis = match () {
-                () if length < 1e-18 => "the squares underflow: scale by the largest coordinate first",
-                () if length > 1e18 => "the squares overflow: scale by the largest coordinate first",
-                () => "",
+            let short = query.as_dvec3().length() < 1.0;
+            let diagnosis = match yours {
+                None if short => "short is not nothing: the squares underflow, so scale by the largest first",
+                None => "long is not endless: the squares overflow, so scale by the largest first",
+                // Divided by a length that came out as infinite.
+                Some(yours) if yours.length() < 0.5 => "the squares overflow: scale by the largest first",
+                Some(_) if short => "the squares underflow: scale by the largest coordinate first",
+                Some(_) => "",
             };
             Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision")
                 .looks_like(known(diagnosis)))

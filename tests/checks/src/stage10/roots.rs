@@ -34,7 +34,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let (value, roundings) = discriminant(*query);
         // Roots that nearly touch move by the root of a rounding: another check.
-        if value < 0.0 || roundings < 1e4 {
+        if value < 0.0 || roundings < 1e6 {
             return Ok(());
         }
         let expected = roots(*query);
@@ -42,7 +42,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
         let Some(yours) = yours else {
             return Err(broken().looks_like(Some("the discriminant is far above 0: there are two roots")));
         };
-        // Eight roundings; the discriminant adds those of its own difference, 1e4 roundings away from 0: 2 of them.
+        // Six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈ 3u.
         let near =
             |yours: f32, exact: f64| (f64::from(yours) - exact).abs() <= 10.0 * U * exact.abs() + 1e-44;
         if near(yours[0], expected[0]) && near(yours[1], expected[1]) {

@@ -28,9 +28,33 @@ fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
         .collect()
 }
 
+/// The triangles of a distribution from the same places, aimed well inside or a little beside an edge, where more than
+/// roundings decide; and the same rays turned round, or ended before they arrive.
+fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
+    let mut random = Random::new(trial.seed, 4);
+    let again = |TriangleQuery { ray, triangle }: &TriangleQuery| {
+        let beside = -(10f64.powf(-1.0 - 4.0 * f64::from(random.unit())));
+        let gamma = if random.below(2) == 0 { beside } else { 0.2 };
+        let beta = f64::from(0.1 + 0.6 * random.unit());
+        let [o, a, b, c] = [ray.origin, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+        let way = a + beta * (b - a) + gamma * (c - a) - o;
+        let ray = match random.below(6) {
+            0 => Ray::new(ray.origin, (-way).as_vec3()),
+            1 => Ray::new(ray.origin, way.as_vec3()).with_range(0.0, 0.5),
+            2 => Ray::new(ray.origin, way.as_vec3()).with_range(2.0, f32::INFINITY),
+            _ => Ray::new(ray.origin, way.as_vec3()),
+        };
+        TriangleQuery { ray, triangle: *triangle }
+    };
+    queries.iter().map(again).collect()
+}
+
+// The margin is that of the nearest edge. Rays that are turned round or ended miss by half their range or more, which no
+// rounding bridges.
 pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> Outcome {
     for distribution in &DISTRIBUTIONS {
-        let queries = draw(trial, distribution.name, 400);
+        let mut queries = draw(trial, distribution.name, 400);
+        queries.extend(aim_again(trial, &queries));
         let answers = trial.kit.watertight(&queries);
         let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
             let body = Body::Triangle(query.triangle);
@@ -39,11 +63,16 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             if yours.is_some() == exact.verdict.is_hit() || margin <= STABLE {
                 return Ok(());
             }
+            let endless = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let on_the_line = meet(&endless, body).is_some_and(|exact| exact.verdict.is_hit());
             let diagnosis = match (distribution.name, yours) {
+                (_, Some(_)) if on_the_line => {
+                    "a hit behind the origin or beyond the range: t counts only within the range of the ray"
+                }
+                (_, Some(_)) => "a hit where there is none, and not for a rounding",
                 ("1e14", None) => "products of three sizes overflow: the normal alone is 1e28 long",
                 ("1e-14", None) => "a determinant that is small is not 0: the triangle is small",
                 ("needle", None) => "t has lost all digits on a needle: take it from the plane",
-                (_, Some(_)) => "a hit where there is none, and not for a rounding",
                 _ => "a miss where there is a hit, and not for a rounding",
             };
             Err(Broken::told(
@@ -96,13 +125,22 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                 mesh.triangles.len(),
                 mesh.name
             );
+            let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let hits = |ray: Ray| {
+                let near: Vec<TriangleQuery> =
+                    fan(*vertex).map(|triangle| TriangleQuery { ray, triangle }).collect();
+                trial.kit.watertight(&near).iter().any(Option::is_some)
+            };
+            let middle = fan(*vertex).next().map_or(Vec3::ZERO, |Triangle { a, b, c }| (a + b + c) / 3.0);
             let diagnosis = match () {
-                () if mesh.name.contains("1e14") => "products of three sizes overflow",
-                () if mesh.name.contains("1e-14") => {
-                    "a determinant that is small is not 0: the triangle is small"
+                () if !hits(Ray::new(ray.origin, middle - ray.origin)) && mesh.name.contains("1e14") => {
+                    "products of three sizes overflow: not even what lies in the middle is hit"
                 }
-                () if mesh.name.contains("needle") => {
-                    "t has lost all digits on a needle: take it from the plane"
+                () if !hits(Ray::new(ray.origin, middle - ray.origin)) => {
+                    "not even the middle of a triangle is hit: a determinant that is small is not 0"
+                }
+                () if mesh.name.contains("needle") && hits(endless) => {
+                    "t has lost all digits and its sign: take it from the plane"
                 }
                 () => {
                     "the ray is beside both neighbours of an edge: decide an edge by its two ends alone, in the same \

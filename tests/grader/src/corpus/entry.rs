@@ -83,14 +83,19 @@ impl Entry {
 
     /// The text of the file with the difference made.
     pub fn apply(&self, original: &str) -> Result<String> {
-        let patch = diffy::Patch::from_str(&self.diff).map_err(|error| anyhow!("{error}"))?;
-        let changed = diffy::apply(original, &patch)
-            .map_err(|error| anyhow!("it does not fit {} as it is now: {error}", self.file))?;
-        if changed == original {
-            bail!("it changes nothing in {}", self.file);
-        }
-        Ok(changed)
+        apply(&self.file, &self.diff, original)
     }
+}
+
+/// The text of a file with a difference made.
+pub fn apply(file: &str, diff: &str, original: &str) -> Result<String> {
+    let patch = diffy::Patch::from_str(diff).map_err(|error| anyhow!("{error}"))?;
+    let changed = diffy::apply(original, &patch)
+        .map_err(|error| anyhow!("it does not fit {file} as it is now: {error}"))?;
+    if changed == original {
+        bail!("it changes nothing in {file}");
+    }
+    Ok(changed)
 }
 
 /// Lines `key: value`; comments begin with `#`.

@@ -109,21 +109,7 @@ fn try_all(root: &Path, entries: Vec<Entry>, jobs: usize) -> Result<Vec<Tried>> 
     }
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
-    let first = Workshop::open(root, 0)?;
-    // The reference itself must build, and what it needs is then there for all workshops.
-    match first.build_original()? {
-        Built::Worker(_) => {}
-        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => {
-            bail!("the solutions do not compile by themselves:\n{error}");
-        }
-    }
-    let mut workshops = vec![first];
-    for number in 1..jobs {
-        let workshop = Workshop::open(root, number)?;
-        workshop.take_over(&workshops[0])?;
-        workshops.push(workshop);
-    }
-
+    let workshops = Workshop::open_all(root, jobs)?;
     let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(jobs);
     let (next, tried) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let work = |workshop: &Workshop| -> Result<()> {
@@ -151,7 +137,7 @@ fn try_all(root: &Path, entries: Vec<Entry>, jobs: usize) -> Result<Vec<Tried>> 
 
 fn try_one(workshop: &Workshop, entry: &Entry, threads: usize) -> Result<Tried> {
     let tried = |fate, failures| Ok(Tried { entry: entry.clone(), fate, failures });
-    let worker = match workshop.build(entry)? {
+    let worker = match workshop.build(&entry.file, &entry.diff)? {
         Built::Worker(worker) => worker,
         Built::DoesNotApply(why) => return tried(Fate::DoesNotApply(why), Default::default()),
         Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),

@@ -1,6 +1,7 @@
 //! The long run: rays by the hundred million at edges and vertices of closed meshes, in every structure of the
 //! reference, and at corners of boxes. What is done is kept in a file, so that a run can be stopped and goes on.
 
+use super::leaving;
 use super::traversal::{Triangles, hierarchy};
 use crate::render::Bar;
 use crate::report::Thousands;
@@ -25,7 +26,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Rays of one piece of work.
-const PIECE: u64 = 250_000;
+const PIECE: u64 = leaving::RAYS;
 /// How often progress is kept.
 const PAUSE: Duration = Duration::from_secs(2);
 
@@ -109,35 +110,43 @@ impl Prepared {
 enum Trial {
     Mesh(Structure, Aim),
     Slab,
+    SelfHit,
+    Contact,
 }
 
 impl Trial {
     fn all() -> Vec<Trial> {
         let meshes =
             Structure::ALL.into_iter().flat_map(|structure| Aim::ALL.map(|aim| Trial::Mesh(structure, aim)));
-        meshes.chain([Trial::Slab]).collect()
+        meshes.chain([Trial::Slab, Trial::SelfHit, Trial::Contact]).collect()
     }
 
     fn name(self) -> String {
         match self {
             Trial::Mesh(structure, Aim::Edge) => format!("{}, edges", structure.name()),
             Trial::Mesh(structure, Aim::Vertex) => format!("{}, vertices", structure.name()),
-            Trial::Slab => "slab".into(),
+            Trial::Slab => "boxes, at corners".into(),
+            Trial::SelfHit => "own surface, met again".into(),
+            Trial::Contact => "64 steps away, lost".into(),
         }
     }
 
     /// Failures among the rays of piece `piece`.
-    fn failures(self, meshes: &[Prepared], seed: u64, piece: u64) -> u64 {
+    fn failures(self, meshes: &[Prepared], seed: u64, piece: u64) -> Result<u64> {
         let mut random = Random::new(seed, piece);
-        let failed = |n| match self {
-            Trial::Slab => slab_misses(&mut random),
-            Trial::Mesh(structure, aim) => {
+        let count = |mut failed: Box<dyn FnMut(u64) -> bool + '_>| {
+            Ok((0..PIECE).filter(|&n| failed(n)).count() as u64)
+        };
+        match self {
+            Trial::SelfHit => leaving::self_hits(&mut random),
+            Trial::Contact => leaving::lost_contacts(&mut random),
+            Trial::Slab => count(Box::new(move |_| slab_misses(&mut random))),
+            Trial::Mesh(structure, aim) => count(Box::new(move |n| {
                 let prepared = &meshes[n as usize % meshes.len()];
                 let (ray, vertex) = aimed(&prepared.mesh, aim, &mut random);
                 !prepared.hits(structure, &ray, vertex)
-            }
-        };
-        (0..PIECE).map(failed).filter(|&failed| failed).count() as u64
+            })),
+        }
     }
 }
 
@@ -175,7 +184,7 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
     let (next, state) = (AtomicUsize::new(0), Mutex::new((state, Instant::now())));
     let one = || -> Result<()> {
         while let Some(&(trial, piece)) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let failures = trial.failures(&meshes, seed, piece);
+            let failures = trial.failures(&meshes, seed, piece)?;
             bar.0.inc(1);
             let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
             let (state, kept) = &mut *guard;
@@ -206,7 +215,7 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
 
 fn tell(state: &State, meshes: usize) -> bool {
     println!("{meshes} closed meshes, seed {}", state.seed);
-    println!("{:<32}{:>16}{:>12}", "", "rays", "leaks");
+    println!("{:<32}{:>16}{:>12}", "", "rays", "failed");
     for (name, done) in &state.done {
         println!(
             "{name:<32}{:>16}{:>12}",
