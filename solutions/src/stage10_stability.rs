@@ -53,7 +53,8 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// corners, not if it is flat, not far away, not along its faces, not for -0.0.
 ///
 /// Where the formula lies: widening boxes by 1e-5 does nothing at 1000 and more. Make the way out longer by the error of
-/// its own three roundings instead: `1 + 2 γ₃`.
+/// its own three roundings instead, `1 + 2 γ₃`, and the way in earlier by as much: a search compares it with the `t` of
+/// hits, which are rounded in another way.
 pub fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     // That of stage 3 is.

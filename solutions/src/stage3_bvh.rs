@@ -74,7 +74,7 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 #[inline]
 pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
-    let (mut near, mut far) = (ray.t_min, ray.t_max);
+    let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
     for axis in 0..3 {
         // The sign bit and not `< 0`: 1 / -0.0 is -∞, and the planes must swap for it, too.
         let (first, last) = if inverse_dir[axis].is_sign_negative() {
@@ -83,7 +83,7 @@ pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
             (bounds.min[axis], bounds.max[axis])
         };
         let enter = (first - ray.origin[axis]) * inverse_dir[axis];
-        let leave = (last - ray.origin[axis]) * inverse_dir[axis] * ROUND_OUTWARD;
+        let leave = (last - ray.origin[axis]) * inverse_dir[axis];
         // In this order a NaN changes nothing: the ray runs within the plane of a face, and that is inside.
         if enter > near {
             near = enter;
@@ -92,16 +92,22 @@ pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
             far = leave;
         }
     }
+    let (near, far) = ((near * EARLIER).max(ray.t_min), (far * LATER).min(ray.t_max));
     (near <= far).then_some((near, far))
     // <stub> todo!("intersect the intervals of the three axes with the range of the ray")
     // </solution>
 }
 
 // <solution>
-/// `leave` is the result of three roundings (1/d, the difference, the product), each off by at most `u = 2⁻²⁴`.
-/// Making it longer by twice their bound γ₃ = 3u / (1 - 3u) means that no box is missed by rounding (Ize, "Robust BVH
+/// Both ends are results of three roundings (1/d, the difference, the product), each off by at most `u = 2⁻²⁴`. Making
+/// the way out longer by twice their bound γ₃ = 3u / (1 - 3u) means that no box is missed by rounding (Ize, "Robust BVH
 /// Ray Traversal", JCGT 2013). Measured: without this, 6 of 100 rays that are aimed at corners miss.
-const ROUND_OUTWARD: f32 = 1.0 + 2.0 * (3.0 * f32::EPSILON / 2.0);
+const LATER: f32 = 1.0 + 2.0 * (3.0 * f32::EPSILON / 2.0);
+
+/// The way in is compared with the `t` of hits, which is rounded in another way: unless it is early by as much, a box is
+/// skipped that holds a hit at the very `t` of the best one. Measured: 1 of 1,000 rays that are aimed at corners of walls
+/// found another triangle than brute force.
+const EARLIER: f32 = 1.0 - 2.0 * (3.0 * f32::EPSILON / 2.0);
 // </solution>
 
 /// Object median: sort along the longest axis of the box around all, and give each side half. Reorders `primitives`

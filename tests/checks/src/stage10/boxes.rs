@@ -5,6 +5,7 @@ use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::double::U;
 use crate::exact::aabb::overlap;
+use crate::exact::{Body, meet};
 use crate::gauntlet::boxes::at_a_corner;
 use crate::judge::{compare, known};
 use crate::paste::{Arguments, Paste};
@@ -13,6 +14,7 @@ use glam::{Affine3A, Mat3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{BoundsQuery, SlabQuery};
 use raykata::ray::Ray;
+use raykata::shape::Triangle;
 
 /// What can lose this box for a ray that meets it; the first is the plainest to tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -98,6 +100,40 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
             )))
     };
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
+}
+
+pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 15);
+    // Rays at a corner of a triangle, which is on the box around it: both begin at the same exact t.
+    let draw = |_| {
+        let place = [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e3)][random.below(3) as usize];
+        let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
+        let triangle = Triangle { a, b, c };
+        let origin = place + 4.0 * random.in_cube();
+        let bounds = Aabb::new(a.min(b).min(c), a.max(b).max(c));
+        (SlabQuery { ray: Ray::new(origin, a - origin), bounds }, triangle)
+    };
+    let drawn: Vec<(SlabQuery, Triangle)> = (0..20_000).map(draw).collect();
+    let queries: Vec<SlabQuery> = drawn.iter().map(|(query, _)| *query).collect();
+    let judge = |(query, triangle): &(SlabQuery, Triangle), yours: Option<(f32, f32)>| {
+        let Some(t) = meet(&query.ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t) else {
+            return Ok(());
+        };
+        match yours {
+            Some((enter, _)) if enter > t => Err(Broken::told(
+                query.call("conservative_slab"),
+                format!("enters at {enter}"),
+                format!("at {t} or before: there it meets a triangle in the box"),
+                "exactly",
+            )
+            .looks_like(Some(
+                "the way in is rounded up: a search that has a hit at this t skips the box; make it a little earlier, \
+                 1 - 2 γ₃ times",
+            ))),
+            _ => Ok(()),
+        }
+    };
+    compare(&drawn, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
 }
 
 pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {

@@ -12,8 +12,9 @@ mod triangles;
 
 use crate::checks;
 use boxes::{
-    slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
-    transformed_boxes_contain_what_they_should, transformed_boxes_have_little_room,
+    slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met,
+    slab_of_special_numbers_is_finite, transformed_boxes_contain_what_they_should,
+    transformed_boxes_have_little_room,
 };
 use points::{
     directions_have_length_one_at_every_length, nothing_has_no_direction,
@@ -44,6 +45,7 @@ checks! { ($) 10 stage10 [
     watertight_of_special_numbers_is_finite
     slab_misses_no_box_that_is_met
     slab_meets_no_box_that_is_passed
+    slab_is_entered_before_what_it_holds
     slab_of_special_numbers_is_finite
     offsets_leave_the_surface_at_any_scale
     offsets_are_as_small_as_they_can_be

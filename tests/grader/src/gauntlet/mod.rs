@@ -1,6 +1,7 @@
 //! `raykata gauntlet`: what accuracy costs. Methods against distributions, judged exactly; with `--rays`, the long run
 //! that looks for a leak in the reference.
 
+pub mod agreement;
 mod leaving;
 mod long;
 pub mod traversal;

@@ -1,0 +1,31 @@
+//! Every search of the reference finds what exact predicates say is met first, on scenes that are hard to search.
+
+use grader::gauntlet::agreement;
+
+#[test]
+fn every_search_finds_a_triangle_that_is_exactly_met_first() {
+    let all = agreement::all(1, 500);
+    for one in &all {
+        assert_eq!(one.mismatches, 0, "{one:#?}");
+        // Exactly through an edge that has no neighbour a rounding decides, and of these rays there are a few.
+        assert!(one.roundings * 10 <= one.rays, "{one:#?}");
+    }
+    let of =
+        |name: &str| all.iter().find(|one| one.scene == name).unwrap_or_else(|| panic!("no scene {name}"));
+    assert_eq!(of("nothing").hits, 0);
+    assert_eq!(of("in a line, without area").hits, 0);
+    assert!(of("each four times").ties == of("each four times").hits && of("each four times").hits > 100);
+    assert!(of("lattice").ties > 50, "{:?}", of("lattice"));
+    assert!(of("closed").hits == of("closed").rays, "{:?}", of("closed"));
+}
+#[test]
+fn zz() {
+    for one in agreement::all(1, 500) {
+        if one.mismatches > 0 || one.roundings > 0 || one.search == "brute force" {
+            println!(
+                "{:<28} {:<44} hits {} ties {} roundings {} MISM {}",
+                one.scene, one.search, one.hits, one.ties, one.roundings, one.mismatches
+            );
+        }
+    }
+}
