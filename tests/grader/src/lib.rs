@@ -1,5 +1,6 @@
 //! The parts of the tool, so that tests and benchmarks can reach them. The program is `main.rs`.
 
+pub mod cases;
 pub mod check;
 pub mod corpus;
 pub mod explain;

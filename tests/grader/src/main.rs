@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{check, corpus, explain, gauntlet, generate, mutants, render, strip, sync, tree};
+use grader::{cases, check, corpus, explain, gauntlet, generate, mutants, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -42,7 +42,11 @@ enum Command {
         kit: Which,
     },
     /// List all checks with their points.
-    List,
+    List {
+        /// The hard cases instead, and the checks that see to them.
+        #[arg(long)]
+        cases: bool,
+    },
     /// Get a hint for a check.
     Hint {
         /// Its name, as `list` and failing tests print it.
@@ -96,7 +100,8 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Check { stage, kit }) => {
             return check::scorecard(&Source::prepare(kit, &root()?)?, stage);
         }
-        Some(Command::List) => check::list(),
+        Some(Command::List { cases: true }) => cases::list(&root()?)?,
+        Some(Command::List { cases: false }) => check::list(),
         Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,

@@ -18,14 +18,3 @@ fn every_search_finds_a_triangle_that_is_exactly_met_first() {
     assert!(of("lattice").ties > 50, "{:?}", of("lattice"));
     assert!(of("closed").hits == of("closed").rays, "{:?}", of("closed"));
 }
-#[test]
-fn zz() {
-    for one in agreement::all(1, 500) {
-        if one.mismatches > 0 || one.roundings > 0 || one.search == "brute force" {
-            println!(
-                "{:<28} {:<44} hits {} ties {} roundings {} MISM {}",
-                one.scene, one.search, one.hits, one.ties, one.roundings, one.mismatches
-            );
-        }
-    }
-}

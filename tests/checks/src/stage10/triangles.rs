@@ -205,12 +205,11 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
             })
             .collect();
         for ((query, yours), plain) in scaled.iter().zip(trial.kit.watertight(&scaled)).zip(&plain) {
-            if yours.is_some() != plain.is_some() {
-                let verdict = |hit: bool| if hit { "a hit" } else { "a miss" };
+            if yours != *plain {
                 let broken = Broken::told(
                     query.call("watertight"),
-                    verdict(yours.is_some()),
-                    format!("{}, as without the factor 2^{exponent}", verdict(plain.is_some())),
+                    format!("{yours:?}"),
+                    format!("{plain:?}, as without the factor 2^{exponent}"),
                     "a power of two moves no rounding",
                 );
                 return Err(

@@ -242,6 +242,18 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
             (TriangleQuery { ray: Ray { origin: Vec3::NAN, ..down }, triangle: unit }, None, nan),
         ],
     )?;
+    // The sliver of pbrt's tests, https://github.com/mmp/pbrt-v4/blob/master/src/pbrt/shapes_test.cpp: x and z are
+    // constant, so it has no area.
+    let sliver = TriangleQuery {
+        ray: Ray::new(vec3(-1_081.479_2, 99.999_954, 87.770_11), vec3(-32.107_3, -183.355_87, -144.607_64))
+            .with_range(0.0, 0.9999),
+        triangle: Triangle {
+            a: vec3(-1_113.454_6, -79.049_614, -56.243_19),
+            b: vec3(-1_113.454_6, -87.092_27, -56.243_19),
+            c: vec3(-1_113.454_6, -79.209_015, -56.243_19),
+        },
+    };
+    method.judge_exact(trial, &[(sliver, None, flat)])?;
     // Sizes that overflow single precision may hit or miss, but never with a NaN.
     let huge = with(-1e20 * Vec3::ONE, 1e20 * Vec3::X, 1e20 * Vec3::Y);
     for yours in (method.ask)(trial.kit, &[huge]).into_iter().flatten() {

@@ -8,6 +8,8 @@ pub mod traversal;
 
 use crate::kits::{Source, Which};
 use crate::render::Bar;
+use crate::report::Thousands;
+use agreement::Agreement;
 use anyhow::Result;
 use checks::gauntlet::distributions::DISTRIBUTIONS;
 use checks::gauntlet::leaks::{self, Aim};
@@ -50,7 +52,7 @@ pub struct Options {
 pub fn run(options: &Options) -> Result<bool> {
     match options.rays {
         Some(rays) => long::run(rays, options.seed, &options.state),
-        None => tables(options).map(|()| true),
+        None => tables(options),
     }
 }
 
@@ -95,7 +97,7 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
     rows
 }
 
-fn tables(options: &Options) -> Result<()> {
+fn tables(options: &Options) -> Result<bool> {
     let source = Source::here(options.kit)?;
     let kit = &*source.fresh();
     let rows = rows(kit);
@@ -134,7 +136,34 @@ fn tables(options: &Options) -> Result<()> {
     }
     println!();
     leak_table(options);
-    Ok(())
+    println!();
+    Ok(agreement_table(options))
+}
+
+/// The reference's searches on scenes that are hard to search; whether all answers are right.
+fn agreement_table(options: &Options) -> bool {
+    let all = agreement::all(options.seed, (options.inputs / 20).max(100));
+    println!(
+        "searches against all triangles, exactly (brute force and 18 searches of hierarchies, on each scene)"
+    );
+    println!("{:<30}{:>10}{:>10}{:>10}{:>12}{:>8}", "", "answers", "hits", "ties", "by rounding", "wrong");
+    for scene in all.chunk_by(|one, next| one.scene == next.scene) {
+        let sum = |what: fn(&Agreement) -> u64| Thousands(scene.iter().map(what).sum()).to_string();
+        println!(
+            "{:<30}{:>10}{:>10}{:>10}{:>12}{:>8}",
+            scene[0].scene,
+            sum(|one| one.rays),
+            sum(|one| one.hits),
+            sum(|one| one.ties),
+            sum(|one| one.roundings),
+            sum(|one| one.mismatches)
+        );
+    }
+    println!(
+        "by rounding: the ray passes exactly through an edge, and double precision took it for a neighbour or a miss.\n\
+         wrong: not among the triangles that are exactly met first, or not what asking all triangles finds."
+    );
+    all.iter().all(|one| one.mismatches == 0)
 }
 
 /// One method a thread at a time.

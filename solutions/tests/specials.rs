@@ -1,0 +1,110 @@
+//! Zeros of both signs, denormal numbers and the largest ones in every place of a scene: each is refused with an error
+//! that says where, or rendered without a NaN.
+
+use checks::splitmix::Random;
+use raykata::frame::Unwatched;
+use raykata::kit::{Frames, RenderJob, View};
+use raykata::scene::{Accelerator, load};
+use std::path::Path;
+
+/// Most numbers are ordinary, so that most scenes can be rendered.
+const ORDINARY: [&str; 6] = ["0.5", "-1.0", "2.0", "0.25", "1.0", "-0.125"];
+const FINITE: [&str; 7] =
+    ["0.0", "-0.0", "1e-40", "-1e-40", "3.4028235e38", "-3.4028235e38", "1.1754944e-38"];
+const ENDLESS: [&str; 3] = ["inf", "-inf", "nan"];
+
+/// A scene with every shape and light that there is, and a number for every `#`.
+const SCENE: &str = r#"
+[film]
+width = 10
+height = 8
+[camera]
+position = [#, 0.25, 6.0]
+look_at = [0, 0, 0]
+lens = { aperture = 0.01, focal_distance = 5.0 }
+shutter = { open = 0, close = 1 }
+[environment]
+background = 0.2
+ambient = 0.1
+[quality]
+samples_per_pixel = 2
+max_depth = 3
+[materials.glass]
+diffuse = 0.2
+mirror = 0.3
+transmission = 0.5
+index_of_refraction = 1.5
+roughness = 0.2
+[materials.matt]
+diffuse = [0.5, 0.4, 0.3]
+specular = 0.3
+exponent = 20
+[[lights]]
+point = { position = [#, 5.0, #] }
+[[lights]]
+area = { sphere = { center = [#, 4.0, #], radius = 0.5 } }
+[[nodes]]
+material = "glass"
+shape = { sphere = { center = [#, #, #], radius = # } }
+[[nodes]]
+material = "matt"
+shape = { plane = { point = [#, #, #], normal = [#, 1.0, #] } }
+[[nodes]]
+material = "glass"
+transform_end = [{ translate = [#, 0.0, #] }]
+shape = { triangle = { a = [#, #, #], b = [#, 1.0, #], c = [1.0, #, #] } }
+[[nodes]]
+material = "matt"
+shape = { box = { min = [#, #, #], max = [4.0, 4.0, 4.0] } }
+transform = [{ translate = [#, #, #] }]
+"#;
+
+fn fill(random: &mut Random, rate: f32) -> String {
+    let mut pick = |list: &[&str]| list[random.below(list.len() as u64) as usize].to_owned();
+    let mut parts = SCENE.split('#');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let chance =
+            pick(&["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"]).parse::<f32>().unwrap_or(0.0) / 10.0;
+        let number = match () {
+            () if chance >= rate => pick(&ORDINARY),
+            () if pick(&["no", "no", "no", "no", "no", "no", "no", "no", "no", "no", "no", "yes"])
+                == "yes" =>
+            {
+                pick(&ENDLESS)
+            }
+            () => pick(&FINITE),
+        };
+        text += &number;
+        text += part;
+    }
+    text
+}
+
+#[test]
+fn numbers_that_break_formulas_break_no_picture() {
+    let (mut rendered, mut refused) = (0, 0);
+    for n in 0..4000 {
+        let mut random = Random::new(79, n);
+        let text = fill(&mut random, [0.1, 0.2, 0.5][n as usize % 3]);
+        let mut scene = match load::parse(Path::new("specials.toml"), &text) {
+            Ok(scene) => scene,
+            Err(error) => {
+                let told = error.to_string();
+                assert!(told.starts_with("specials.toml:") && told.len() > 30, "{told}\n{text}");
+                refused += 1;
+                continue;
+            }
+        };
+        for accelerator in [Accelerator::Bvh, Accelerator::BruteForce] {
+            scene.quality.accelerator = accelerator;
+            let job =
+                RenderJob { scene: scene.clone(), view: View::Shaded, seed: n, threads: 1, count: true };
+            let frame = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+            let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
+            assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
+        }
+        rendered += 1;
+    }
+    assert!(rendered >= 600 && refused >= 600, "{rendered} rendered, {refused} refused");
+}

@@ -1,0 +1,57 @@
+//! The catalogue of hard cases, `tests/cases.toml`: what goes in, what must come of it, and who sees to it.
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+use std::path::Path;
+
+/// One of them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// What it is known by, with the family first.
+    pub name: String,
+    /// What goes in.
+    pub input: String,
+    /// What must come of it.
+    pub required: String,
+    /// Checks of students.
+    #[serde(default)]
+    pub checks: Vec<String>,
+    /// The kit's own tests, by the names of their functions.
+    #[serde(default)]
+    pub tests: Vec<String>,
+    /// The stage that it waits for.
+    pub awaits: Option<u8>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Catalogue {
+    case: Vec<Case>,
+}
+
+/// All of them, in the order of the catalogue: the first is number 1.
+pub fn read(root: &Path) -> Result<Vec<Case>> {
+    let file = root.join("tests/cases.toml");
+    let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let catalogue: Catalogue = toml::from_str(&text).with_context(|| file.display().to_string())?;
+    Ok(catalogue.case)
+}
+
+/// Prints them.
+pub fn list(root: &Path) -> Result<()> {
+    let cases = read(root)?;
+    for (index, case) in cases.iter().enumerate() {
+        println!("{:>2}  {}", index + 1, case.name);
+        println!("    {} → {}", case.input, case.required);
+        for name in case.checks.iter().chain(&case.tests) {
+            println!("      {name}");
+        }
+        if let Some(stage) = case.awaits {
+            println!("      waits for stage {stage}");
+        }
+    }
+    let waiting = cases.iter().filter(|case| case.checks.is_empty() && case.tests.is_empty()).count();
+    println!("\n{} cases, {waiting} of which wait for later stages", cases.len());
+    Ok(())
+}
