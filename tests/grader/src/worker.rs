@@ -26,20 +26,26 @@ const KEPT_STDERR: u64 = 64 * 1024;
 pub struct Worker {
     program: PathBuf,
     call_patience: Duration,
+    frame_patience: Duration,
     process: Mutex<Option<Process>>,
 }
 
 impl Worker {
     /// A worker that will run `program` when it is first asked something.
     pub fn new(program: PathBuf, call_patience: Duration) -> Self {
-        Worker { program, call_patience, process: Mutex::new(None) }
+        Worker { program, call_patience, frame_patience: FRAME_PATIENCE, process: Mutex::new(None) }
+    }
+
+    /// The same, which waits no longer for a frame than for any other call.
+    pub fn hasty(program: PathBuf) -> Self {
+        Worker { frame_patience: CALL_PATIENCE, ..Worker::new(program, CALL_PATIENCE) }
     }
 }
 
 impl Transport for Worker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let patience =
-            if matches!(request, Request::Render(_)) { FRAME_PATIENCE } else { self.call_patience };
+            if matches!(request, Request::Render(_)) { self.frame_patience } else { self.call_patience };
         let mut slot = lock(&self.process);
         let mut process = match slot.take().map_or_else(|| Process::start(&self.program), Ok) {
             Ok(process) => process,

@@ -1,24 +1,28 @@
 //! `raykata mutants`: small changes of the solutions that nobody chose by hand, each of which the checks must notice.
 //!
-//! The tool cargo-mutants lists the changes; each is built in a workshop of the corpus and asked every check, its own
-//! stage's first, and then for the pictures of all scenes. What survives is either a gap in the checks or a change that
+//! The tool cargo-mutants lists the changes; each is built in a workshop of the corpus and asked every check, and for
+//! the pictures of all scenes. What survives is either a gap in the checks or a change that
 //! changes nothing: the latter stand in tests/corpus/equivalent.toml, each with a reason.
 //!
-//! `list` (the changes) · `reviewed` (those that change nothing)
+//! `list` (the changes) · `journal` (what has been tried) · `reviewed` (those that change nothing)
 
+mod journal;
 mod list;
 pub mod reviewed;
 
 use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
-use anyhow::{Context, Result, bail};
-use checks::{STAGES, Verdict};
+use crate::worker::Worker;
+use anyhow::{Result, bail};
+use checks::{Check, STAGES, Verdict};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use journal::Journal;
 use list::Mutant;
+use raykata::kit::Door;
 use reviewed::Reviewed;
-use std::collections::BTreeMap;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -28,26 +32,26 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 pub struct Options {
     /// Only in files of solutions/src with this in their name.
     file: Option<String>,
-    /// Only what survived the last run.
+    /// Go on with the last run, which was stopped: what it has tried is not tried again.
     #[arg(long)]
+    resume: bool,
+    /// Only what survived the last run.
+    #[arg(long, conflicts_with = "resume")]
     again: bool,
     /// How many to try at once.
     #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
     jobs: usize,
 }
 
-/// Where the survivors of the last run are kept.
-const LAST_RUN: &str = "target/corpus/survivors.json";
-
 /// How a change ended.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Fate {
     /// It is no program.
     DoesNotCompile,
     /// A check of its own stage failed.
-    ByItsStage(&'static str),
+    ByItsStage(String),
     /// A check of another stage failed.
-    ByAnotherStage(&'static str),
+    ByAnotherStage(String),
     /// Every check passed, and the picture of this scene, or what it cost, is another one.
     ByPicture(String),
     /// Nobody noticed, and nobody can: it is reviewed.
@@ -63,32 +67,30 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
+    let mut journal = Journal::open(root, options.resume || options.again)?;
     if options.again {
-        let kept = std::fs::read_to_string(root.join(LAST_RUN))
-            .with_context(|| format!("{LAST_RUN}: there was no run before this one"))?;
-        let kept: Vec<String> = serde_json::from_str(&kept)?;
-        mutants.retain(|mutant| kept.contains(&mutant.change()));
+        mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
+        journal.forget(&mutants);
     }
     if mutants.is_empty() {
         bail!("no change is left to try");
     }
-    let fates = try_all(root, &mutants, &reviewed, options.jobs.clamp(1, mutants.len()))?;
-    let tried: Vec<(&Mutant, Fate)> = mutants.iter().zip(fates).collect();
+    try_all(root, &mutants, &mut journal, options.jobs.clamp(1, mutants.len()))?;
+    let tried: Vec<(&Mutant, Fate)> = mutants
+        .iter()
+        .filter_map(|mutant| match journal.of(mutant)? {
+            Fate::Survived if reviewed.has(mutant) => Some((mutant, Fate::Equivalent)),
+            fate => Some((mutant, fate.clone())),
+        })
+        .collect();
     let survivors: Vec<&Mutant> =
         tried.iter().filter(|(_, fate)| *fate == Fate::Survived).map(|(mutant, _)| *mutant).collect();
-    let kept: Vec<String> = survivors.iter().map(|mutant| mutant.change()).collect();
-    std::fs::write(root.join(LAST_RUN), serde_json::to_string_pretty(&kept)?)?;
-
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
-    let noticed: Vec<&&Mutant> = tried
-        .iter()
-        .filter(|(mutant, fate)| {
-            reviewed.has(mutant) && !matches!(fate, Fate::Equivalent | Fate::DoesNotCompile)
-        })
-        .map(|(mutant, _)| mutant)
-        .collect();
+    let is_noticed = |fate: &Fate| !matches!(fate, Fate::Equivalent | Fate::DoesNotCompile);
+    let noticed = tried.iter().filter(|(mutant, fate)| reviewed.has(mutant) && is_noticed(fate));
+    let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
     for mutant in &noticed {
         println!("NOTICED, though reviewed as one that changes nothing: {mutant}\n");
     }
@@ -96,7 +98,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     Ok(survivors.is_empty() && noticed.is_empty())
 }
 
-fn try_all(root: &Path, mutants: &[Mutant], reviewed: &Reviewed, jobs: usize) -> Result<Vec<Fate>> {
+fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) -> Result<()> {
     let workshops = Workshop::open_all(root, jobs)?;
     let scenes = Scenes::read(root)?;
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
@@ -104,25 +106,22 @@ fn try_all(root: &Path, mutants: &[Mutant], reviewed: &Reviewed, jobs: usize) ->
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
         bar.set_style(style);
     }
-    let (next, fates) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
+    let (next, journal) = (AtomicUsize::new(0), Mutex::new(journal));
+    let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
     let work = |workshop: &Workshop| -> Result<()> {
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            let Some(mutant) = mutants.get(number) else { return Ok(()) };
+        while let Some(mutant) = mutants.get(next.fetch_add(1, Ordering::Relaxed)) {
             bar.set_message(mutant.file.clone());
-            let mut fate = match workshop.build(&mutant.file, &mutant.diff)? {
-                Built::Worker(worker) => judge(mutant, &Source::Worker(worker), &scenes, &expected),
-                Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-                Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
-            };
-            if fate == Fate::Survived && reviewed.has(mutant) {
-                fate = Fate::Equivalent;
+            if lock().of(mutant).is_none() {
+                let fate = match workshop.build(&mutant.file, &mutant.diff)? {
+                    Built::Worker(worker) => judge(mutant, &worker, &scenes, &expected),
+                    Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+                    Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
+                };
+                lock().write(mutant, fate)?;
             }
             bar.inc(1);
-            if let Ok(mut fates) = fates.lock() {
-                fates.insert(number, fate);
-            }
         }
+        Ok(())
     };
     std::thread::scope(|scope| {
         let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
@@ -131,28 +130,27 @@ fn try_all(root: &Path, mutants: &[Mutant], reviewed: &Reviewed, jobs: usize) ->
             .try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see the message above")))
     })?;
     bar.finish_and_clear();
-    Ok(fates.into_inner().unwrap_or_default().into_values().collect())
+    Ok(())
 }
 
-/// Asks the checks of the stage that the file belongs to, then those of the others, then for pictures; up to the first
-/// that notices something.
-fn judge(mutant: &Mutant, source: &Source, scenes: &Scenes, expected: &[Shown]) -> Fate {
+/// Asks whoever is likely to notice first: for an exercise the checks of its stage; for the rest of the solutions, which
+/// makes frames of them, the pictures.
+fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
-    let (first, rest): (Vec<_>, Vec<_>) = STAGES.iter().partition(|(stage, _)| Some(*stage) == own);
-    for &(stage, checks) in first.into_iter().chain(rest) {
-        for check in checks {
-            if checks::run(check, &source.fresh(), 0) != Verdict::Passed {
-                return match Some(stage) == own {
-                    true => Fate::ByItsStage(check.name),
-                    false => Fate::ByAnotherStage(check.name),
-                };
-            }
-        }
-    }
-    match scenes.first_difference(&*source.fresh(), expected) {
-        Some(scene) => Fate::ByPicture(scene),
-        None => Fate::Survived,
-    }
+    let by_picture =
+        || scenes.first_difference(&Door(Worker::hasty(worker.to_owned())), expected).map(Fate::ByPicture);
+    let by_check = || {
+        let (first, rest): (Vec<_>, Vec<_>) = STAGES.iter().partition(|(stage, _)| Some(*stage) == own);
+        let checks = first.into_iter().chain(rest).flat_map(|(_, checks)| checks.iter());
+        let source = Source::Worker(worker.to_owned());
+        let failed = |check: &&Check| checks::run(check, &source.fresh(), 0) != Verdict::Passed;
+        checks.into_iter().find(|check| failed(check)).map(|check| match Some(check.stage) == own {
+            true => Fate::ByItsStage(check.name.into()),
+            false => Fate::ByAnotherStage(check.name.into()),
+        })
+    };
+    let noticed = if own.is_some() { by_check().or_else(by_picture) } else { by_picture().or_else(by_check) };
+    noticed.unwrap_or(Fate::Survived)
 }
 
 fn report(tried: &[(&Mutant, Fate)]) {
