@@ -1,18 +1,25 @@
 //! All scenes of the kit as small pictures, with what they cost: what a change to the way from scene to frame must not
 //! touch unnoticed.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, TracedRay, View, mishap};
-use raykata::scene::{Scene, load};
+use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
+use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TriangleMethod, load};
+use raykata::world::World;
+use sha2::{Digest, Sha256};
+use solutions::stage7_effects;
+use std::fmt;
 use std::path::Path;
 
 /// Width and height: small, because hundreds of kits are asked for them.
 const SIZE: (u32, u32) = (24, 16);
 
-/// Scenes of more triangles than this take longer to build than all others together.
-const MOST_TRIANGLES: usize = 20_000;
+/// Scenes of more primitives take longer to build, without optimisation, than all others together.
+const MOST_PRIMITIVES: usize = 4_000;
+
+/// A scene that uses most of what there is, in which every knob is turned once.
+const TURNED: &str = "effects";
 
 /// The scenes, each with its name.
 pub struct Scenes(Vec<(String, Scene)>);
@@ -24,6 +31,10 @@ pub struct Shown {
     pub scene: String,
     /// The pixels, bit by bit, or what went wrong.
     pub pixels: Result<Vec<[u32; 3]>, String>,
+    /// The same for the picture of normals.
+    pub normals: Option<Vec<[u32; 3]>>,
+    /// What is said about the frame.
+    pub told: Option<String>,
     /// What it cost.
     pub counts: Counts,
     /// The rays behind two pixels.
@@ -31,7 +42,7 @@ pub struct Shown {
 }
 
 impl Scenes {
-    /// Reads the scenes of the kit at `root`, smallest samples first.
+    /// Reads the scenes of the kit at `root`, those of the fewest primitives first.
     pub fn read(root: &Path) -> Result<Scenes> {
         let mut files: Vec<_> = std::fs::read_dir(root.join("scenes"))?
             .filter_map(|entry| Some(entry.ok()?.path()))
@@ -41,14 +52,19 @@ impl Scenes {
         let mut scenes = Vec::new();
         for file in files {
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let mut scene = load::load(&file).map_err(|error| anyhow::anyhow!("{error}"))?;
-            if scene.meshes.iter().map(|mesh| mesh.mesh.triangles.len()).sum::<usize>() > MOST_TRIANGLES {
-                continue;
-            }
+            let mut scene = load::load(&file).map_err(|error| anyhow!("{error}"))?;
             (scene.film.width, scene.film.height) = SIZE;
             scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.min(4);
-            scenes.push((name, scene));
+            let primitives = World::new(&scene, &stage7_effects::effects(&scene), None).primitives.len();
+            if primitives <= MOST_PRIMITIVES {
+                scenes.push((primitives, name, scene));
+            }
         }
+        scenes.sort_by_key(|(primitives, ..)| *primitives);
+        let mut scenes: Vec<(String, Scene)> =
+            scenes.into_iter().map(|(_, name, scene)| (name, scene)).collect();
+        let turned = scenes.iter().find(|(name, _)| name == TURNED).map(|(_, scene)| scene.clone());
+        scenes.extend(turned.iter().flat_map(turn_each_knob));
         scenes.first().context("the kit has no scenes")?;
         Ok(Scenes(scenes))
     }
@@ -66,17 +82,80 @@ impl Scenes {
     }
 }
 
+/// The scene with one setting changed at a time.
+fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
+    let with = |name: &str, change: &dyn Fn(&mut Quality)| {
+        let mut scene = scene.clone();
+        change(&mut scene.quality);
+        (format!("{TURNED}, {name}"), scene)
+    };
+    let mut turned = vec![
+        with("brute force", &|quality| quality.accelerator = Accelerator::BruteForce),
+        with("leaves of 1", &|quality| quality.leaf_size = 1),
+        with("depth 0", &|quality| quality.max_depth = 0),
+        with("depth 1", &|quality| quality.max_depth = 1),
+        with("large contributions", &|quality| quality.min_contribution = 0.3),
+        with("lamps from the middle", &|quality| quality.light_samples = 0),
+        with("three samples a lamp", &|quality| quality.light_samples = 3),
+        with("three rays of gloss", &|quality| quality.gloss_samples = 3),
+    ];
+    turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
+    let methods = [TriangleMethod::Cramer, TriangleMethod::Gram];
+    turned.extend(
+        methods.map(|method| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
+    );
+    let samplers = [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian];
+    turned
+        .extend(samplers.map(|sampler| with(&format!("{sampler:?}"), &|quality| quality.sampler = sampler)));
+    turned
+}
+
 fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads: 1, count: true };
+    let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
+    let normals = mishap::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
     let frame = mishap::catch(|| kit.render(&job, &Unwatched));
+    let told = frame.as_ref().ok().and_then(Option::as_ref).map(|frame| {
+        format!("{} primitives, hierarchy {:?}, {}", frame.primitives, frame.hierarchy, frame.notes.join(" "))
+    });
     let counts =
         frame.as_ref().ok().and_then(Option::as_ref).map_or_else(Counts::default, |frame| frame.counts);
     let pixels = match frame {
-        Ok(Some(frame)) => Ok(frame.film.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect()),
+        Ok(Some(frame)) => Ok(bits(&frame)),
         Ok(None) => Err("cancelled".into()),
         Err(mishap) => Err(mishap.to_string()),
     };
     let rays = [(SIZE.0 / 2, SIZE.1 / 2), (5, 12)];
     let rays = rays.iter().flat_map(|&(x, y)| mishap::catch(|| kit.trace(&job, x, y)).unwrap_or_default());
-    Shown { scene: name.into(), pixels, counts, rays: rays.collect() }
+    Shown { scene: name.into(), pixels, normals, told, counts, rays: rays.collect() }
+}
+
+impl fmt::Display for Shown {
+    /// One line: the mean colour, what it cost, and a hash of everything.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let pixels = self.pixels.as_deref().unwrap_or_default();
+        let mean = |channel: usize| {
+            let sum: f64 = pixels.iter().map(|pixel| f64::from(f32::from_bits(pixel[channel]))).sum();
+            sum / pixels.len().max(1) as f64
+        };
+        let Counts { hits, box_tests, primitive_tests, .. } = self.counts;
+        let hash = Sha256::digest(format!("{self:?}"));
+        write!(
+            f,
+            "{:<36} {:.3} {:.3} {:.3}  {:>6} rays {hits:>6} hits {box_tests:>7} boxes {primitive_tests:>7} primitives  {:02x}{:02x}{:02x}{:02x}",
+            self.scene,
+            mean(0),
+            mean(1),
+            mean(2),
+            self.counts.rays(),
+            hash[0],
+            hash[1],
+            hash[2],
+            hash[3]
+        )
+    }
+}
+
+fn bits(frame: &Rendering) -> Vec<[u32; 3]> {
+    frame.film.pixels.iter().map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
 }

@@ -2,6 +2,7 @@
 //! that looks for a leak in the reference.
 
 pub mod agreement;
+mod leak_table;
 mod leaving;
 mod long;
 pub mod traversal;
@@ -12,8 +13,6 @@ use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
 use checks::gauntlet::distributions::DISTRIBUTIONS;
-use checks::gauntlet::leaks::{self, Aim};
-use checks::gauntlet::meshes::closed;
 use checks::gauntlet::methods::METHODS;
 use checks::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
 use clap::Args;
@@ -23,9 +22,6 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use std::hint::black_box;
 use std::path::PathBuf;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 /// How long, and whose code.
 #[derive(Args)]
@@ -135,7 +131,7 @@ fn tables(options: &Options) -> Result<bool> {
         println!("  {:<9} {}", distribution.name, distribution.what);
     }
     println!();
-    leak_table(options);
+    leak_table::table(&rows, options.seed, options.inputs);
     println!();
     Ok(agreement_table(options))
 }
@@ -164,38 +160,6 @@ fn agreement_table(options: &Options) -> bool {
          wrong: not among the triangles that are exactly met first, or not what asking all triangles finds."
     );
     all.iter().all(|one| one.mismatches == 0)
-}
-
-/// One method a thread at a time.
-fn leak_table(options: &Options) {
-    let meshes = closed();
-    let next = AtomicUsize::new(0);
-    let counted = Mutex::new(vec![String::new(); METHODS.len()]);
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(method) = METHODS.get(index) else { break };
-            let count = |mesh| {
-                let [edges, vertices] =
-                    Aim::ALL.map(|aim| leaks::count(mesh, aim, options.seed, options.inputs, method.hit));
-                format!("{:>15}", format!("{edges}/{vertices}"))
-            };
-            let line: String = meshes.iter().map(count).collect();
-            counted.lock().unwrap_or_else(|broken| broken.into_inner())[index] = line;
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(work);
-        }
-    });
-    println!("leaks of {} rays at edges / at vertices, from inside closed meshes", options.inputs);
-    let heads: String = meshes.iter().map(|mesh| format!("{:>15}", mesh.name)).collect();
-    println!("{:<36}{heads}", "");
-    let counted = counted.into_inner().unwrap_or_else(|broken| broken.into_inner());
-    for (method, line) in METHODS.iter().zip(counted) {
-        println!("{:<36}{line}", method.name);
-    }
 }
 
 fn print_table(

@@ -133,23 +133,30 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
-/// Asks whoever is likely to notice first: for an exercise the checks of its stage; for the rest of the solutions, which
-/// makes frames of them, the pictures.
+/// Asks those who can notice: for an exercise the checks of its stage, then pictures, then the other stages; for what
+/// connects exercises with the door the checks, then pictures; and for what makes frames of them, which no check of a
+/// stage calls, pictures.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
-    let by_picture =
-        || scenes.first_difference(&Door(Worker::hasty(worker.to_owned())), expected).map(Fate::ByPicture);
-    let by_check = || {
-        let (first, rest): (Vec<_>, Vec<_>) = STAGES.iter().partition(|(stage, _)| Some(*stage) == own);
-        let checks = first.into_iter().chain(rest).flat_map(|(_, checks)| checks.iter());
-        let source = Source::Worker(worker.to_owned());
+    let source = Source::Worker(worker.to_owned());
+    let by_checks = |wanted: &dyn Fn(u8) -> bool| {
+        let mut checks =
+            STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());
         let failed = |check: &&Check| checks::run(check, &source.fresh(), 0) != Verdict::Passed;
-        checks.into_iter().find(|check| failed(check)).map(|check| match Some(check.stage) == own {
+        checks.find(failed).map(|check| match Some(check.stage) == own {
             true => Fate::ByItsStage(check.name.into()),
             false => Fate::ByAnotherStage(check.name.into()),
         })
     };
-    let noticed = if own.is_some() { by_check().or_else(by_picture) } else { by_picture().or_else(by_check) };
+    let by_picture =
+        || scenes.first_difference(&Door(Worker::hasty(worker.to_owned())), expected).map(Fate::ByPicture);
+    let noticed = match own {
+        Some(own) => {
+            by_checks(&|stage| stage == own).or_else(by_picture).or_else(|| by_checks(&|stage| stage != own))
+        }
+        None if mutant.file.ends_with("/glue.rs") => by_checks(&|_| true).or_else(by_picture),
+        None => by_picture(),
+    };
     noticed.unwrap_or(Fate::Survived)
 }
 

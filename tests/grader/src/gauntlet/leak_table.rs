@@ -1,0 +1,69 @@
+//! Leaks of closed meshes: of every method, and of the functions of the kit.
+
+use super::{Answers, Input, Row};
+use checks::gauntlet::leaks::{self, Aim, aimed};
+use checks::gauntlet::meshes::{Closed, closed};
+use checks::gauntlet::methods::METHODS;
+use checks::splitmix::Random;
+use raykata::ray::Ray;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+/// One method a thread at a time, and then what the kit has, row by row.
+pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) {
+    let meshes = closed();
+    let next = AtomicUsize::new(0);
+    let counted = Mutex::new(vec![String::new(); METHODS.len()]);
+    let work = || {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(method) = METHODS.get(index) else { break };
+            let line = line(&meshes, |mesh, aim| leaks::count(mesh, aim, seed, rays, method.hit));
+            counted.lock().unwrap_or_else(|broken| broken.into_inner())[index] = line;
+        }
+    };
+    thread::scope(|scope| {
+        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(work);
+        }
+    });
+    println!("leaks of {rays} rays at edges / at vertices, from inside closed meshes");
+    let heads: String = meshes.iter().map(|mesh| format!("{:>15}", mesh.name)).collect();
+    println!("{:<36}{heads}", "");
+    let counted = counted.into_inner().unwrap_or_else(|broken| broken.into_inner());
+    for (method, line) in METHODS.iter().zip(counted) {
+        println!("{:<36}{line}", method.name);
+    }
+    for row in &rows[METHODS.len()..] {
+        let answer = &row.answer;
+        println!("{:<36}{}", row.name, line(&meshes, |mesh, aim| in_batches(mesh, aim, seed, rays, answer)));
+    }
+}
+
+fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> String {
+    let cell = |mesh: &Closed| {
+        let [edges, vertices] = Aim::ALL.map(|aim| count(mesh, aim));
+        format!("{:>15}", format!("{edges}/{vertices}"))
+    };
+    meshes.iter().map(cell).collect()
+}
+
+/// The same count for somebody whom it is dear to ask: the triangles around the vertices of all rays in one batch, and all
+/// triangles only for rays that hit none of these.
+fn in_batches(mesh: &Closed, aim: Aim, seed: u64, rays: u64, answer: impl Fn(&[Input]) -> Answers) -> u64 {
+    let mut random = Random::new(seed, aim as u64);
+    let rays: Vec<(Ray, u32)> = (0..rays).map(|_| aimed(mesh, aim, &mut random)).collect();
+    let fan = |vertex: u32| &mesh.fans[vertex as usize];
+    let near: Vec<Input> = rays
+        .iter()
+        .flat_map(|&(ray, vertex)| fan(vertex).iter().map(move |&index| (ray, mesh.triangle(index))))
+        .collect();
+    let mut answers = answer(&near).into_iter();
+    let leaks = |&(ray, vertex): &(Ray, u32)| {
+        let hit = answers.by_ref().take(fan(vertex).len()).filter(Option::is_some).count() > 0;
+        let all = || -> Vec<Input> { mesh.all().into_iter().map(|triangle| (ray, triangle)).collect() };
+        !hit && !answer(&all()).iter().any(Option::is_some)
+    };
+    rays.iter().map(leaks).filter(|&leaks| leaks).count() as u64
+}
