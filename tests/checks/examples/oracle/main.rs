@@ -241,9 +241,13 @@ fn measure(seed: u64) {
         rate("triangle, weights", &all, |c| triangle::weights(&c.ray, &c.triangle));
         rate("box, verdict", &all, |c| aabb::verdict(&c.ray, &Aabb::new(c.cuboid.min, c.cuboid.max)));
         rate("plane, verdict and t", &all, |c| meet(&c.ray, Body::Plane(c.plane)));
+        rate("disk, verdict", &all, |c| verdict(&c.ray, Body::Disk(c.disk)));
         rate("disk, verdict and t", &all, |c| meet(&c.ray, Body::Disk(c.disk)));
+        rate("sphere, verdict", &all, |c| verdict(&c.ray, Body::Sphere(c.sphere)));
         rate("sphere, verdict and t", &all, |c| meet(&c.ray, Body::Sphere(c.sphere)));
+        rate("cylinder, verdict", &all, |c| verdict(&c.ray, Body::Cylinder(c.cylinder)));
         rate("cylinder, verdict and t", &all, |c| meet(&c.ray, Body::Cylinder(c.cylinder)));
+        rate("cone, verdict", &all, |c| verdict(&c.ray, Body::Cone(c.cone)));
         rate("cone, verdict and t", &all, |c| meet(&c.ray, Body::Cone(c.cone)));
     }
 }

@@ -49,18 +49,21 @@ pub(super) fn cylinder<R: Ring>(ray: &Ray, cylinder: &Cylinder, frame: &Frame) -
     let d = frame.dir::<R>(ray.dir);
     let r = R::input(cylinder.radius, frame.place);
     let (square, full) = (r * r, dot(w, w));
-    let slab = slab(dot(d, w), dot(f, w), full)?;
-
-    let (dw, fw) = (cross(d, w), cross(f, w));
-    let (a, c) = (dot(dw, dw), dot(fw, fw) - square * full);
-    if a.sign()? == 0 {
-        // Along the axis: inside for all t or for none.
-        return Some(if c.sign()? > 0 { Span::Empty } else { joined(slab, None, None) });
-    }
+    let dw = cross(d, w);
+    let a = dot(dw, dw);
+    // Most lines miss, and most that do pass the endless surface: that is known first.
     let apart = dot(w, cross(d, f));
     let disc = full * (square * a - apart * apart);
-    if disc.sign()? < 0 {
+    let along_axis = a.sign()? == 0;
+    if !along_axis && disc.sign()? < 0 {
         return Some(Span::Empty);
+    }
+    let slab = slab(dot(d, w), dot(f, w), full)?;
+    let fw = cross(f, w);
+    let c = dot(fw, fw) - square * full;
+    if along_axis {
+        // Inside for all t or for none.
+        return Some(if c.sign()? > 0 { Span::Empty } else { joined(slab, None, None) });
     }
     let p = -dot(dw, fw);
     let [near, far] = [-1, 1].map(|sign| Some(Root { p, a, surd: Some(Surd { sign, disc, c }) }));
@@ -88,14 +91,22 @@ pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Spa
     let d = frame.dir::<R>(ray.dir);
     let r = R::input(cone.radius, frame.place);
     let (square, full) = (r * r, dot(w, w));
-    let (slope, height) = (dot(d, w), dot(q, w));
-    let slab = slab(slope, height, full)?;
-
-    let (dw, qw) = (cross(d, w), cross(q, w));
+    let slope = dot(d, w);
+    let dw = cross(d, w);
     let a = full * dot(dw, dw) - square * slope * slope;
+    // As for the cylinder: a line that misses both nappes is told first.
+    let n = cross(d, q);
+    let (across, apart) = (cross(w, n), dot(w, n));
+    let disc = full * full * (square * dot(across, across) - full * apart * apart);
+    let a_sign = a.sign()?;
+    if a_sign != 0 && disc.sign()? < 0 {
+        return Some(Span::Empty);
+    }
+    let height = dot(q, w);
+    let slab = slab(slope, height, full)?;
+    let qw = cross(q, w);
     let p = square * slope * height - full * dot(dw, qw);
     let c = full * dot(qw, qw) - square * height * height;
-    let a_sign = a.sign()?;
     if a_sign == 0 {
         // Along a generator the square is gone: -2 p t + c <= 0.
         return Some(match p.sign()? {
@@ -106,12 +117,6 @@ pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Spa
                 if sign > 0 { joined(slab, crossing, None) } else { joined(slab, None, crossing) }
             }
         });
-    }
-    let n = cross(d, q);
-    let (across, apart) = (cross(w, n), dot(w, n));
-    let disc = full * full * (square * dot(across, across) - full * apart * apart);
-    if disc.sign()? < 0 {
-        return Some(Span::Empty);
     }
     if a_sign > 0 {
         let [near, far] = [-1, 1].map(|sign| Some(Root { p, a, surd: Some(Surd { sign, disc, c }) }));
