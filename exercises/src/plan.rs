@@ -56,16 +56,30 @@ impl Plan {
             view: choose_view(job.view, &mut notes),
             averages_normals: written(|| stage2_triangles::vertex_normals(&Mesh::default())),
             smooth: written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X)),
-            positions: written(|| stage6_distribution::pixel_position(Sampler::Random, &ANYWHERE)),
+            positions: written(|| stage6_distribution::pixel_position(scene.quality.sampler, &ANYWHERE)),
             weights: written(|| stage6_distribution::develop(&[]))
                 && written(|| stage6_distribution::gaussian_weight(Vec2::ZERO)),
             effects,
             notes,
         };
+        plan.leave_out_normals(scene);
         plan.leave_out_mirrors(scene);
         plan.leave_out_distribution(scene);
         plan.leave_out_images(scene);
         plan
+    }
+
+    fn leave_out_normals(&mut self, scene: &Scene) {
+        let mut smooth = scene.meshes.iter().filter(|mesh| mesh.smooth);
+        let averaged = smooth.clone().any(|mesh| mesh.mesh.normals.is_empty());
+        self.note_if(
+            self.smooth && !self.averages_normals && averaged,
+            "smooth meshes whose files have no normals are flat: `vertex_normals` of stage 2 is not written yet",
+        );
+        self.note_if(
+            !self.smooth && smooth.next().is_some(),
+            "smooth meshes are flat: `shading_normal` of stage 4 is not written yet",
+        );
     }
 
     fn leave_out_mirrors(&mut self, scene: &Scene) {

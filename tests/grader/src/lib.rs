@@ -4,6 +4,7 @@ pub mod cases;
 pub mod check;
 pub mod corpus;
 pub mod explain;
+pub mod gaps;
 pub mod gauntlet;
 pub mod generate;
 pub mod kits;

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{cases, check, corpus, explain, gauntlet, generate, mutants, render, strip, sync, tree};
+use grader::{cases, check, corpus, explain, gaps, gauntlet, generate, mutants, render, strip, sync, tree};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -66,6 +66,8 @@ enum Command {
     },
     /// Try the checks on known mistakes and on other right solutions (for authors).
     Corpus(corpus::Options),
+    /// Show what pictures lack while a function is not written, for each function (for authors).
+    Gaps(gaps::Options),
     /// Try the checks on changes that cargo-mutants makes to the solutions (for authors).
     Mutants(mutants::Options),
     /// Make the meshes and images of the scenes (for authors).
@@ -106,6 +108,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
         Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
+        Some(Command::Gaps(options)) => return gaps::run(&options),
         Some(Command::Mutants(options)) => return mutants::run(&root()?, &options),
         Some(Command::Generate { scenes }) => generate::write(&scenes)?,
     }

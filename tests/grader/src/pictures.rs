@@ -33,8 +33,10 @@ pub struct Shown {
     pub pixels: Result<Vec<[u32; 3]>, String>,
     /// The same for the picture of normals.
     pub normals: Option<Vec<[u32; 3]>>,
-    /// What is said about the frame.
-    pub told: Option<String>,
+    /// Primitives, and nodes and depth of the hierarchy.
+    pub made_of: Option<(u64, Option<(u64, u64)>)>,
+    /// What the picture lacks.
+    pub notes: Vec<String>,
     /// What it cost.
     pub counts: Counts,
     /// The rays behind two pixels.
@@ -67,6 +69,14 @@ impl Scenes {
         scenes.extend(turned.iter().flat_map(turn_each_knob));
         scenes.first().context("the kit has no scenes")?;
         Ok(Scenes(scenes))
+    }
+
+    /// Those that between them ask for every function of the exercises.
+    pub fn of_gaps(mut self) -> Scenes {
+        let asked =
+            ["stage2", "effects", "effects, Gaussian", "effects, Random", "effects, lamps from the middle"];
+        self.0.retain(|(name, _)| asked.contains(&name.as_str()));
+        self
     }
 
     /// What a kit shows of them all.
@@ -115,9 +125,10 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
     let normals = mishap::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
     let frame = mishap::catch(|| kit.render(&job, &Unwatched));
-    let told = frame.as_ref().ok().and_then(Option::as_ref).map(|frame| {
-        format!("{} primitives, hierarchy {:?}, {}", frame.primitives, frame.hierarchy, frame.notes.join(" "))
-    });
+    let made_of =
+        frame.as_ref().ok().and_then(Option::as_ref).map(|frame| (frame.primitives, frame.hierarchy));
+    let notes =
+        frame.as_ref().ok().and_then(Option::as_ref).map_or_else(Vec::new, |frame| frame.notes.clone());
     let counts =
         frame.as_ref().ok().and_then(Option::as_ref).map_or_else(Counts::default, |frame| frame.counts);
     let pixels = match frame {
@@ -127,7 +138,15 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     };
     let rays = [(SIZE.0 / 2, SIZE.1 / 2), (5, 12)];
     let rays = rays.iter().flat_map(|&(x, y)| mishap::catch(|| kit.trace(&job, x, y)).unwrap_or_default());
-    Shown { scene: name.into(), pixels, normals, told, counts, rays: rays.collect() }
+    Shown { scene: name.into(), pixels, normals, made_of, notes, counts, rays: rays.collect() }
+}
+
+impl Shown {
+    /// Eight hexadecimal digits of a hash of everything.
+    pub fn hash(&self) -> String {
+        let hash = Sha256::digest(format!("{self:?}"));
+        hash[..4].iter().map(|byte| format!("{byte:02x}")).collect()
+    }
 }
 
 impl fmt::Display for Shown {
@@ -139,19 +158,15 @@ impl fmt::Display for Shown {
             sum / pixels.len().max(1) as f64
         };
         let Counts { hits, box_tests, primitive_tests, .. } = self.counts;
-        let hash = Sha256::digest(format!("{self:?}"));
         write!(
             f,
-            "{:<36} {:.3} {:.3} {:.3}  {:>6} rays {hits:>6} hits {box_tests:>7} boxes {primitive_tests:>7} primitives  {:02x}{:02x}{:02x}{:02x}",
+            "{:<36} {:.3} {:.3} {:.3}  {:>6} rays {hits:>6} hits {box_tests:>7} boxes {primitive_tests:>7} primitives  {}",
             self.scene,
             mean(0),
             mean(1),
             mean(2),
             self.counts.rays(),
-            hash[0],
-            hash[1],
-            hash[2],
-            hash[3]
+            self.hash()
         )
     }
 }

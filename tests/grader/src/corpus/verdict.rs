@@ -137,7 +137,7 @@ pub fn failure(verdict: Verdict) -> Option<String> {
 }
 
 /// `file.rs:12` as `file.rs`: the line of a panic moves with every edit above it, and what is kept would go stale.
-fn without_lines(message: &str) -> String {
+pub fn without_lines(message: &str) -> String {
     let mut parts = message.split(".rs:");
     let mut text = parts.next().unwrap_or_default().to_owned();
     for part in parts {

@@ -96,18 +96,29 @@ impl Workshop {
 
     /// Builds the solutions with one difference of one file.
     pub fn build(&self, file: &str, diff: &str) -> Result<Built> {
+        match entry::apply(file, diff, &self.original(file)?) {
+            Ok(changed) => self.build_with(&[(file, &changed)]),
+            Err(error) => Ok(Built::DoesNotApply(error.to_string())),
+        }
+    }
+
+    /// The text of a file of the kit.
+    pub fn original(&self, file: &str) -> Result<String> {
+        read(&self.root.join(file))
+    }
+
+    /// Builds the solutions with other texts in place of some files.
+    pub fn build_with(&self, changes: &[(&str, &str)]) -> Result<Built> {
         self.reset()?;
-        let original = read(&self.root.join(file))?;
-        let changed = match entry::apply(file, diff, &original) {
-            Ok(changed) => changed,
-            Err(error) => return Ok(Built::DoesNotApply(error.to_string())),
-        };
-        write_if_new(&self.folder.join(file), &changed)?;
+        for (file, text) in changes {
+            write_if_new(&self.folder.join(file), text)?;
+        }
         let (fresh, built) = self.cargo()?;
         if fresh && matches!(built, Built::Worker(_)) {
             bail!(
-                "cargo found nothing new in {file}, so the answers would be those of another entry; remove {} and run \
+                "cargo found nothing new in {:?}, so the answers would be those of another entry; remove {} and run \
                  this again",
+                changes.iter().map(|(file, _)| *file).collect::<Vec<_>>(),
                 self.folder.display()
             );
         }

@@ -1,0 +1,177 @@
+//! `raykata gaps`: what a picture lacks while one function of an exercise is not written yet, for each function.
+//!
+//! The reference must make a picture of whatever is written, and say what is left out and why. With everything written
+//! it never has to, so each function in turn is made a gap.
+
+use crate::corpus::verdict::without_lines;
+use crate::corpus::workshop::{Built, Workshop};
+use crate::kits::root;
+use crate::pictures::{Scenes, Shown};
+use crate::worker::Worker;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use raykata::kit::Door;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Whether to compare or to write.
+#[derive(Args)]
+pub struct Options {
+    /// Compare with tests/corpus/gaps.txt.
+    #[arg(long)]
+    check: bool,
+    /// Write tests/corpus/gaps.txt.
+    #[arg(long, conflicts_with = "check")]
+    bless: bool,
+}
+
+/// Where what each picture lacks is kept.
+const RECORD: &str = "tests/corpus/gaps.txt";
+
+/// A function that is not written, and its file without it.
+pub struct Gap {
+    /// The file, from the root of the kit.
+    pub file: String,
+    /// The name of the function.
+    pub function: String,
+    /// The whole text of the file.
+    pub text: String,
+}
+
+/// Shows what pictures lack; whether it is what is kept.
+pub fn run(options: &Options) -> Result<bool> {
+    let root = root()?;
+    let gaps = all(&root)?;
+    let scenes = Scenes::read(&root)?.of_gaps();
+    let whole = scenes.shown_by(&solutions::Kit);
+    let jobs = std::thread::available_parallelism().map_or(1, usize::from);
+    let workshops = Workshop::open_all(&root, jobs)?;
+    let (next, told) = (AtomicUsize::new(0), Mutex::new(vec![String::new(); gaps.len()]));
+    let work = |workshop: &Workshop| -> Result<()> {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(gap) = gaps.get(index) else { return Ok(()) };
+            let text = lacks(workshop, &[(&gap.file, &gap.text)], &scenes, &whole)?;
+            told.lock().unwrap_or_else(|broken| broken.into_inner())[index] = text;
+        }
+    };
+    std::thread::scope(|scope| {
+        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
+        running.into_iter().try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see above")))
+    })?;
+    let told = told.into_inner().unwrap_or_default();
+    let text: String = gaps
+        .iter()
+        .zip(told)
+        .map(|(gap, told)| {
+            format!("{} without {}\n{told}\n", gap.file.trim_start_matches("solutions/src/"), gap.function)
+        })
+        .collect();
+    let file = root.join(RECORD);
+    if options.bless {
+        std::fs::write(&file, &text).with_context(|| RECORD.to_owned())?;
+    }
+    let kept = std::fs::read_to_string(&file).unwrap_or_default();
+    if !options.check || kept == text {
+        println!("{text}{} functions, each left out in turn", gaps.len());
+        return Ok(true);
+    }
+    for (now, before) in text.lines().zip(kept.lines()).filter(|(now, before)| now != before) {
+        println!("now     {now}\nbefore  {before}\n");
+    }
+    println!("{RECORD} differs: look at it, then `cargo run -- gaps --bless`");
+    Ok(false)
+}
+
+/// In what the pictures of the solutions with these changes differ from those of the whole.
+pub fn lacks(
+    workshop: &Workshop,
+    changes: &[(&str, &str)],
+    scenes: &Scenes,
+    whole: &[Shown],
+) -> Result<String> {
+    let worker = match workshop.build_with(changes)? {
+        Built::Worker(worker) => worker,
+        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => return Ok(format!("  {error}\n")),
+    };
+    // What is said, the scenes of which it is said, and hashes of what is seen there.
+    let mut said: Vec<(String, Vec<String>)> = Vec::new();
+    for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker))).iter().zip(whole) {
+        let (words, scene) = match &one.pixels {
+            _ if one == whole => continue,
+            Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
+            Err(mishap) => (without_lines(mishap).replace("\n ", ":"), one.scene.clone()),
+        };
+        match said.iter_mut().find(|(known, _)| *known == words) {
+            Some((_, scenes)) => scenes.push(scene),
+            None => said.push((words, vec![scene])),
+        }
+    }
+    if said.is_empty() {
+        return Ok("  no picture lacks anything\n".into());
+    }
+    let line = |(words, scenes): &(String, Vec<String>)| {
+        format!(
+            "  {}\n    {}\n",
+            if words.is_empty() { "(nothing is said)" } else { words },
+            scenes.join(", ")
+        )
+    };
+    Ok(said.iter().map(line).collect())
+}
+
+/// Every function of the exercises, as a gap.
+pub fn all(root: &Path) -> Result<Vec<Gap>> {
+    let mut files: Vec<_> = std::fs::read_dir(root.join("solutions/src"))?
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| name.starts_with("stage"))
+        .collect();
+    files.sort();
+    let mut gaps = Vec::new();
+    for name in files {
+        let file = format!("solutions/src/{name}");
+        let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
+        gaps.extend(in_file(&file, &text));
+    }
+    Ok(gaps)
+}
+
+fn in_file(file: &str, text: &str) -> Vec<Gap> {
+    let lines: Vec<&str> = text.lines().collect();
+    let mut gaps = Vec::new();
+    let mut function = "";
+    let mut begun = None;
+    for (number, line) in lines.iter().enumerate() {
+        let mark = line.trim_start();
+        if let Some(rest) = line.strip_prefix("pub fn ") {
+            function = rest.split(['(', '<']).next().unwrap_or_default();
+        } else if mark == "// <solution>" {
+            begun = Some(number);
+        } else if let (Some(stub), Some(begin)) = (mark.strip_prefix("// <stub> "), begun) {
+            let end = lines[number..].iter().position(|line| line.trim_start() == "// </solution>");
+            let after = number + end.unwrap_or(0) + 1;
+            let text = [&lines[..begin], &[stub], &lines[after..]].concat().join("\n") + "\n";
+            gaps.push(Gap { file: file.into(), function: function.into(), text });
+            begun = None;
+        } else if mark == "// </solution>" {
+            begun = None;
+        }
+    }
+    gaps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_file;
+
+    #[test]
+    fn each_function_is_left_out_by_itself() {
+        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // </solution>\n}\n\
+                    // <solution>\nfn help() {}\n// </solution>\n";
+        let gaps = in_file("f", text);
+        assert_eq!(gaps.len(), 1);
+        assert_eq!(gaps[0].function, "one");
+        assert!(gaps[0].text.starts_with("pub fn one(x: f32) -> f32 {\ntodo!(\"x\")\n}\n// <solution>"));
+    }
+}
