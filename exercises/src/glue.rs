@@ -81,7 +81,7 @@ impl Triangles for Kit {
     fn brute_force(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
         each(queries, |q| {
             let n_primitives = q.table.primitives.len() as u32;
-            search(q, |probe| stage2_triangles::brute_force(n_primitives, probe, &q.ray)).1
+            search(q, |probe| stage2_triangles::brute_force(n_primitives, probe, &q.ray))
         })
     }
 }
@@ -120,10 +120,10 @@ impl Hierarchies for Kit {
         each(queries, |q| stage3_bvh::build(&q.bounds, q.split, q.leaf_size))
     }
     fn closest_hit_both(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
-        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit_both(&q.bvh, probe, &q.ray)).1)
+        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit_both(&q.bvh, probe, &q.ray)))
     }
     fn closest_hit(&self, queries: &[SearchQuery]) -> Vec<SearchAnswer> {
-        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit(&q.bvh, probe, &q.ray)).1)
+        each(queries, |q| search(q, |probe| stage3_bvh::closest_hit(&q.bvh, probe, &q.ray)))
     }
     fn any_hit(&self, queries: &[SearchQuery]) -> Vec<(bool, SearchAnswer)> {
         each(queries, |q| {
@@ -132,19 +132,19 @@ impl Hierarchies for Kit {
                 found = stage3_bvh::any_hit(&q.bvh, probe, &q.ray);
                 None
             });
-            (found, SearchAnswer { hit: answer.0, ..answer.1 })
+            (found, answer)
         })
     }
 }
 
-/// Runs a search on a table; gives the last hit that it was told of, and its answer with what it asked.
+/// Runs a search on a table; gives its answer with what it asked.
 fn search(
     query: &SearchQuery,
     find: impl FnOnce(&mut TableProbe<'_>) -> Option<PrimitiveHit>,
-) -> (Option<PrimitiveHit>, SearchAnswer) {
+) -> SearchAnswer {
     let mut probe = TableProbe::new(query);
     let hit = find(&mut probe);
-    (probe.last_hit, SearchAnswer { hit, counts: probe.counts, tests_after_hit: probe.tests_after_hit })
+    SearchAnswer { hit, counts: probe.counts, tests_after_hit: probe.tests_after_hit }
 }
 
 impl Shading for Kit {

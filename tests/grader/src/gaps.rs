@@ -29,6 +29,9 @@ pub struct Options {
 /// Where what each picture lacks is kept.
 const RECORD: &str = "tests/corpus/gaps.txt";
 
+/// Said of a gap that no picture shows.
+const NOTHING: &str = "no picture lacks anything";
+
 /// A function that is not written, and its file without it.
 pub struct Gap {
     /// The file, from the root of the kit.
@@ -37,6 +40,12 @@ pub struct Gap {
     pub function: String,
     /// The whole text of the file.
     pub text: String,
+}
+
+impl Gap {
+    fn title(&self) -> String {
+        format!("{} without {}", self.file.trim_start_matches("solutions/src/"), self.function)
+    }
 }
 
 /// Shows what pictures lack; whether it is what is kept.
@@ -61,13 +70,8 @@ pub fn run(options: &Options) -> Result<bool> {
         running.into_iter().try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see above")))
     })?;
     let told = told.into_inner().unwrap_or_default();
-    let text: String = gaps
-        .iter()
-        .zip(told)
-        .map(|(gap, told)| {
-            format!("{} without {}\n{told}\n", gap.file.trim_start_matches("solutions/src/"), gap.function)
-        })
-        .collect();
+    let text: String =
+        gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
     let file = root.join(RECORD);
     if options.bless {
         std::fs::write(&file, &text).with_context(|| RECORD.to_owned())?;
@@ -109,7 +113,7 @@ pub fn lacks(
         }
     }
     if said.is_empty() {
-        return Ok("  no picture lacks anything\n".into());
+        return Ok(format!("  {NOTHING}\n"));
     }
     let line = |(words, scenes): &(String, Vec<String>)| {
         format!(
@@ -119,6 +123,18 @@ pub fn lacks(
         )
     };
     Ok(said.iter().map(line).collect())
+}
+
+/// Gaps that make another picture, as opposed to none, and what is kept of each in tests/corpus/gaps.txt.
+pub fn that_show(root: &Path) -> Result<Vec<(Gap, String)>> {
+    let kept = std::fs::read_to_string(root.join(RECORD)).with_context(|| RECORD.to_owned())?;
+    let kept_of = |gap: &Gap| {
+        let block = kept.split("\n\n").find(|block| block.lines().next() == Some(&gap.title()))?;
+        let told = block.split_once('\n')?.1;
+        (!told.contains(NOTHING) && !told.contains("not written yet: solutions/"))
+            .then(|| format!("{told}\n"))
+    };
+    Ok(all(root)?.into_iter().filter_map(|gap| kept_of(&gap).map(|told| (gap, told))).collect())
 }
 
 /// Every function of the exercises, as a gap.

@@ -176,6 +176,21 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
             ))),
         })
     })?;
+    // Exactly along the surface, or along the interpolated one, light adds nothing either.
+    let along = shadow(Vec3::ZERO, Vec3::Y, Vec3::X, 5.0, 1e-6);
+    let lean = vec3(-0.6, 0.8, 0.0);
+    let mut along_smooth = shadow(Vec3::ZERO, Vec3::Y, vec3(0.8, 0.6, 0.0), 5.0, 1e-6);
+    along_smooth.surface.shading_normal = lean;
+    let mut along_flat = along;
+    along_flat.surface.shading_normal = vec3(0.6, 0.8, 0.0);
+    for query in [along, along_smooth, along_flat] {
+        if trial.kit.shadow_ray(&[query])[0].is_some() {
+            return Err(Broken::told(query.call("shadow_ray"), "a ray", "None", "the definition")
+                .looks_like(Some(
+                    "the light shines exactly along the surface: its cosine is 0, so it adds nothing",
+                )));
+        }
+    }
     let lit = shadow(Vec3::ZERO, Vec3::Y, Vec3::Y, 5.0, 1e-6);
     let dark = ShadowQuery { light: LightSample { radiance: Vec3::ZERO, ..lit.light }, ..lit };
     match trial.kit.shadow_ray(&[dark])[0] {

@@ -53,13 +53,14 @@ fn judge(
         let expected = reference(query);
         // Near the critical angle the share rises with the root of the distance to it, and with it the rounding.
         let tolerance = 1e-5 + 4e-6 / behind(query).1.abs().sqrt().max(1e-3);
-        // Equal indices at cos θ = 0: 0/0, and any share is right.
+        // Equal indices at cos θ = 0: 0/0, and any share is right, but it is a number.
         let nothing = query.n1 == query.n2 && query.cos_theta == 0.0;
-        if nothing || (f64::from(yours) - expected).abs() <= tolerance {
+        if (nothing && (0.0..=1.0).contains(&yours)) || (f64::from(yours) - expected).abs() <= tolerance {
             return Ok(());
         }
         let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
         let diagnosis = match () {
+            () if nothing => "0 / 0 along a surface that bends nothing: any share is right, and NaN is none",
             () if yours.is_nan() => {
                 "NaN beyond the critical angle: all light is mirrored there, the share is 1"
             }

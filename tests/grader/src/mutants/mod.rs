@@ -10,7 +10,9 @@ mod journal;
 mod list;
 pub mod reviewed;
 
+use crate::corpus::entry;
 use crate::corpus::workshop::{Built, Workshop};
+use crate::gaps::{self, Gap};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
 use crate::worker::Worker;
@@ -54,6 +56,8 @@ enum Fate {
     ByAnotherStage(String),
     /// Every check passed, and the picture of this scene, or what it cost, is another one.
     ByPicture(String),
+    /// Pictures are the same, but not while this function is not written yet.
+    ByGap(String),
     /// Nobody noticed, and nobody can: it is reviewed.
     Equivalent,
     /// Nobody noticed.
@@ -102,6 +106,8 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let workshops = Workshop::open_all(root, jobs)?;
     let scenes = Scenes::read(root)?;
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
+    let (gaps, of_gaps) = (gaps::that_show(root)?, Scenes::read(root)?.of_gaps());
+    let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
     let bar = ProgressBar::new(mutants.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
         bar.set_style(style);
@@ -113,7 +119,12 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
             bar.set_message(mutant.file.clone());
             if lock().of(mutant).is_none() {
                 let fate = match workshop.build(&mutant.file, &mutant.diff)? {
-                    Built::Worker(worker) => judge(mutant, &worker, &scenes, &expected),
+                    Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                        Fate::Survived if mutant.file.ends_with("/plan.rs") => {
+                            judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                        }
+                        fate => fate,
+                    },
                     Built::DoesNotCompile(_) => Fate::DoesNotCompile,
                     Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
                 };
@@ -160,6 +171,24 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     noticed.unwrap_or(Fate::Survived)
 }
 
+/// What decides which parts of a picture are left out does nothing while every function is written: each that makes
+/// another picture is left out in turn.
+fn judge_by_gaps(
+    mutant: &Mutant,
+    workshop: &Workshop,
+    gaps: &[(Gap, String)],
+    (whole, scenes): &(Vec<Shown>, Scenes),
+) -> Result<Fate> {
+    let changed = entry::apply(&mutant.file, &mutant.diff, &workshop.original(&mutant.file)?)?;
+    for (gap, kept) in gaps {
+        let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
+        if gaps::lacks(workshop, &changes, scenes, whole)? != *kept {
+            return Ok(Fate::ByGap(gap.function.clone()));
+        }
+    }
+    Ok(Fate::Survived)
+}
+
 fn report(tried: &[(&Mutant, Fate)]) {
     let mut files: Vec<&str> = tried.iter().map(|(mutant, _)| mutant.file.as_str()).collect();
     files.dedup();
@@ -172,7 +201,7 @@ fn report(tried: &[(&Mutant, Fate)]) {
         };
         let own = count(|fate| matches!(fate, Fate::ByItsStage(_)));
         let others = count(|fate| matches!(fate, Fate::ByAnotherStage(_)));
-        let pictures = count(|fate| matches!(fate, Fate::ByPicture(_)));
+        let pictures = count(|fate| matches!(fate, Fate::ByPicture(_) | Fate::ByGap(_)));
         let survived = count(|fate| *fate == Fate::Survived);
         let noticed = own + others + pictures;
         println!(
