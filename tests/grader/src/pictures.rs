@@ -62,6 +62,8 @@ impl Scenes {
                 scenes.push((primitives, name, scene));
             }
         }
+        let corners = load::parse(&root.join("scenes/corners.toml"), include_str!("pictures.toml"));
+        scenes.push((MOST_PRIMITIVES, "corners".into(), corners.map_err(|error| anyhow!("{error}"))?));
         scenes.sort_by_key(|(primitives, ..)| *primitives);
         let mut scenes: Vec<(String, Scene)> =
             scenes.into_iter().map(|(_, name, scene)| (name, scene)).collect();
