@@ -2,6 +2,7 @@
 //! touch unnoticed.
 
 use anyhow::{Context, Result, anyhow};
+use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
@@ -75,8 +76,14 @@ impl Scenes {
 
     /// Those that between them ask for every function of the exercises.
     pub fn of_gaps(mut self) -> Scenes {
-        let asked =
-            ["stage2", "effects", "effects, Gaussian", "effects, Random", "effects, lamps from the middle"];
+        let asked = [
+            "stage2",
+            "effects",
+            "effects, Gaussian",
+            "effects, Random",
+            "effects, lamps from the middle",
+            "effects, no lens, all smooth",
+        ];
         self.0.retain(|(name, _)| asked.contains(&name.as_str()));
         self
     }
@@ -119,6 +126,11 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
     let samplers = [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian];
     turned
         .extend(samplers.map(|sampler| with(&format!("{sampler:?}"), &|quality| quality.sampler = sampler)));
+    // What is there, but does nothing: nobody may say that it is missing.
+    let mut idle = scene.clone();
+    idle.camera.lens = idle.camera.lens.map(|lens| Lens { aperture: 0.0, ..lens });
+    idle.materials.iter_mut().for_each(|material| material.roughness = 0.0);
+    turned.push((format!("{TURNED}, no lens, all smooth"), idle));
     turned
 }
 
