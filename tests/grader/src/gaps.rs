@@ -7,7 +7,7 @@ use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::root;
 use crate::pictures::{Scenes, Shown};
-use crate::worker::Worker;
+use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use raykata::kit::Door;
@@ -101,7 +101,7 @@ pub fn lacks(
     };
     // What is said, the scenes of which it is said, and hashes of what is seen there.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker))).iter().zip(whole) {
+    for (one, whole) in scenes.shown_by(&Door(Worker::new(worker, CALL_PATIENCE))).iter().zip(whole) {
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
             Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
