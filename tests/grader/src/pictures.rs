@@ -117,6 +117,9 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
         with("lamps from the middle", &|quality| quality.light_samples = 0),
         with("three samples a lamp", &|quality| quality.light_samples = 3),
         with("three rays of gloss", &|quality| quality.gloss_samples = 3),
+        with("one Gaussian sample", &|quality| {
+            (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
+        }),
     ];
     turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
     let methods = [TriangleMethod::Cramer, TriangleMethod::Gram];
