@@ -2,16 +2,12 @@
 //! out, and the picture says so: without stage 4 it shows normals, without stage 3 every ray tests every primitive,
 //! and without the search of stage 2 later shapes are painted over earlier ones, near or far.
 
-use crate::camera_rays::{Eye, blurred, from_area, geometry_at, outline, plane_at};
-use crate::plan::{Plan, Search};
-use crate::surfaces::{self, Hit, Looks, Place, meet_triangle, texture_coordinates};
-use crate::{
-    stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
-    stage7_effects,
-};
+use crate::camera_rays::{Eye, blurred, from_area, outline};
+use crate::finder::Finder;
+use crate::plan::Plan;
+use crate::surfaces::{self, Hit, Looks, Place, texture_coordinates};
+use crate::{stage2_triangles, stage4_shading, stage5_recursion, stage7_effects};
 use glam::{Vec3, uvec2};
-use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, CameraSample, FrameSettings, Watch};
@@ -22,8 +18,8 @@ use raykata::material::Material;
 use raykata::mesh::Mesh;
 use raykata::random::Points;
 use raykata::ray::Ray;
-use raykata::scene::{Quality, TriangleMethod};
-use raykata::world::{Geometry, Primitive, World, camera_for};
+use raykata::scene::Quality;
+use raykata::world::{World, camera_for};
 use std::borrow::Cow;
 use std::time::Instant;
 
@@ -37,11 +33,11 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
     Some(Rendering {
         film,
         counts,
-        primitives: (tracer.world.primitives.len() + tracer.world.planes.len()) as u64,
-        hierarchy: tracer.bvh.as_ref().map(|bvh| (bvh.nodes.len() as u64, bvh.depth() as u64)),
+        primitives: (tracer.finder.world.primitives.len() + tracer.finder.world.planes.len()) as u64,
+        hierarchy: tracer.finder.bvh.as_ref().map(|bvh| (bvh.nodes.len() as u64, bvh.depth() as u64)),
         build_seconds,
         render_seconds: started.elapsed().as_secs_f64(),
-        notes: [tracer.plan.notes, tracer.world.notes].concat(),
+        notes: [tracer.plan.notes, tracer.finder.world.notes].concat(),
     })
 }
 
@@ -63,8 +59,7 @@ struct Tracer<'a> {
     job: &'a RenderJob,
     plan: Plan,
     eye: Eye,
-    world: World,
-    bvh: Option<Bvh>,
+    finder: Finder,
     looks: Looks,
     limits: Limits,
 }
@@ -96,11 +91,7 @@ impl<'a> Tracer<'a> {
         let average = |mesh: &Mesh| stage2_triangles::vertex_normals(mesh);
         let average = plan.averages_normals.then_some(&average as &dyn Fn(&Mesh) -> Vec<Vec3>);
         let world = World::new(scene, &plan.effects, average);
-        let bvh = (plan.search == Search::Hierarchy).then(|| {
-            let bounds: Vec<Aabb> =
-                world.primitives.iter().map(|primitive| bounds_of(&world, primitive)).collect();
-            stage3_bvh::build(&bounds, quality.split, quality.leaf_size as usize)
-        });
+        let finder = Finder::new(world, &plan, quality);
         let eye = Eye {
             camera: camera_for(scene),
             sampler: quality.sampler,
@@ -110,7 +101,7 @@ impl<'a> Tracer<'a> {
         };
         let looks = Looks { method: quality.triangle_method, smooth: plan.smooth };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
-        Tracer { job, plan, eye, world, bvh, looks, limits }
+        Tracer { job, plan, eye, finder, looks, limits }
     }
 
     fn quality(&self) -> &Quality {
@@ -160,7 +151,7 @@ impl<'a> Tracer<'a> {
         loop {
             let this = n_rays;
             n_rays += 1;
-            let hit = self.closest_hit(&path.ray, &mut desk.tally);
+            let hit = self.finder.closest_hit(&path.ray, &mut desk.tally);
             match hit {
                 None => {
                     record(path.told(None), None);
@@ -168,7 +159,7 @@ impl<'a> Tracer<'a> {
                 }
                 Some(hit) => {
                     desk.note(Event::Hit);
-                    let at = surfaces::surface(&self.world, self.looks, &path.ray, &hit);
+                    let at = surfaces::surface(&self.finder.world, self.looks, &path.ray, &hit);
                     record(path.told(Some(hit.t())), Some(at.material));
                     let material = self.material(&path.ray, &hit, &at, &mut desk.tally);
                     let shadows = &mut |ray: &Ray, blocked: bool| {
@@ -190,15 +181,15 @@ impl<'a> Tracer<'a> {
     /// What the surface is made of, with its image.
     #[inline(always)]
     fn material<T: Tally>(&self, ray: &Ray, hit: &Hit, at: &Place, tally: &mut T) -> Cow<'_, Material> {
-        let material = &self.world.materials[at.material];
+        let material = &self.finder.world.materials[at.material];
         let image = match material.texture {
             Some(texture) if self.plan.effects.materials[at.material].texture => {
-                &self.world.textures[texture]
+                &self.finder.world.textures[texture]
             }
             _ => return Cow::Borrowed(material),
         };
         tally.note(Event::TextureRead);
-        let uv = texture_coordinates(&self.world, self.looks.method, ray, hit, at.surface.point);
+        let uv = texture_coordinates(&self.finder.world, self.looks.method, ray, hit, at.surface.point);
         let color = stage7_effects::texture_color(image, uv);
         let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })
@@ -268,7 +259,7 @@ impl<'a> Tracer<'a> {
             }
             tally.note(Event::Shadow);
             let ray = Ray { time: path.ray.time, ..*shadow_ray };
-            let blocked = self.any_hit(&ray, tally);
+            let blocked = self.finder.any_hit(&ray, tally);
             record(&ray, blocked);
             !blocked
         })
@@ -281,7 +272,7 @@ impl<'a> Tracer<'a> {
         desk.shadows.clear();
         let effects = &self.plan.effects;
         for &index in &effects.materials[at.material].lights {
-            let (light, takes) = (&self.world.lights[index], effects.lights[index]);
+            let (light, takes) = (&self.finder.world.lights[index], effects.lights[index]);
             match outline(light) {
                 Some(shape) if takes.area => {
                     for part in 0..takes.samples {
@@ -297,55 +288,6 @@ impl<'a> Tracer<'a> {
             }
             desk.shadows.resize(desk.lights.len(), takes.shadows);
         }
-    }
-
-    #[inline(always)]
-    fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
-        // Most scenes have no endless plane, and then the ray need not be copied: 3 % of a plain frame.
-        let (shorter, plane) = match self.world.planes.as_slice() {
-            [] => (None, None),
-            _ => self.closest_plane(ray, tally),
-        };
-        let ray = shorter.as_ref().unwrap_or(ray);
-        let mut probe = SceneProbe::new(self, ray, tally);
-        let hit = match (&self.bvh, self.plan.search) {
-            (Some(bvh), _) => stage3_bvh::closest_hit(bvh, &mut probe, ray),
-            (None, Search::Painter) => probe.last_hit(ray),
-            (None, _) => stage2_triangles::brute_force(self.world.primitives.len() as u32, &mut probe, ray),
-        };
-        hit.map(Hit::Primitive).or(plane)
-    }
-
-    /// The closest of the endless planes, and the ray that ends there.
-    fn closest_plane<T: Tally>(&self, ray: &Ray, tally: &mut T) -> (Option<Ray>, Option<Hit>) {
-        let mut ray = *ray;
-        let mut closest = None;
-        for (index, plane) in self.world.planes.iter().enumerate() {
-            tally.note(Event::PrimitiveTest);
-            let plane = plane_at(plane, ray.time).0;
-            if let Some(t) = stage1_shapes::plane(&ray, plane.point, plane.normal) {
-                closest = Some(Hit::Plane { t, index });
-                if self.plan.search != Search::Painter {
-                    ray.t_max = t;
-                }
-            }
-        }
-        (Some(ray), closest)
-    }
-
-    #[inline(always)]
-    fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
-        let in_plane = self.world.planes.iter().any(|plane| {
-            tally.note(Event::PrimitiveTest);
-            let plane = plane_at(plane, ray.time).0;
-            stage1_shapes::plane(ray, plane.point, plane.normal).is_some()
-        });
-        let mut probe = SceneProbe::new(self, ray, tally);
-        in_plane
-            || match &self.bvh {
-                Some(bvh) => stage3_bvh::any_hit(bvh, &mut probe, ray),
-                None => probe.last_hit(ray).is_some(),
-            }
     }
 }
 
@@ -365,83 +307,5 @@ impl Path {
         let Path { ray, weight, depth, kind, parent, .. } = *self;
         let hit = t.map(|t| (t, String::new()));
         TracedRay { kind, parent, depth, weight, origin: ray.origin, dir: ray.dir, hit }
-    }
-}
-
-/// Answers the questions of a search about the world, and counts them.
-///
-/// It holds what the inner loop reads, and is inlined there: asked through `tracer`, a frame took a tenth longer.
-struct SceneProbe<'a, T> {
-    nodes: &'a [Node],
-    world: &'a World,
-    method: TriangleMethod,
-    inverse_dir: Vec3,
-    tally: &'a mut T,
-}
-
-impl<'a, T: Tally> SceneProbe<'a, T> {
-    #[inline]
-    fn new(tracer: &'a Tracer<'a>, ray: &Ray, tally: &'a mut T) -> Self {
-        SceneProbe {
-            nodes: tracer.bvh.as_ref().map_or(&[], |bvh| &bvh.nodes),
-            world: &tracer.world,
-            method: tracer.looks.method,
-            inverse_dir: ray.dir.recip(),
-            tally,
-        }
-    }
-
-    #[inline(always)]
-    fn meet(&self, ray: &Ray, geometry: &Geometry) -> Option<f32> {
-        match geometry {
-            Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
-            Geometry::Triangle(triangle) => meet_triangle(self.method, ray, triangle).map(|(t, ..)| t),
-        }
-    }
-
-    /// The last primitive in the order of the scene that the ray meets.
-    fn last_hit(&mut self, ray: &Ray) -> Option<PrimitiveHit> {
-        let n_primitives = self.world.primitives.len() as u32;
-        (0..n_primitives)
-            .rev()
-            .find_map(|primitive| self.hit(primitive, ray).map(|t| PrimitiveHit { t, primitive }))
-    }
-}
-
-impl<T: Tally> Probe for SceneProbe<'_, T> {
-    #[inline]
-    fn open(&mut self, node: u32) -> Contents {
-        self.tally.note(Event::NodeVisit);
-        self.nodes[node as usize].contents
-    }
-
-    #[inline]
-    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
-        self.tally.note(Event::BoxTest);
-        let bounds = &self.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, self.inverse_dir, bounds).map(|(enter, _)| enter)
-    }
-
-    #[inline(always)]
-    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        self.tally.note(Event::PrimitiveTest);
-        let primitive = &self.world.primitives[primitive as usize];
-        match primitive.end.get() {
-            None => self.meet(ray, &primitive.geometry),
-            Some(_) => self.meet(ray, &geometry_at(self.world, primitive, ray.time)),
-        }
-    }
-}
-
-/// The box around all places where the primitive is.
-fn bounds_of(world: &World, primitive: &Primitive) -> Aabb {
-    let bounds = |geometry: &Geometry| match geometry {
-        Geometry::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
-        Geometry::Triangle(triangle) => stage3_bvh::triangle_bounds(triangle),
-    };
-    let start = bounds(&primitive.geometry);
-    match primitive.end.get() {
-        None => start,
-        Some(end) => stage6_distribution::sweep(&start, &bounds(&world.ends[end])),
     }
 }

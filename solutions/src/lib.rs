@@ -2,6 +2,7 @@
 //! else connects them with the scaffold.
 
 mod camera_rays; // nothing to do here
+mod finder; // nothing to do here
 mod glue; // nothing to do here
 mod plan; // nothing to do here
 pub mod stage10_stability;
