@@ -7,6 +7,7 @@ pub mod count;
 pub mod effects;
 pub mod film;
 pub mod frame;
+pub mod graph;
 pub mod kit;
 pub mod material;
 pub mod mesh;

@@ -83,6 +83,13 @@ pub struct Polygon {
     pub corners: Vec<Vec3>,
 }
 
+/// A bicubic Bézier patch: the surface that a net of four by four points pulls towards itself.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BezierPatch {
+    /// The net. `rows[0][0]`, `rows[0][3]`, `rows[3][3]` and `rows[3][0]` are its corners, on the surface.
+    pub rows: [[Vec3; 4]; 4],
+}
+
 /// Any shape of a scene, in the space of the node that holds it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
@@ -102,6 +109,13 @@ pub enum Shape {
     Disk(Disk),
     /// A flat convex polygon.
     Polygon(Polygon),
+    /// A curved surface, made of triangles before anything is traced.
+    Bezier {
+        /// The surface.
+        patch: Box<BezierPatch>,
+        /// Squares of two triangles along either side, at least 1.
+        steps: u32,
+    },
     /// An instance of the mesh with this index in [`crate::scene::Scene::meshes`].
     Mesh(usize),
 }
@@ -123,6 +137,8 @@ impl Shape {
             Shape::Cone(c) => around([c.base, c.apex], [disk_reach(c.apex - c.base, c.radius), Vec3::ZERO]),
             Shape::Disk(d) => around([d.center], [disk_reach(d.normal, d.radius)]),
             Shape::Polygon(p) => bounds_of_points(&p.corners),
+            // Each point of the surface is a mean of the net.
+            Shape::Bezier { patch, .. } => bounds_of_points(patch.rows.as_flattened()),
             Shape::Mesh(index) => meshes[*index].mesh.bounds(),
         })
     }

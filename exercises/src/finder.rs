@@ -1,33 +1,51 @@
 //! Nothing to do here: what a ray meets, by the search that the plan has chosen.
 
 use crate::camera_rays::{geometry_at, plane_at};
+use crate::placed::{bounds_of_shape, meet_solid, placed_bounds};
 use crate::plan::{Plan, Search};
+use crate::stage8_scene_graph::{closest_hit_in_graph, ray_to_object};
+use crate::structure::Structure;
 use crate::surfaces::{Hit, meet_triangle};
 use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage6_distribution};
 use glam::Vec3;
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
+use raykata::bvh::{Contents, Node, PrimitiveHit, Probe};
 use raykata::count::{Event, Tally};
+use raykata::graph::Savings;
 use raykata::ray::Ray;
 use raykata::scene::{Quality, TriangleMethod};
 use raykata::world::{Geometry, Primitive, World};
 
-/// A world, and the structure by which rays find what is in it.
+/// A world, and the structures by which rays find what is in it.
 pub struct Finder {
     pub world: World,
-    pub bvh: Option<Bvh>,
+    /// Over the primitives of the world.
+    pub structure: Structure,
+    /// One for each part, over its triangles.
+    parts: Vec<Structure>,
     search: Search,
+    savings: Savings,
     method: TriangleMethod,
 }
 
 impl Finder {
     pub fn new(world: World, plan: &Plan, quality: &Quality) -> Finder {
-        let bvh = (plan.search == Search::Hierarchy).then(|| {
-            let bounds: Vec<Aabb> =
-                world.primitives.iter().map(|primitive| bounds_of(&world, primitive)).collect();
-            stage3_bvh::build(&bounds, quality.split, quality.leaf_size as usize)
-        });
-        Finder { world, bvh, search: plan.search, method: quality.triangle_method }
+        // Parts first: an instance is as large as its part. Without a structure nobody asks how large anything is.
+        let bounded = !matches!(plan.search, Search::BruteForce | Search::Painter);
+        let bounds = |primitives: &[Primitive], parts: &[Aabb]| -> Vec<Aabb> {
+            let primitives = primitives.iter().filter(|_| bounded);
+            primitives.map(|primitive| bounds_of(&world, parts, primitive)).collect()
+        };
+        let of_parts: Vec<Vec<Aabb>> = world.parts.iter().map(|part| bounds(&part.primitives, &[])).collect();
+        let around =
+            |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| stage3_bvh::union(&all, one));
+        let around: Vec<Aabb> = of_parts.iter().map(around).collect();
+        let of_scene = bounds(&world.primitives, &around);
+        let structure = Structure::new(&of_scene, Some(&world.graph), plan.search, quality);
+        let part = |bounds: &Vec<Aabb>| Structure::new(bounds, None, plan.search, quality);
+        let parts = of_parts.iter().map(part).collect();
+        let (search, savings, method) = (plan.search, quality.savings, quality.triangle_method);
+        Finder { world, structure, parts, search, savings, method }
     }
 
     #[inline(always)]
@@ -38,13 +56,25 @@ impl Finder {
             _ => self.closest_plane(ray, tally),
         };
         let ray = shorter.as_ref().unwrap_or(ray);
-        let mut probe = SceneProbe::new(self, ray, tally);
-        let hit = match (&self.bvh, self.search) {
-            (Some(bvh), _) => stage3_bvh::closest_hit(bvh, &mut probe, ray),
-            (None, Search::Painter) => probe.last_hit(ray),
-            (None, _) => stage2_triangles::brute_force(self.world.primitives.len() as u32, &mut probe, ray),
-        };
-        hit.map(Hit::Primitive).or(plane)
+        let mut probe = SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally);
+        let hit = self.closest(&self.structure, &mut probe, ray);
+        hit.map(|hit| probe.told(hit, ray)).or(plane)
+    }
+
+    /// The closest hit in the scene or in a part.
+    #[inline(always)]
+    fn closest<T: Tally>(
+        &self,
+        structure: &Structure,
+        probe: &mut SceneProbe<'_, T>,
+        ray: &Ray,
+    ) -> Option<PrimitiveHit> {
+        match structure {
+            Structure::Hierarchy(bvh) => stage3_bvh::closest_hit(bvh, probe, ray),
+            Structure::Graph { graph, .. } => closest_hit_in_graph(graph, probe, ray, self.savings),
+            Structure::None if self.search == Search::Painter => probe.last_hit(ray),
+            Structure::None => stage2_triangles::brute_force(probe.primitives.len() as u32, probe, ray),
+        }
     }
 
     /// The closest of the endless planes, and the ray that ends there.
@@ -71,49 +101,109 @@ impl Finder {
             let plane = plane_at(plane, ray.time).0;
             stage1_shapes::plane(ray, plane.point, plane.normal).is_some()
         });
-        let mut probe = SceneProbe::new(self, ray, tally);
-        in_plane
-            || match &self.bvh {
-                Some(bvh) => stage3_bvh::any_hit(bvh, &mut probe, ray),
-                None => probe.last_hit(ray).is_some(),
-            }
+        let mut probe = SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally);
+        probe.any_will_do = true;
+        in_plane || self.any(&self.structure, &mut probe, ray)
+    }
+
+    /// Whether there is any hit in the scene or in a part.
+    #[inline(always)]
+    fn any<T: Tally>(&self, structure: &Structure, probe: &mut SceneProbe<'_, T>, ray: &Ray) -> bool {
+        match structure {
+            Structure::Hierarchy(bvh) => stage3_bvh::any_hit(bvh, probe, ray),
+            Structure::None => probe.last_hit(ray).is_some(),
+            other => self.closest(other, probe, ray).is_some(),
+        }
     }
 }
 
-/// Answers the questions of a search about the world, and counts them.
+/// Answers the questions of a search about the world or a part of it, and counts them.
 ///
 /// It holds what the inner loop reads, and is inlined there: asked through the finder, a frame took a tenth longer.
 struct SceneProbe<'a, T> {
     nodes: &'a [Node],
+    primitives: &'a [Primitive],
     world: &'a World,
     method: TriangleMethod,
     inverse_dir: Vec3,
     tally: &'a mut T,
+    finder: &'a Finder,
+    structure: &'a Structure,
+    /// Whether the first hit is as good as the closest.
+    any_will_do: bool,
+    /// What was hit inside an instance, of the best answer of any instance so far.
+    inside: Option<(PrimitiveHit, u32)>,
 }
 
 impl<'a, T: Tally> SceneProbe<'a, T> {
     #[inline]
-    fn new(finder: &'a Finder, ray: &Ray, tally: &'a mut T) -> Self {
+    fn new(
+        finder: &'a Finder,
+        structure: &'a Structure,
+        primitives: &'a [Primitive],
+        ray: &Ray,
+        tally: &'a mut T,
+    ) -> Self {
         SceneProbe {
-            nodes: finder.bvh.as_ref().map_or(&[], |bvh| &bvh.nodes),
+            nodes: structure.nodes(),
+            primitives,
             world: &finder.world,
             method: finder.method,
             inverse_dir: ray.dir.recip(),
             tally,
+            finder,
+            structure,
+            any_will_do: false,
+            inside: None,
         }
     }
 
     #[inline(always)]
-    fn meet(&self, ray: &Ray, geometry: &Geometry) -> Option<f32> {
+    fn meet(&mut self, index: u32, ray: &Ray, geometry: &Geometry) -> Option<f32> {
         match geometry {
             Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
             Geometry::Triangle(triangle) => meet_triangle(self.method, ray, triangle).map(|(t, ..)| t),
+            Geometry::Solid(solid) => meet_solid(ray, &self.world.solids[*solid as usize]).map(|hit| hit.t),
+            Geometry::Instance(instance) => self.meet_instance(index, *instance, ray),
         }
+    }
+
+    /// Carries the ray into the space of a part and searches there.
+    #[inline(never)]
+    fn meet_instance(&mut self, index: u32, instance: u32, ray: &Ray) -> Option<f32> {
+        let instance = &self.world.instances[instance as usize];
+        let ray = ray_to_object(ray, &instance.placement.to_object);
+        let part = instance.part as usize;
+        let (structure, primitives) = (&self.finder.parts[part], &self.world.parts[part].primitives);
+        let mut probe = SceneProbe::new(self.finder, structure, primitives, &ray, self.tally);
+        if self.any_will_do {
+            return self.finder.any(structure, &mut probe, &ray).then_some(ray.t_min.next_up());
+        }
+        let hit = self.finder.closest(structure, &mut probe, &ray)?;
+        if self.inside.is_none_or(|(best, _)| (hit.t, index) < (best.t, best.primitive)) {
+            self.inside = Some((PrimitiveHit { t: hit.t, primitive: index }, hit.primitive));
+        }
+        Some(hit.t)
+    }
+
+    /// What the search has found, with the primitive inside if it is an instance.
+    fn told(&mut self, hit: PrimitiveHit, ray: &Ray) -> Hit {
+        let PrimitiveHit { t, primitive } = hit;
+        let Geometry::Instance(_) = self.primitives[primitive as usize].geometry else {
+            return Hit::Primitive(hit);
+        };
+        if self.inside.is_none_or(|(best, _)| best.primitive != primitive) {
+            // A search may prefer another hit than the closest; then that instance is asked again.
+            self.inside = None;
+            let _ = self.hit(primitive, ray);
+        }
+        let inner = self.inside.map_or(0, |(_, inner)| inner);
+        Hit::Inner { t, outer: primitive, inner }
     }
 
     /// The last primitive in the order of the scene that the ray meets.
     fn last_hit(&mut self, ray: &Ray) -> Option<PrimitiveHit> {
-        let n_primitives = self.world.primitives.len() as u32;
+        let n_primitives = self.primitives.len() as u32;
         (0..n_primitives)
             .rev()
             .find_map(|primitive| self.hit(primitive, ray).map(|t| PrimitiveHit { t, primitive }))
@@ -130,26 +220,37 @@ impl<T: Tally> Probe for SceneProbe<'_, T> {
     #[inline]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::BoxTest);
-        let bounds = &self.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, self.inverse_dir, bounds).map(|(enter, _)| enter)
+        match self.nodes.get(node as usize) {
+            Some(node) => stage3_bvh::slab(ray, self.inverse_dir, &node.bounds).map(|(enter, _)| enter),
+            None => self.structure.enter_volume(node, ray, self.inverse_dir),
+        }
     }
 
     #[inline(always)]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::PrimitiveTest);
-        let primitive = &self.world.primitives[primitive as usize];
+        let index = primitive;
+        let primitive = &self.primitives[primitive as usize];
         match primitive.end.get() {
-            None => self.meet(ray, &primitive.geometry),
-            Some(_) => self.meet(ray, &geometry_at(self.world, primitive, ray.time)),
+            None => self.meet(index, ray, &primitive.geometry),
+            Some(_) => self.meet(index, ray, &geometry_at(self.world, primitive, ray.time)),
         }
     }
 }
 
 /// The box around all places where the primitive is.
-fn bounds_of(world: &World, primitive: &Primitive) -> Aabb {
+fn bounds_of(world: &World, parts: &[Aabb], primitive: &Primitive) -> Aabb {
     let bounds = |geometry: &Geometry| match geometry {
         Geometry::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
         Geometry::Triangle(triangle) => stage3_bvh::triangle_bounds(triangle),
+        Geometry::Solid(index) => {
+            let solid = &world.solids[*index as usize];
+            placed_bounds(&bounds_of_shape(&solid.shape), &solid.placement)
+        }
+        Geometry::Instance(index) => {
+            let instance = &world.instances[*index as usize];
+            placed_bounds(&parts[instance.part as usize], &instance.placement)
+        }
     };
     let start = bounds(&primitive.geometry);
     match primitive.end.get() {

@@ -1,6 +1,8 @@
 //! Nothing to do here: from the `t` of a hit to the point that is shaded, with a bound on its rounding error.
 
 use crate::camera_rays::{geometry_at, plane_at};
+use crate::placed::{meet_solid, point_on_solid, to_world};
+use crate::stage8_scene_graph::ray_to_object;
 use crate::{stage1_shapes, stage2_triangles, stage4_shading};
 use glam::{Vec2, Vec3, vec2};
 use raykata::bvh::PrimitiveHit;
@@ -8,20 +10,28 @@ use raykata::kit::Surface;
 use raykata::ray::Ray;
 use raykata::scene::TriangleMethod;
 use raykata::shape::{Plane, Sphere, Triangle};
-use raykata::world::{Geometry, Primitive, World};
-use std::f32::consts::{PI, TAU};
+use raykata::world::{Geometry, Instance, Primitive, World, around_ball};
 
 /// What a ray has hit.
 #[derive(Clone, Copy)]
 pub enum Hit {
-    Plane { t: f32, index: usize },
+    Plane {
+        t: f32,
+        index: usize,
+    },
     Primitive(PrimitiveHit),
+    /// A primitive of a part, in the instance that is `outer`.
+    Inner {
+        t: f32,
+        outer: u32,
+        inner: u32,
+    },
 }
 
 impl Hit {
     pub fn t(&self) -> f32 {
         match self {
-            Hit::Plane { t, .. } | Hit::Primitive(PrimitiveHit { t, .. }) => *t,
+            Hit::Plane { t, .. } | Hit::Primitive(PrimitiveHit { t, .. }) | Hit::Inner { t, .. } => *t,
         }
     }
 }
@@ -37,14 +47,14 @@ pub struct Place {
 }
 
 /// A point of a shape, before it is known from which side it is seen.
-struct Found {
-    point: Vec3,
+pub struct Found {
+    pub point: Vec3,
     /// How far `point` may be from the shape.
-    error: Vec3,
+    pub error: Vec3,
     /// Unit normal, outwards.
-    normal: Vec3,
+    pub normal: Vec3,
     /// The interpolated one.
-    smooth: Option<Vec3>,
+    pub smooth: Option<Vec3>,
 }
 
 /// How surfaces are looked at.
@@ -68,9 +78,13 @@ pub fn surface(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Place {
             let found = match geometry_at(world, primitive, ray.time) {
                 Geometry::Sphere(sphere) => point_on_sphere(ray, hit.t, &sphere),
                 Geometry::Triangle(triangle) => point_on_triangle(world, looks, ray, primitive, &triangle),
+                Geometry::Solid(index) => point_on_solid(ray, hit.t, &world.solids[index as usize]),
+                // A search answers for an instance with what it has hit inside.
+                Geometry::Instance(_) => unreachable!("an instance is not a surface"),
             };
             (found, primitive.material)
         }
+        Hit::Inner { outer, inner, .. } => point_in_instance(world, looks, ray, outer, inner),
     };
     let Found { point, error, normal, smooth } = found;
     let geometric_normal = stage1_shapes::face_viewer(normal, ray.dir);
@@ -80,6 +94,25 @@ pub fn surface(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Place {
     };
     let surface = Surface { point, error, geometric_normal, shading_normal };
     Place { surface, entering: normal.dot(ray.dir) < 0.0, material: material as usize }
+}
+
+#[cold]
+fn point_in_instance(world: &World, looks: Looks, ray: &Ray, outer: u32, inner: u32) -> (Found, u32) {
+    let (instance, primitive, material) = in_instance(world, outer, inner);
+    let ray = ray_to_object(ray, &instance.placement.to_object);
+    let Geometry::Triangle(triangle) = &primitive.geometry else { unreachable!("parts are meshes") };
+    let found = point_on_triangle(world, looks, &ray, primitive, triangle);
+    (to_world(found, &instance.placement), material)
+}
+
+/// The instance that is primitive `outer`, primitive `inner` of its part, and what that is made of.
+fn in_instance(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32) {
+    let outer = &world.primitives[outer as usize];
+    let Geometry::Instance(index) = outer.geometry else { unreachable!("only instances have an inside") };
+    let instance = &world.instances[index as usize];
+    let primitive = &world.parts[instance.part as usize].primitives[inner as usize];
+    let inherits = primitive.material == Primitive::INHERITED;
+    (instance, primitive, if inherits { outer.material } else { primitive.material })
 }
 
 fn point_on_sphere(ray: &Ray, t: f32, sphere: &Sphere) -> Found {
@@ -136,20 +169,42 @@ pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit
         }
         Hit::Primitive(hit) => {
             let primitive = &world.primitives[hit.primitive as usize];
+            if let Geometry::Solid(index) = primitive.geometry {
+                let solid = &world.solids[index as usize];
+                let own = solid.placement.to_object.transform_point3(at);
+                let normal = meet_solid(ray, solid).map_or(Vec3::Y, |hit| hit.normal);
+                return solid.shape.texture_coordinates(own, normal);
+            }
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at(world, primitive, ray.time) {
-                Geometry::Sphere(sphere) => {
-                    let own = (world.ball_axes[image] * (at - sphere.center)).normalize_or(Vec3::Y);
-                    vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
+                Geometry::Sphere(sphere) => around_ball(world.ball_axes[image] * (at - sphere.center)),
+                Geometry::Triangle(triangle) => uv_on_triangle(world, method, ray, image, &triangle),
+                Geometry::Solid(_) | Geometry::Instance(_) => middle,
+            }
+        }
+        Hit::Inner { outer, inner, .. } => {
+            let (instance, primitive, _) = in_instance(world, outer, inner);
+            match (primitive.image.get(), &primitive.geometry) {
+                (Some(image), Geometry::Triangle(triangle)) => {
+                    let ray = ray_to_object(ray, &instance.placement.to_object);
+                    uv_on_triangle(world, method, &ray, image, triangle)
                 }
-                Geometry::Triangle(triangle) => {
-                    let [a, b, c] = world.uvs[image];
-                    let weights = barycentric(method, ray, &triangle);
-                    weights.x * a + weights.y * b + weights.z * c
-                }
+                _ => middle,
             }
         }
     }
+}
+
+fn uv_on_triangle(
+    world: &World,
+    method: TriangleMethod,
+    ray: &Ray,
+    image: usize,
+    triangle: &Triangle,
+) -> Vec2 {
+    let [a, b, c] = world.uvs[image];
+    let weights = barycentric(method, ray, triangle);
+    weights.x * a + weights.y * b + weights.z * c
 }
 
 /// `(t, β, γ)` by the method that the scene asks for.

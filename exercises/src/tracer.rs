@@ -6,7 +6,7 @@ use crate::camera_rays::{Eye, blurred, from_area, outline};
 use crate::finder::Finder;
 use crate::plan::Plan;
 use crate::surfaces::{self, Hit, Looks, Place, texture_coordinates};
-use crate::{stage2_triangles, stage4_shading, stage5_recursion, stage7_effects};
+use crate::{stage4_shading, stage5_recursion, stage7_effects};
 use glam::{Vec3, uvec2};
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
@@ -15,7 +15,6 @@ use raykata::kit::{
     Bounce, LightSample, Limits, RayKind, RenderJob, Rendering, TracedRay, View, WeightedColor,
 };
 use raykata::material::Material;
-use raykata::mesh::Mesh;
 use raykata::random::Points;
 use raykata::ray::Ray;
 use raykata::scene::Quality;
@@ -34,7 +33,7 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         film,
         counts,
         primitives: (tracer.finder.world.primitives.len() + tracer.finder.world.planes.len()) as u64,
-        hierarchy: tracer.finder.bvh.as_ref().map(|bvh| (bvh.nodes.len() as u64, bvh.depth() as u64)),
+        hierarchy: tracer.finder.structure.size(),
         build_seconds,
         render_seconds: started.elapsed().as_secs_f64(),
         notes: [tracer.plan.notes, tracer.finder.world.notes].concat(),
@@ -88,9 +87,7 @@ impl<'a> Tracer<'a> {
         let scene = &job.scene;
         let quality = &scene.quality;
         let plan = Plan::new(job);
-        let average = |mesh: &Mesh| stage2_triangles::vertex_normals(mesh);
-        let average = plan.averages_normals.then_some(&average as &dyn Fn(&Mesh) -> Vec<Vec3>);
-        let world = World::new(scene, &plan.effects, average);
+        let world = World::new(scene, &plan.effects, &plan.crafts);
         let finder = Finder::new(world, &plan, quality);
         let eye = Eye {
             camera: camera_for(scene),

@@ -144,7 +144,7 @@ fn moved(start: &Geometry, end: &Geometry, time: f32) -> Geometry {
         (Geometry::Triangle(start), Geometry::Triangle(end)) => {
             Geometry::Triangle(triangle_between(start, end, time))
         }
-        _ => *start, // A primitive keeps its kind.
+        _ => *start, // A primitive keeps its kind, and solids stand still.
     }
 }
 

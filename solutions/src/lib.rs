@@ -4,6 +4,7 @@
 mod camera_rays; // nothing to do here
 mod finder; // nothing to do here
 mod glue; // nothing to do here
+mod placed; // nothing to do here
 mod plan; // nothing to do here
 pub mod stage10_stability;
 pub mod stage1_shapes;
@@ -13,6 +14,10 @@ pub mod stage4_shading;
 pub mod stage5_recursion;
 pub mod stage6_distribution;
 pub mod stage7_effects;
+pub mod stage8_scene_graph;
+pub mod stage8_solids;
+pub mod stage8_surfaces;
+mod structure; // nothing to do here
 mod surfaces; // nothing to do here
 mod tracer; // nothing to do here
 

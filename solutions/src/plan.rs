@@ -2,19 +2,22 @@
 
 use crate::{
     stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution, stage7_effects,
+    stage8_scene_graph, stage8_solids, stage8_surfaces,
 };
-use glam::{UVec2, Vec2, Vec3};
+use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::camera::{Camera, Lens, Shutter};
 use raykata::effects::Effects;
+use raykata::graph::{Graph, Savings};
 use raykata::kit::{Bounce, Child, Limits, Mishap, RenderJob, Surface, View, mishap};
 use raykata::material::{Emitter, Light, Material, Texture};
 use raykata::mesh::Mesh;
 use raykata::random::Stratum;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Sampler, Scene};
-use raykata::shape::{Disk, Sphere};
+use raykata::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere};
+use raykata::world::Crafts;
 use std::sync::Arc;
 
 /// How the closest hit is sought.
@@ -24,6 +27,9 @@ pub enum Search {
     BruteForce,
     /// The last primitive that the ray meets, near or far.
     Painter,
+    /// The scene graph, with boxes or balls around its nodes.
+    GraphOfBoxes,
+    GraphOfBalls,
 }
 
 /// What a frame will compute.
@@ -32,8 +38,8 @@ pub struct Plan {
     pub effects: Effects,
     pub search: Search,
     pub view: View,
-    /// Whether normals of vertices can be averaged.
-    pub averages_normals: bool,
+    /// What the world is made with.
+    pub crafts: Crafts,
     /// Whether normals are interpolated over smooth meshes.
     pub smooth: bool,
     /// Whether samples have places of their own in the pixel.
@@ -54,7 +60,7 @@ impl Plan {
         let mut plan = Plan {
             search: choose_search(&scene.quality, &mut notes),
             view: choose_view(job.view, &mut notes),
-            averages_normals: written(|| stage2_triangles::vertex_normals(&Mesh::default())),
+            crafts: crafts(),
             smooth: written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X)),
             positions: written(|| stage6_distribution::pixel_position(scene.quality.sampler, &ANYWHERE)),
             weights: written(|| stage6_distribution::develop(&[]))
@@ -66,6 +72,7 @@ impl Plan {
         plan.leave_out_mirrors(scene);
         plan.leave_out_distribution(scene);
         plan.leave_out_images(scene);
+        plan.leave_out_spaces(scene);
         plan
     }
 
@@ -73,7 +80,7 @@ impl Plan {
         let mut smooth = scene.meshes.iter().filter(|mesh| mesh.smooth);
         let averaged = smooth.clone().any(|mesh| mesh.mesh.normals.is_empty());
         self.note_if(
-            self.smooth && !self.averages_normals && averaged,
+            self.smooth && self.crafts.vertex_normals.is_none() && averaged,
             "smooth meshes whose files have no normals are flat: `vertex_normals` of stage 2 is not written yet",
         );
         self.note_if(
@@ -164,10 +171,55 @@ impl Plan {
         }
     }
 
+    fn leave_out_spaces(&mut self, scene: &Scene) {
+        let shown = |wanted: fn(&Shape) -> bool| {
+            scene.shown().iter().any(|shown| scene.nodes[shown.node].shape.as_ref().is_some_and(wanted))
+        };
+        self.note_if(
+            self.crafts.placement.is_none()
+                && shown(|shape| matches!(shape, Shape::Cylinder(_) | Shape::Cone(_) | Shape::Disk(_))),
+            "cylinders, cones and disks are made of triangles: stage 8 is not written yet",
+        );
+        self.note_if(
+            self.crafts.subdivide.is_none() && scene.meshes.iter().any(|mesh| mesh.subdivisions > 0),
+            "meshes are as coarse as their files: `loop_subdivide` of stage 8 is not written yet",
+        );
+        self.note_if(
+            self.crafts.bezier_point.is_none() && shown(|shape| matches!(shape, Shape::Bezier { .. })),
+            "curved surfaces are left out: `bezier_point` of stage 8 is not written yet",
+        );
+    }
+
     fn note_if(&mut self, missing: bool, what: &str) {
         if missing {
             self.notes.push(what.into());
         }
+    }
+}
+
+/// What of the exercises makes worlds, as far as it is written.
+fn crafts() -> Crafts {
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    let (unit, flat) = (Cuboid { min: Vec3::ZERO, max: Vec3::ONE }, Vec::new());
+    let (base, radius) = (Vec3::ZERO, 1.0);
+    let in_spaces = written(|| stage8_scene_graph::placement(&[]))
+        && written(|| stage8_scene_graph::ray_to_object(&ray, &Affine3A::IDENTITY))
+        && written(|| stage8_scene_graph::normal_to_world(Vec3::Z, &Affine3A::IDENTITY))
+        && written(|| stage8_scene_graph::bounds_to_world(&Affine3A::IDENTITY, &Aabb::EMPTY))
+        && written(|| stage8_solids::cuboid(&ray, &unit))
+        && written(|| stage8_solids::cylinder(&ray, &Cylinder { base, top: Vec3::Y, radius }))
+        && written(|| stage8_solids::cone(&ray, &Cone { base, apex: Vec3::Y, radius }))
+        && written(|| stage8_solids::disk(&ray, &Disk { center: base, normal: Vec3::Y, radius }))
+        && written(|| stage8_solids::polygon(&ray, &Polygon { corners: flat }));
+    let point = |patch: &BezierPatch, uv: Vec2| stage8_surfaces::bezier_point(patch, uv);
+    let patch = BezierPatch { rows: [[Vec3::ZERO; 4]; 4] };
+    Crafts {
+        vertex_normals: written(|| stage2_triangles::vertex_normals(&Mesh::default()))
+            .then_some(stage2_triangles::vertex_normals),
+        placement: in_spaces.then_some(stage8_scene_graph::placement),
+        bezier_point: written(|| point(&patch, Vec2::ZERO)).then_some(point),
+        subdivide: written(|| stage8_surfaces::loop_subdivide(&Mesh::default()))
+            .then_some(stage8_surfaces::loop_subdivide),
     }
 }
 
@@ -213,6 +265,20 @@ fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
     let brute_force = written(|| stage2_triangles::brute_force(0, &mut Nothing, &ray));
     match quality.accelerator {
         Accelerator::BruteForce | Accelerator::Bvh => {}
+        Accelerator::BoundingBoxes if hierarchy && graph_is_written(&ray) => return Search::GraphOfBoxes,
+        Accelerator::BoundingSpheres
+            if hierarchy
+                && graph_is_written(&ray)
+                && written(|| stage8_scene_graph::bounding_ball(&[Vec3::ZERO]))
+                && written(|| {
+                    stage8_scene_graph::enter_ball(&ray, &Sphere { center: Vec3::ZERO, radius: 1.0 })
+                }) =>
+        {
+            return Search::GraphOfBalls;
+        }
+        Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
+            notes.push("a hierarchy stands in for the scene graph: stage 8 is not written yet".into());
+        }
         other => notes.push(format!("a hierarchy stands in for {other:?}: stage 9, not built yet")),
     }
     if quality.accelerator != Accelerator::BruteForce && hierarchy {
@@ -228,6 +294,11 @@ fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
         "later shapes are painted over earlier ones, near or far: `brute_force` of stage 2 is not written yet".into(),
     );
     Search::Painter
+}
+
+fn graph_is_written(ray: &Ray) -> bool {
+    let (graph, savings) = (Graph::default(), Savings::default());
+    written(|| stage8_scene_graph::closest_hit_in_graph(&graph, &mut Nothing, ray, savings))
 }
 
 fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {

@@ -6,7 +6,7 @@
 //! What you wrote in earlier stages may do already. `cargo run --release -- gauntlet --kit exercises` shows what it
 //! costs and where it fails.
 
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
@@ -94,35 +94,5 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     // In double the squares of all finite numbers fit.
     Some(v.as_dvec3().normalize().as_vec3())
     // <stub> todo!("scale by the largest coordinate first")
-    // </solution>
-}
-
-/// A box around `bounds` after the transform `to_world`, with no point of it outside and little room.
-///
-/// Where the formula lies: rounded to nearest, the largest corner ends up inside the true box in half of all cases, and
-/// a ray at it misses.
-pub fn transformed_bounds(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
-    // <solution>
-    if bounds.min.cmpgt(bounds.max).any() {
-        return Aabb::EMPTY;
-    }
-    let columns = [to_world.matrix3.x_axis, to_world.matrix3.y_axis, to_world.matrix3.z_axis].map(Vec3::from);
-    let translation = Vec3::from(to_world.translation);
-    let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
-    for row in 0..3 {
-        // Each axis of the box goes to one end or the other (Arvo, "Transforming axis-aligned bounding boxes", 1990).
-        let (mut low, mut high) = (f64::from(translation[row]), f64::from(translation[row]));
-        for (axis, column) in columns.iter().enumerate() {
-            let factor = f64::from(column[row]);
-            let ends = [factor * f64::from(bounds.min[axis]), factor * f64::from(bounds.max[axis])];
-            low += ends[0].min(ends[1]);
-            high += ends[0].max(ends[1]);
-        }
-        // Rounding to single precision may go inwards, one step at most; the sums in double by much less.
-        min[row] = (low as f32).next_down();
-        max[row] = (high as f32).next_up();
-    }
-    Aabb::new(min, max)
-    // <stub> todo!("transform what matters of the eight corners, and round outwards")
     // </solution>
 }

@@ -5,12 +5,13 @@ use crate::aabb::Aabb;
 use crate::bvh::Bvh;
 use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
+use crate::graph::Placement;
 use crate::mesh::Mesh;
 use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene};
-use crate::shape::{Disk, Sphere, Triangle};
-use glam::{Vec2, Vec3};
+use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
+use glam::{Affine3A, Vec2, Vec3};
 
 /// Carries a request to where the student's code lives and brings the answer back.
 ///
@@ -26,7 +27,17 @@ pub struct Door<T>(pub T);
 
 /// Everything that students write.
 pub trait Kit:
-    Shapes + Triangles + Hierarchies + Shading + Recursion + Distribution + Economy + Stability + Frames + Sync
+    Shapes
+    + Triangles
+    + Hierarchies
+    + Shading
+    + Recursion
+    + Distribution
+    + Economy
+    + SceneGraph
+    + Stability
+    + Frames
+    + Sync
 {
 }
 impl<T> Kit for T where
@@ -37,6 +48,7 @@ impl<T> Kit for T where
         + Recursion
         + Distribution
         + Economy
+        + SceneGraph
         + Stability
         + Frames
         + Sync
@@ -273,6 +285,38 @@ door! {
         /// The colour of an image.
         TextureColor fn texture_color(TextureQuery) -> Vec3;
     }
+    /// Stage 8: every shape in a space of its own.
+    trait SceneGraph {
+        /// The ray in the space of an object.
+        RayToObject fn ray_to_object(ObjectRayQuery) -> Ray;
+        /// The normal of an object in the world.
+        NormalToWorld fn normal_to_world(NormalQuery) -> Vec3;
+        /// The way of a node to the world and back, for the transforms from the root down.
+        Place fn placement(Vec<Affine3A>) -> Option<Placement>;
+        /// The box around a transformed box.
+        BoundsToWorld fn bounds_to_world(BoundsQuery) -> Aabb;
+        /// A ball around points.
+        BoundingBall fn bounding_ball(Vec<Vec3>) -> Sphere;
+        /// Where a ray enters a ball.
+        EnterBall fn enter_ball(BallEntryQuery) -> Option<f32>;
+        /// The closest hit in a scene graph.
+        GraphHit fn closest_hit_in_graph(GraphQuery) -> GraphAnswer;
+        /// Ray against box.
+        Cuboid fn cuboid(SolidQuery<Cuboid>) -> Option<SolidHit>;
+        /// Ray against closed cylinder.
+        Cylinder fn cylinder(SolidQuery<Cylinder>) -> Option<SolidHit>;
+        /// Ray against closed cone.
+        Cone fn cone(SolidQuery<Cone>) -> Option<SolidHit>;
+        /// Ray against disk.
+        Disk fn disk(SolidQuery<Disk>) -> Option<SolidHit>;
+        /// Ray against convex polygon.
+        Polygon fn polygon(SolidQuery<Polygon>) -> Option<SolidHit>;
+        /// A point of a Bézier patch.
+        BezierPoint fn bezier_point(PatchQuery) -> Vec3;
+        /// A mesh with four triangles for each.
+        LoopSubdivide fn loop_subdivide(Mesh) -> Mesh;
+    }
+
     /// Stage 10: answers that survive rounding.
     trait Stability {
         /// The roots of `a t² + b t + c`, for `[a, b, c]`.
@@ -285,7 +329,5 @@ door! {
         OffsetOrigin fn offset_origin(OffsetQuery) -> Vec3;
         /// The unit vector along another, if it has a direction.
         SafeNormalize fn safe_normalize(Vec3) -> Option<Vec3>;
-        /// The box around a transformed box.
-        TransformedBounds fn transformed_bounds(BoundsQuery) -> Aabb;
     }
 }

@@ -9,6 +9,7 @@ pub mod door;
 mod economy;
 pub mod mishap;
 mod recursion;
+mod scene_graph;
 mod shading;
 mod shapes;
 mod stability;
@@ -20,17 +21,21 @@ pub use distribution::{
     BallQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
-    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Recursion, Request, Shading, Shapes,
-    Stability, Transport, Triangles,
+    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Recursion, Request, SceneGraph, Shading,
+    Shapes, Stability, Transport, Triangles,
 };
 pub use economy::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
 pub use mishap::Mishap;
 pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};
+pub use scene_graph::{
+    BallEntryQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,
+    SolidQuery,
+};
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
-pub use stability::{BoundsQuery, OffsetQuery};
+pub use stability::OffsetQuery;
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,
 };

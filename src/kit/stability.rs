@@ -1,7 +1,6 @@
 //! Stage 10 in plain data.
 
-use crate::aabb::Aabb;
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Where does a ray start that leaves a surface?
@@ -15,13 +14,4 @@ pub struct OffsetQuery {
     pub normal: Vec3,
     /// Where the ray goes.
     pub direction: Vec3,
-}
-
-/// Which box after a transform?
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BoundsQuery {
-    /// From the space of the box to the world.
-    pub to_world: Affine3A,
-    /// The box.
-    pub bounds: Aabb,
 }

@@ -2,7 +2,7 @@
 //! earlier stage costs nothing here.
 
 use crate::aabb::Aabb;
-use crate::bvh::{Bvh, Contents, PrimitiveHit, PrimitiveRef, Probe};
+use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, PrimitiveRef, Probe};
 use crate::count::{Counts, Event, Tally};
 use crate::ray::Ray;
 use crate::scene::Split;
@@ -79,39 +79,54 @@ pub struct SearchAnswer {
 
 /// Answers from a [`Table`] and counts the questions.
 pub struct TableProbe<'a> {
-    query: &'a SearchQuery,
+    nodes: &'a [Node],
+    table: &'a Table,
     /// What was asked so far.
     pub counts: Counts,
     /// The last primitive that was reported as hit.
     pub last_hit: Option<PrimitiveHit>,
     /// Primitives that were asked about after the first hit.
     pub tests_after_hit: u64,
+    /// The primitives that were asked about, in this order.
+    pub asked: Vec<u32>,
 }
 
 impl<'a> TableProbe<'a> {
     /// A probe that answers for `query`.
     pub fn new(query: &'a SearchQuery) -> Self {
-        TableProbe { query, counts: Counts::default(), last_hit: None, tests_after_hit: 0 }
+        TableProbe { nodes: &query.bvh.nodes, ..TableProbe::without_hierarchy(&query.table) }
+    }
+
+    /// A probe for a search that keeps its nodes itself.
+    pub fn without_hierarchy(table: &'a Table) -> Self {
+        let counts = Counts::default();
+        TableProbe { nodes: &[], table, counts, last_hit: None, tests_after_hit: 0, asked: Vec::new() }
+    }
+
+    /// What the search has found and asked.
+    pub fn answer(&self, hit: Option<PrimitiveHit>) -> SearchAnswer {
+        SearchAnswer { hit, counts: self.counts, tests_after_hit: self.tests_after_hit }
     }
 }
 
 impl Probe for TableProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
         self.counts.note(Event::NodeVisit);
-        self.query.bvh.nodes[node as usize].contents
+        self.nodes[node as usize].contents
     }
 
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.counts.note(Event::BoxTest);
-        let (near, far) = self.query.table.boxes[node as usize];
+        let (near, far) = self.table.boxes[node as usize];
         let enter = near.max(ray.t_min);
         (enter <= far && enter < ray.t_max).then_some(enter)
     }
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.counts.note(Event::PrimitiveTest);
+        self.asked.push(primitive);
         self.tests_after_hit += u64::from(self.last_hit.is_some());
-        let t = self.query.table.primitives[primitive as usize];
+        let t = self.table.primitives[primitive as usize];
         let hit = ray.contains(t).then_some(t);
         if hit.is_some() {
             self.last_hit = Some(PrimitiveHit { t, primitive });

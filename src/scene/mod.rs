@@ -9,6 +9,7 @@ mod shown;
 pub use shown::Shown;
 
 use crate::camera::Camera;
+use crate::graph::Savings;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::shape::Shape;
@@ -44,6 +45,10 @@ pub struct FilmSettings {
 pub enum Accelerator {
     /// Every primitive for every ray.
     BruteForce,
+    /// The scene graph itself, with a box around each of its nodes (stage 8).
+    BoundingBoxes,
+    /// The same with balls (stage 8).
+    BoundingSpheres,
     /// A bounding volume hierarchy.
     #[default]
     Bvh,
@@ -150,6 +155,10 @@ pub struct Quality {
     pub leaf_size: u32,
     /// The ray/triangle test.
     pub triangle_method: TriangleMethod,
+    /// Whether a mesh that stands in several places is copied for each, as if stage 8 were not there.
+    pub copies: bool,
+    /// What a search of the scene graph saves (stage 8).
+    pub savings: Savings,
     /// Digits of ray/shape tests (stage 10).
     pub precision: Precision,
     /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
@@ -169,6 +178,8 @@ impl Default for Quality {
             split: Split::default(),
             leaf_size: 4,
             triangle_method: TriangleMethod::default(),
+            copies: false,
+            savings: Savings::default(),
             precision: Precision::default(),
             grid_resolution: 0,
         }
@@ -182,6 +193,8 @@ pub struct SceneMesh {
     pub mesh: Arc<Mesh>,
     /// Whether normals are interpolated over a triangle.
     pub smooth: bool,
+    /// How often each triangle is divided into four before anything is traced (stage 8).
+    pub subdivisions: u32,
     /// For each of the mesh's own material names, the index of the scene's material, if the scene wants them.
     pub materials: Vec<usize>,
 }

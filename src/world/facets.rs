@@ -10,10 +10,21 @@ const AROUND: usize = 128;
 
 /// A triangle with the normals at its corners, on a curved surface, and with the texture coordinates there, if it has
 /// any.
+#[derive(Clone, Copy)]
 pub(super) struct Facet {
     pub corners: [Vec3; 3],
     pub normals: Option<[Vec3; 3]>,
     pub uvs: Option<[Vec2; 3]>,
+}
+
+impl Facet {
+    /// The same, seen from the other side.
+    pub fn turned(&self) -> Facet {
+        fn turn<T: Copy>([a, b, c]: [T; 3]) -> [T; 3] {
+            [a, c, b]
+        }
+        Facet { corners: turn(self.corners), normals: self.normals.map(turn), uvs: self.uvs.map(turn) }
+    }
 }
 
 fn flat(a: Vec3, b: Vec3, c: Vec3) -> Facet {

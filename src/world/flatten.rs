@@ -2,23 +2,26 @@
 //! its way.
 
 use super::facets::{self, Facet};
-use super::{EndlessPlane, Geometry, Primitive, Slot, VertexNormals, World, what_is_not_simulated};
+use super::meshes::{Meshes, Ready};
+use super::{
+    Crafts, EndlessPlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World,
+    what_is_not_simulated,
+};
 use crate::effects::Effects;
-use crate::scene::{Node, Scene, SceneMesh, blend};
+use crate::graph::{GraphNode, Placement};
+use crate::scene::{Node, Scene, blend};
 use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Mat3A, Vec2, Vec3};
 
-pub(super) fn flatten(scene: &Scene, effects: &Effects, vertex_normals: Option<&VertexNormals<'_>>) -> World {
-    let smooth = |(index, mesh)| match effects.smooth_meshes.get(index) {
-        Some(true) => normals_of(mesh, vertex_normals),
-        _ => Vec::new(),
-    };
+pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
+    let mut meshes = Meshes::new(scene, effects, crafts);
     let mut flattener = Flattener {
         scene,
         effects,
+        crafts,
         // What does not move while the shutter is open stands where it is when it opens.
         still_at: scene.camera.shutter.map_or(0.0, |shutter| shutter.open),
-        mesh_normals: scene.meshes.iter().enumerate().map(smooth).collect(),
+        path: Vec::new(),
         world: World {
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
@@ -27,65 +30,77 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, vertex_normals: Option<&
             ..World::default()
         },
     };
+    // The root of the graph holds the roots of the scene, which may be several.
+    flattener.world.graph.nodes.push(GraphNode::default());
     for &root in &scene.roots {
-        flattener.node(&scene.nodes[root], &Way::still(Affine3A::IDENTITY), 0);
+        flattener.node(root, &Way::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
     }
     flattener.world
-}
-
-fn normals_of(mesh: &SceneMesh, vertex_normals: Option<&VertexNormals<'_>>) -> Vec<Vec3> {
-    match vertex_normals {
-        _ if !mesh.mesh.normals.is_empty() => mesh.mesh.normals.clone(),
-        Some(average) => average(&mesh.mesh),
-        None => Vec::new(),
-    }
 }
 
 /// Where something is: to the world at time 0, and at time 1 if it moves.
 struct Way {
     start: Affine3A,
     end: Option<Affine3A>,
+    /// Whether `start` lies between the two ends of a way, and is not the product of the nodes' transforms.
+    blended: bool,
 }
 
 impl Way {
     fn still(start: Affine3A) -> Way {
-        Way { start, end: None }
+        Way { start, end: None, blended: false }
     }
 
     fn then(&self, node: &Node) -> Way {
         let moves = self.end.is_some() || node.transform_end.is_some();
         let end = || self.end.unwrap_or(self.start) * node.transform_end.unwrap_or(node.transform);
-        Way { start: self.start * node.transform, end: moves.then(end) }
+        Way { start: self.start * node.transform, end: moves.then(end), blended: false }
     }
 }
 
 struct Flattener<'a> {
     scene: &'a Scene,
     effects: &'a Effects,
+    crafts: &'a Crafts,
     still_at: f32,
-    mesh_normals: Vec<Vec<Vec3>>,
+    /// The transforms from the root down to where we are.
+    path: Vec<Affine3A>,
     world: World,
 }
 
 impl Flattener<'_> {
-    /// Adds `node` and all below it. `way` belongs to its parent, `material` is inherited.
-    fn node(&mut self, node: &Node, way: &Way, material: usize) {
+    /// Adds the node `index` and all below it. `way` belongs to its parent, as does `above`, its number in the graph;
+    /// `material` is inherited.
+    fn node(&mut self, index: usize, way: &Way, material: usize, above: u32, meshes: &mut Meshes) {
+        let node = &self.scene.nodes[index];
         let way = way.then(node);
         let material = node.material.unwrap_or(material);
+        let first = self.world.primitives.len() as u32;
+        self.path.push(node.transform);
         if let Some(shape) = &node.shape {
             let way = match way.end {
                 Some(end) if self.effects.motion && end != way.start => Way { end: Some(end), ..way },
-                Some(end) => Way::still(blend(&way.start, &end, self.still_at)),
+                Some(end) => Way { start: blend(&way.start, &end, self.still_at), end: None, blended: true },
                 None => Way::still(way.start),
             };
-            self.shape(shape, &way, material as u32);
+            let ready = match shape {
+                Shape::Mesh(mesh) => meshes.of_scene.get_mut(*mesh),
+                _ => meshes.of_nodes.get_mut(&index),
+            };
+            self.shape(shape, ready, &way, material as u32);
         }
+        let primitives: Vec<u32> = (first..self.world.primitives.len() as u32).collect();
+        let nodes = &mut self.world.graph.nodes;
+        let here = nodes.len() as u32;
+        nodes.push(GraphNode { children: Vec::new(), primitives });
+        nodes[above as usize].children.push(here);
         for &child in &node.children {
-            self.node(&self.scene.nodes[child], &way, material);
+            self.node(child, &way, material, here, meshes);
         }
+        self.path.pop();
     }
 
-    fn shape(&mut self, shape: &Shape, way: &Way, material: u32) {
+    fn shape(&mut self, shape: &Shape, ready: Option<&mut Ready>, way: &Way, material: u32) {
         match shape {
             Shape::Sphere(sphere) => self.sphere(sphere, way, material),
             Shape::Plane(plane) => self.plane(plane, way, material),
@@ -93,13 +108,47 @@ impl Flattener<'_> {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
                 self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
             }
+            Shape::Mesh(_) | Shape::Bezier { .. } => {
+                // None for a patch without the exercise that gives its points.
+                if let Some(ready) = ready {
+                    self.mesh(ready, way, material);
+                }
+            }
+            _ if self.solid(shape, way, material) => {}
             Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), way, material),
             Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), way, material),
             Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), way, material),
             Shape::Cone(cone) => self.facets(&facets::cone(cone), way, material),
             Shape::Disk(disk) => self.facets(&facets::disk(disk), way, material),
-            Shape::Mesh(index) => self.mesh(*index, way, material),
         }
+    }
+
+    /// Where the shape of this node stands, if the kit says so. What moves is not placed: its transform is another one at
+    /// every moment.
+    fn placement(&self, way: &Way) -> Option<Placement> {
+        let place = self.crafts.placement?;
+        match (way.end, way.blended) {
+            (Some(_), _) => None,
+            (None, true) => place(&[way.start]),
+            (None, false) => place(&self.path),
+        }
+    }
+
+    /// Whether the shape could stay what it is.
+    fn solid(&mut self, shape: &Shape, way: &Way, material: u32) -> bool {
+        let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(way)) else {
+            return false;
+        };
+        self.world.solids.push(Solid { shape, placement });
+        let geometry = Geometry::Solid(self.world.solids.len() as u32 - 1);
+        self.push(geometry, material);
+        true
+    }
+
+    /// Adds a primitive that has neither normals nor images nor ends of its own.
+    fn push(&mut self, geometry: Geometry, material: u32) {
+        let (normals, image, end) = (Slot::NONE, Slot::NONE, Slot::NONE);
+        self.world.primitives.push(Primitive { geometry, material, normals, image, end });
     }
 
     /// A sphere stays one as long as it is not stretched, not even halfway.
@@ -118,6 +167,7 @@ impl Flattener<'_> {
             {
                 (start, Some(Geometry::Sphere(end)))
             }
+            _ if self.solid(&Shape::Sphere(*sphere), way, material) => return,
             _ => return self.facets(&facets::sphere(sphere), way, material),
         };
         let image = match self.reads_image(material) {
@@ -153,23 +203,43 @@ impl Flattener<'_> {
 
     fn facets(&mut self, facets: &[Facet], way: &Way, material: u32) {
         for facet in facets {
-            self.triangle(facet, way, material);
+            let triangle = self.triangle(facet, way, material);
+            self.world.primitives.push(triangle);
         }
     }
 
-    fn mesh(&mut self, index: usize, way: &Way, material: u32) {
-        let SceneMesh { mesh, materials, .. } = &self.scene.meshes[index];
-        for (face, vertices) in mesh.triangles.iter().enumerate() {
-            let own = mesh.face_materials.get(face).and_then(|&name| materials.get(name as usize));
-            let normals = &self.mesh_normals[index];
-            let normals = (!normals.is_empty()).then(|| vertices.map(|vertex| normals[vertex as usize]));
-            let uvs = (!mesh.uvs.is_empty()).then(|| vertices.map(|vertex| mesh.uvs[vertex as usize]));
-            let facet = Facet { corners: mesh.corners(face), normals, uvs };
-            self.triangle(&facet, way, own.map_or(material, |&own| own as u32));
+    /// A mesh that stands in several places is kept once, if it can be placed; otherwise its triangles are copied.
+    fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
+        if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
+            let part = ready.part.unwrap_or_else(|| self.part(ready));
+            ready.part = Some(part);
+            self.world.instances.push(Instance { part, placement });
+            let geometry = Geometry::Instance(self.world.instances.len() as u32 - 1);
+            return self.push(geometry, material);
+        }
+        for face in 0..ready.mesh.triangles.len() {
+            let material = ready.material_of(face).unwrap_or(material);
+            let triangle = self.triangle(&ready.facet(face), way, material);
+            self.world.primitives.push(triangle);
         }
     }
+    /// Keeps the triangles of a mesh in its own space; says where.
+    fn part(&mut self, ready: &Ready) -> u32 {
+        let here = Way::still(Affine3A::IDENTITY);
+        let primitives = (0..ready.mesh.triangles.len()).map(|face| {
+            let material = ready.material_of(face).unwrap_or(Primitive::INHERITED);
+            self.triangle(&ready.facet(face), &here, material)
+        });
+        let part = Part { primitives: primitives.collect() };
+        self.world.parts.push(part);
+        self.world.parts.len() as u32 - 1
+    }
 
-    fn triangle(&mut self, facet: &Facet, way: &Way, material: u32) {
+    fn triangle(&mut self, facet: &Facet, way: &Way, material: u32) -> Primitive {
+        let reads_image = self.reads_image(material);
+        // A mirror would turn the inside out: corners in the other order turn it back.
+        let mirrored = way.start.matrix3.determinant() < 0.0;
+        let facet = &if mirrored { facet.turned() } else { *facet };
         let world = &mut self.world;
         let corners = |to_world: &Affine3A| {
             let [a, b, c] = facet.corners.map(|corner| to_world.transform_point3(corner));
@@ -187,14 +257,15 @@ impl Flattener<'_> {
             }
         }
         let end = way.end.map_or(Slot::NONE, |end| Slot::push(&mut world.ends, corners(&end)));
-        let uvs = facet.uvs.filter(|_| self.effects.materials[material as usize].texture);
+        let uvs = facet.uvs.filter(|_| reads_image);
         let image = uvs.map_or(Slot::NONE, |uvs| Slot::push(&mut world.uvs, uvs));
-        let geometry = corners(&way.start);
-        world.primitives.push(Primitive { geometry, material, normals, image, end });
+        Primitive { geometry: corners(&way.start), material, normals, image, end }
     }
 
+    /// Whether a colour of this material comes from an image; of an inherited one, whether any does.
     fn reads_image(&self, material: u32) -> bool {
-        self.effects.materials[material as usize].texture
+        let all = &self.effects.materials;
+        all.get(material as usize).map_or_else(|| all.iter().any(|one| one.texture), |one| one.texture)
     }
 }
 
@@ -238,9 +309,9 @@ mod tests {
 
     #[test]
     fn a_turning_sphere_is_no_sphere_halfway() {
-        let turned = Affine3A::from_rotation_y(2.0);
-        assert!(uniform_scale(&turned).is_some());
-        let half = uniform_scale(&blend(&Affine3A::IDENTITY, &turned, 0.5));
+        let blended = Affine3A::from_rotation_y(2.0);
+        assert!(uniform_scale(&blended).is_some());
+        let half = uniform_scale(&blend(&Affine3A::IDENTITY, &blended, 0.5));
         assert!(half.is_none_or(|scale| scale < 0.9), "{half:?}");
     }
 }

@@ -1,20 +1,26 @@
 //! A scene made flat: every node's transform applied, all meshes merged into one set of primitives (lecture "In RTGI
 //! all meshes are merged to a big set of primitives").
 //!
-//! Spheres, planes and triangles are what stages 1 and 2 intersect. Until stage 8 brings boxes, cylinders, cones,
-//! disks, polygons and stretched spheres their own tests, they are made of triangles here.
+//! With stage 8 there are exceptions: boxes, cylinders, cones, disks, polygons and stretched spheres stay what they are,
+//! in spaces of their own, and a mesh that stands in several places is kept once. Without it, and where they move, they
+//! are made of triangles.
 
 mod facets;
 mod flatten;
 mod lamps;
+mod meshes;
+mod solids;
+
+pub use solids::{Solid, SolidShape, around_ball};
 
 use crate::camera::Camera;
 use crate::effects::Effects;
+use crate::graph::{Graph, Placement};
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::scene::{Precision, Scene};
-use crate::shape::{Plane, Sphere, Triangle};
-use glam::{Mat3, Vec2, Vec3};
+use crate::shape::{BezierPatch, Plane, Sphere, Triangle};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 /// What a ray can be tested against.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +29,10 @@ pub enum Geometry {
     Sphere(Sphere),
     /// A triangle.
     Triangle(Triangle),
+    /// Index into [`World::solids`].
+    Solid(u32),
+    /// Index into [`World::instances`].
+    Instance(u32),
 }
 
 /// An index into a table, or none: in four bytes instead of eight, because there are millions of them.
@@ -46,12 +56,12 @@ impl Slot {
     }
 }
 
-/// A bounded primitive in world space.
+/// A bounded primitive in world space, or in that of its part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
     /// Its shape, at time 0 if it moves.
     pub geometry: Geometry,
-    /// Index into [`World::materials`].
+    /// Index into [`World::materials`], or [`Primitive::INHERITED`].
     pub material: u32,
     /// Into [`World::normals`], for a triangle with normals at its corners; if it moves, those of time 1 follow.
     pub normals: Slot,
@@ -59,6 +69,27 @@ pub struct Primitive {
     pub image: Slot,
     /// Into [`World::ends`], if it moves.
     pub end: Slot,
+}
+
+impl Primitive {
+    /// The material of a primitive in a part that takes that of its instance.
+    pub const INHERITED: u32 = u32::MAX;
+}
+
+/// A mesh that is kept once and stands in several places.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Its triangles, in its own space.
+    pub primitives: Vec<Primitive>,
+}
+
+/// A part in one of its places.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instance {
+    /// Index into [`World::parts`].
+    pub part: u32,
+    /// Where it stands.
+    pub placement: Placement,
 }
 
 /// A plane, which no box can hold.
@@ -81,6 +112,14 @@ pub struct World {
     pub primitives: Vec<Primitive>,
     /// Everything without.
     pub planes: Vec<EndlessPlane>,
+    /// Shapes in spaces of their own.
+    pub solids: Vec<Solid>,
+    /// Meshes that stand in several places.
+    pub parts: Vec<Part>,
+    /// Their places.
+    pub instances: Vec<Instance>,
+    /// The scene graph over `primitives`.
+    pub graph: Graph,
     /// Unit normals at the corners of smooth triangles.
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates at the corners of triangles.
@@ -99,14 +138,26 @@ pub struct World {
     pub notes: Vec<String>,
 }
 
-/// Gives a mesh one unit normal a vertex.
-pub type VertexNormals<'a> = dyn Fn(&Mesh) -> Vec<Vec3> + 'a;
+/// From the transforms from the root down to where a node stands.
+pub type Place = fn(&[Affine3A]) -> Option<Placement>;
+
+/// What students write and a world is made with. What is missing is done without.
+#[derive(Clone, Copy, Default)]
+pub struct Crafts {
+    /// Gives a mesh one unit normal a vertex; without it, meshes whose files have no normals are flat.
+    pub vertex_normals: Option<fn(&Mesh) -> Vec<Vec3>>,
+    /// Composes the transforms from the root down; without it, all shapes are made of triangles and meshes copied.
+    pub placement: Option<Place>,
+    /// A point of a patch; without it, patches are left out.
+    pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
+    /// Four triangles for each; without it, meshes stay as coarse as they are.
+    pub subdivide: Option<fn(&Mesh) -> Mesh>,
+}
 
 impl World {
-    /// Flattens `scene` as far as `effects` call for it. Meshes that are to be smooth and have no normals get them from
-    /// `vertex_normals`; without it they stay flat.
-    pub fn new(scene: &Scene, effects: &Effects, vertex_normals: Option<&VertexNormals<'_>>) -> World {
-        flatten::flatten(scene, effects, vertex_normals)
+    /// Flattens `scene` as far as `effects` call for it.
+    pub fn new(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
+        flatten::flatten(scene, effects, crafts)
     }
 }
 

@@ -23,7 +23,7 @@ pub(super) fn meshes<'a>(
     let (mut meshes, mut names) = (Vec::new(), Names::new("mesh"));
     let Some(value) = value else { return Ok((meshes, names)) };
     for entry in value.any_table()?.values() {
-        let table = entry.table(&["file", "smooth", "materials"])?;
+        let table = entry.table(&["file", "smooth", "materials", "subdivide"])?;
         let smooth = table.get("smooth").map_or(Ok(true), |smooth| smooth.truth())?;
         let own_materials = table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
         let (file, ObjFile { mesh, materials: described }) = read(&table)?;
@@ -33,7 +33,8 @@ pub(super) fn meshes<'a>(
             false => Vec::new(),
         };
         names.insert(entry.key, meshes.len());
-        meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, materials: indices });
+        let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| subdivisions(steps, &mesh))?;
+        meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, subdivisions, materials: indices });
     }
     Ok((meshes, names))
 }
@@ -52,6 +53,24 @@ fn read(table: &Table) -> Result<(PathBuf, ObjFile), LoadError> {
     };
     check(value, &read.mesh)?;
     Ok((file, read))
+}
+
+/// The most triangles that dividing may lead to.
+const MOST_TRIANGLES: u64 = 1 << 24;
+
+/// How often each triangle becomes four.
+fn subdivisions(value: Value, mesh: &Mesh) -> Result<u32, LoadError> {
+    let steps = value.whole(0..=12)?;
+    let triangles = (mesh.triangles.len() as u64) << (2 * steps);
+    match triangles <= MOST_TRIANGLES {
+        true => Ok(steps),
+        false => {
+            let message = format!("`subdivide = {steps}` makes {triangles} triangles of this mesh");
+            Err(value
+                .error(message)
+                .help(format!("take fewer steps: {MOST_TRIANGLES} triangles are the most")))
+        }
+    }
 }
 
 fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {

@@ -2,6 +2,7 @@
 
 use super::reader::Value;
 use crate::camera::{Camera, Lens, Shutter};
+use crate::graph::Savings;
 use crate::scene::error::LoadError;
 use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
@@ -108,7 +109,7 @@ pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError
     })
 }
 
-const QUALITY_KEYS: [&str; 12] = [
+const QUALITY_KEYS: [&str; 14] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
@@ -116,6 +117,8 @@ const QUALITY_KEYS: [&str; 12] = [
     "max_depth",
     "min_contribution",
     "accelerator",
+    "savings",
+    "copies",
     "split",
     "leaf_size",
     "triangle_method",
@@ -134,6 +137,8 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
             "accelerator" => quality.accelerator = value.choice(&ACCELERATORS)?,
+            "copies" => quality.copies = value.truth()?,
+            "savings" => quality.savings = savings(value)?,
             "sampler" => quality.sampler = value.choice(&SAMPLERS)?,
             "precision" => quality.precision = value.choice(&PRECISIONS)?,
             "split" => quality.split = value.choice(&SPLITS)?,
@@ -143,6 +148,12 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
         }
     }
     Ok(quality)
+}
+
+fn savings(value: Value) -> Result<Savings, LoadError> {
+    let table = value.table(&["volumes", "skip", "sort"])?;
+    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
+    Ok(Savings { volumes: wanted("volumes")?, skip: wanted("skip")?, sort: wanted("sort")? })
 }
 
 const SAMPLERS: [(&str, Sampler); 5] = [
@@ -155,8 +166,10 @@ const SAMPLERS: [(&str, Sampler); 5] = [
 
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
-const ACCELERATORS: [(&str, Accelerator); 6] = [
+const ACCELERATORS: [(&str, Accelerator); 8] = [
     ("brute_force", Accelerator::BruteForce),
+    ("bounding_boxes", Accelerator::BoundingBoxes),
+    ("bounding_spheres", Accelerator::BoundingSpheres),
     ("bvh", Accelerator::Bvh),
     ("grid", Accelerator::Grid),
     ("octree", Accelerator::Octree),

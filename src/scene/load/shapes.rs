@@ -4,12 +4,12 @@ use super::names::Names;
 use super::polygon;
 use super::reader::{Table, Value};
 use crate::scene::error::LoadError;
-use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
+use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
 use glam::Vec3;
 
 /// All that may stand in `shape`.
-pub(super) const KINDS: [&str; 9] =
-    ["sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "mesh"];
+pub(super) const KINDS: [&str; 10] =
+    ["sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "bezier", "mesh"];
 
 pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     let kind = value.table(&KINDS)?.one_of(&KINDS)?;
@@ -21,6 +21,7 @@ pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
         "cylinder" => Shape::Cylinder(cylinder(kind)?),
         "cone" => Shape::Cone(cone(kind)?),
         "disk" => Shape::Disk(disk(kind)?),
+        "bezier" => bezier(kind)?,
         "polygon" => Shape::Polygon(Polygon { corners: polygon::corners(kind)? }),
         _ => return Ok(Shape::Mesh(meshes.find(kind)?)),
     };
@@ -85,6 +86,24 @@ fn cone(value: Value) -> Result<Cone, LoadError> {
 pub(super) fn disk(value: Value) -> Result<Disk, LoadError> {
     let table = value.table(&["center", "normal", "radius"])?;
     Ok(Disk { center: point(&table, "center")?, normal: normal(&table)?, radius: radius(&table)? })
+}
+
+/// A net that is partly folded together is fine: teapots have such; one of a single point is not.
+fn bezier(value: Value) -> Result<Shape, LoadError> {
+    let table = value.table(&["rows", "steps"])?;
+    let list = table.need("rows", "four rows of four points")?;
+    let mut patch = BezierPatch { rows: [[Vec3::ZERO; 4]; 4] };
+    for (row, row_value) in patch.rows.iter_mut().zip(list.list_of(4, "four rows of four points")?) {
+        for (point, point_value) in row.iter_mut().zip(row_value.list_of(4, "four points")?) {
+            *point = point_value.vector()?;
+        }
+    }
+    let corner = patch.rows[0][0];
+    if patch.rows.as_flattened().iter().all(|point| *point == corner) {
+        return Err(list.error("all points of the net are the same, so no ray can hit the surface"));
+    }
+    let steps = table.get("steps").map_or(Ok(16), |steps| steps.whole(1..=1024))?;
+    Ok(Shape::Bezier { patch: Box::new(patch), steps })
 }
 
 fn point(table: &Table, key: &str) -> Result<Vec3, LoadError> {

@@ -1,6 +1,6 @@
 //! Inputs as Rust that can be pasted into a test: every number with all its digits.
 
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{
     BuildQuery, InsideQuery, LightSample, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery, SlabQuery,
@@ -8,7 +8,7 @@ use raykata::kit::{
 };
 use raykata::material::Material;
 use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 
 /// Something that can be written as a Rust expression.
 pub trait Paste {
@@ -102,6 +102,53 @@ impl Paste for Material {
             self.specular.paste(),
             self.exponent.paste()
         )
+    }
+}
+
+impl Paste for Affine3A {
+    fn paste(&self) -> String {
+        let columns = [self.matrix3.x_axis, self.matrix3.y_axis, self.matrix3.z_axis, self.translation]
+            .map(|column| Vec3::from(column).paste().replace("vec3", "vec3a"));
+        format!("&Affine3A::from_cols({})", columns.join(", "))
+    }
+}
+
+impl Paste for Sphere {
+    fn paste(&self) -> String {
+        format!("&Sphere {{ center: {}, radius: {} }}", self.center.paste(), self.radius.paste())
+    }
+}
+
+impl Paste for Cuboid {
+    fn paste(&self) -> String {
+        format!("&Cuboid {{ min: {}, max: {} }}", self.min.paste(), self.max.paste())
+    }
+}
+
+impl Paste for Cylinder {
+    fn paste(&self) -> String {
+        let (base, top, radius) = (self.base.paste(), self.top.paste(), self.radius.paste());
+        format!("&Cylinder {{ base: {base}, top: {top}, radius: {radius} }}")
+    }
+}
+
+impl Paste for Cone {
+    fn paste(&self) -> String {
+        let (base, apex, radius) = (self.base.paste(), self.apex.paste(), self.radius.paste());
+        format!("&Cone {{ base: {base}, apex: {apex}, radius: {radius} }}")
+    }
+}
+
+impl Paste for Disk {
+    fn paste(&self) -> String {
+        let (center, normal, radius) = (self.center.paste(), self.normal.paste(), self.radius.paste());
+        format!("&Disk {{ center: {center}, normal: {normal}, radius: {radius} }}")
+    }
+}
+
+impl Paste for Polygon {
+    fn paste(&self) -> String {
+        format!("&Polygon {{ corners: vec!{} }}", list(&self.corners))
     }
 }
 

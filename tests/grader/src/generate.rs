@@ -1,7 +1,9 @@
-//! `raykata generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, and the images of the scenes,
+//! `raykata generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, a tree, and the images of the
+//! scenes,
 //! so that the repository needs nobody else's work.
 
 mod images;
+mod tree;
 
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
@@ -24,6 +26,14 @@ pub fn write(scenes: &Path) -> Result<()> {
     raykata::film::write_atomically(&knot, |file| file.write_all(&bytes))
         .with_context(|| format!("cannot write {}", knot.display()))?;
     println!("wrote {}: {} triangles", knot.display(), 2 * ALONG * AROUND);
+    let (tree, text) = (scenes.join("meshes/tree.obj"), tree::obj());
+    raykata::film::write_atomically(&tree, |file| file.write_all(text.as_bytes()))
+        .with_context(|| format!("cannot write {}", tree.display()))?;
+    println!(
+        "wrote {}: {} triangles",
+        tree.display(),
+        text.lines().filter(|line| line.starts_with('f')).count()
+    );
     for (name, picture) in images::all() {
         let out = scenes.join("images").join(name);
         picture

@@ -58,6 +58,8 @@ impl Knobs {
         });
         quality.accelerator = self.accelerator.map_or(quality.accelerator, |accelerator| match accelerator {
             AcceleratorName::BruteForce => Accelerator::BruteForce,
+            AcceleratorName::BoundingBoxes => Accelerator::BoundingBoxes,
+            AcceleratorName::BoundingSpheres => Accelerator::BoundingSpheres,
             AcceleratorName::Bvh => Accelerator::Bvh,
         });
         quality.triangle_method = self.triangles.map_or(quality.triangle_method, |method| match method {
@@ -100,6 +102,8 @@ enum SplitName {
 #[derive(Clone, Copy, ValueEnum)]
 enum AcceleratorName {
     BruteForce,
+    BoundingBoxes,
+    BoundingSpheres,
     Bvh,
 }
 

@@ -7,7 +7,7 @@ use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
 use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TriangleMethod, load};
-use raykata::world::World;
+use raykata::world::{Crafts, World};
 use sha2::{Digest, Sha256};
 use solutions::stage7_effects;
 use std::fmt;
@@ -58,7 +58,8 @@ impl Scenes {
             let mut scene = load::load(&file).map_err(|error| anyhow!("{error}"))?;
             (scene.film.width, scene.film.height) = SIZE;
             scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.min(4);
-            let primitives = World::new(&scene, &stage7_effects::effects(&scene), None).primitives.len();
+            let primitives =
+                World::new(&scene, &stage7_effects::effects(&scene), &Crafts::default()).primitives.len();
             if primitives <= MOST_PRIMITIVES {
                 scenes.push((primitives, name, scene));
             }

@@ -74,13 +74,19 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
     scene.nodes.push(super::scenes::ball(2));
     judge(trial, "a dull ball, and a mirror ball that is not in the scene", scene.clone(), &expected, shown)?;
 
-    scene.meshes.push(SceneMesh { mesh: Arc::new(one_triangle()), smooth: true, materials: Vec::new() });
+    scene.meshes.push(SceneMesh {
+        mesh: Arc::new(one_triangle()),
+        smooth: true,
+        subdivisions: 0,
+        materials: Vec::new(),
+    });
     expected.smooth_meshes = vec![false];
     judge(trial, "a dull ball, and a smooth mesh that stands nowhere", scene.clone(), &expected, shown)?;
 
     // The mesh stands there, half of it of the mirror.
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 2], face_materials: vec![0, 1], ..one_triangle() };
-    scene.meshes = vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, materials: vec![1, 2] }];
+    scene.meshes =
+        vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: vec![1, 2] }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     expected.materials[2] = MaterialEffects { mirror: true, ..expected.materials[1].clone() };

@@ -3,7 +3,7 @@
 
 mod search;
 
-pub use search::{closest_in_table, overlapped, search, search_query, sphere_box};
+pub use search::{closest_in_table, closest_of, overlapped, search, search_query, sphere_box};
 
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};

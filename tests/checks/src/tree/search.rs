@@ -9,7 +9,12 @@ use raykata::shape::Sphere;
 
 /// `(primitive, t)` of the smallest `t` in the table that counts; of equal ones the first.
 pub fn closest_in_table(query: &SearchQuery) -> Option<(u32, f32)> {
-    let hits = query.table.primitives.iter().enumerate().filter(|(_, t)| query.ray.contains(**t));
+    closest_of(&query.table.primitives, &query.ray)
+}
+
+/// The same for the `t` of all primitives.
+pub fn closest_of(primitives: &[f32], ray: &Ray) -> Option<(u32, f32)> {
+    let hits = primitives.iter().enumerate().filter(|(_, t)| ray.contains(**t));
     hits.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
 }
 

@@ -1,0 +1,169 @@
+//! Meshes before they are placed: divided, smoothed, and patches made of triangles. Which of them stand in more than one
+//! place is counted here as well.
+
+use super::Crafts;
+use super::facets::Facet;
+use crate::effects::Effects;
+use crate::mesh::Mesh;
+use crate::scene::{Node, Scene, SceneMesh};
+use crate::shape::{BezierPatch, Shape};
+use glam::{Vec2, Vec3};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A mesh that is ready to be placed.
+pub(super) struct Ready {
+    pub mesh: Arc<Mesh>,
+    /// One a vertex, or none for a flat mesh.
+    pub normals: Vec<Vec3>,
+    /// For each of the mesh's own material names, the index of the scene's material.
+    pub materials: Vec<usize>,
+    /// Whether it is kept once and placed by instances.
+    pub shared: bool,
+    /// The part that holds it, once it has been asked for.
+    pub part: Option<u32>,
+}
+
+/// All that shows triangles: meshes of the scene by index, patches by the node that holds them.
+pub(super) struct Meshes {
+    pub of_scene: Vec<Ready>,
+    pub of_nodes: HashMap<usize, Ready>,
+}
+
+impl Meshes {
+    pub fn new(scene: &Scene, effects: &Effects, crafts: &Crafts) -> Meshes {
+        let places = Places::count(scene);
+        let shared = |places: u64| places > 1 && !scene.quality.copies && crafts.placement.is_some();
+        let of_scene = scene.meshes.iter().enumerate().map(|(index, source)| {
+            let smooth = effects.smooth_meshes.get(index) == Some(&true);
+            let (mesh, is_new) = divided(source, crafts);
+            Ready {
+                normals: if smooth { normals_of(&mesh, is_new, crafts) } else { Vec::new() },
+                mesh,
+                materials: source.materials.clone(),
+                shared: shared(places.of_meshes[index]),
+                part: None,
+            }
+        });
+        let patch = |(index, node): (usize, &Node)| {
+            let Some(Shape::Bezier { patch, steps }) = &node.shape else { return None };
+            let mesh = patch_mesh(patch, *steps, crafts.bezier_point?);
+            let ready = Ready {
+                normals: normals_of(&mesh, true, crafts),
+                mesh: Arc::new(mesh),
+                materials: Vec::new(),
+                shared: shared(places.of_nodes[index]),
+                part: None,
+            };
+            Some((index, ready))
+        };
+        Meshes {
+            of_scene: of_scene.collect(),
+            of_nodes: scene.nodes.iter().enumerate().filter_map(patch).collect(),
+        }
+    }
+}
+
+/// The mesh as the scene wants it, and whether that is another one than in its file.
+fn divided(source: &SceneMesh, crafts: &Crafts) -> (Arc<Mesh>, bool) {
+    match crafts.subdivide {
+        Some(subdivide) if source.subdivisions > 0 => {
+            let mut mesh = subdivide(&source.mesh);
+            for _ in 1..source.subdivisions {
+                mesh = subdivide(&mesh);
+            }
+            (Arc::new(mesh), true)
+        }
+        _ => (source.mesh.clone(), false),
+    }
+}
+
+/// Those of the file if they belong to this mesh, or averages.
+fn normals_of(mesh: &Mesh, is_new: bool, crafts: &Crafts) -> Vec<Vec3> {
+    match crafts.vertex_normals {
+        _ if !is_new && !mesh.normals.is_empty() => mesh.normals.clone(),
+        Some(average) => average(mesh),
+        None => Vec::new(),
+    }
+}
+
+/// `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the viewer.
+fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> Vec3) -> Mesh {
+    let side = steps + 1;
+    let at = |row: u32, column: u32| Vec2::new(column as f32, row as f32) / steps as f32;
+    let grid = || (0..side).flat_map(move |row| (0..side).map(move |column| at(row, column)));
+    let square = |row: u32, column: u32| {
+        let [a, b] = [row * side + column, (row + 1) * side + column];
+        [[a, a + 1, b + 1], [a, b + 1, b]]
+    };
+    let squares = (0..steps).flat_map(|row| (0..steps).flat_map(move |column| square(row, column)));
+    Mesh {
+        positions: grid().map(|uv| point(patch, uv)).collect(),
+        uvs: grid().collect(),
+        triangles: squares.collect(),
+        ..Mesh::default()
+    }
+}
+
+/// In how many places the nodes of a scene stand, and the meshes. What moves is copied, and does not count.
+struct Places {
+    of_nodes: Vec<u64>,
+    of_meshes: Vec<u64>,
+}
+
+impl Places {
+    fn count(scene: &Scene) -> Places {
+        let mut of_nodes = vec![0u64; scene.nodes.len()];
+        for index in parents_first(scene) {
+            if scene.roots.contains(&index) {
+                of_nodes[index] += 1;
+            }
+            for &child in &scene.nodes[index].children {
+                of_nodes[child] += of_nodes[index];
+            }
+        }
+        let mut of_meshes = vec![0; scene.meshes.len()];
+        for (node, places) in scene.nodes.iter().zip(&of_nodes) {
+            if let Some(Shape::Mesh(mesh)) = node.shape {
+                of_meshes[mesh] += places;
+            }
+        }
+        Places { of_nodes, of_meshes }
+    }
+}
+
+/// All nodes that are reached from a root, each before its children.
+fn parents_first(scene: &Scene) -> Vec<usize> {
+    fn visit(scene: &Scene, node: usize, seen: &mut [bool], order: &mut Vec<usize>) {
+        if std::mem::replace(&mut seen[node], true) {
+            return;
+        }
+        for &child in &scene.nodes[node].children {
+            visit(scene, child, seen, order);
+        }
+        order.push(node);
+    }
+    let (mut seen, mut order) = (vec![false; scene.nodes.len()], Vec::new());
+    for &root in &scene.roots {
+        visit(scene, root, &mut seen, &mut order);
+    }
+    order.reverse();
+    order
+}
+
+impl Ready {
+    /// The material of a triangle, if it has one of its own.
+    pub fn material_of(&self, face: usize) -> Option<u32> {
+        let name = *self.mesh.face_materials.get(face)?;
+        self.materials.get(name as usize).map(|&material| material as u32)
+    }
+
+    /// A triangle with what lies at its corners.
+    pub fn facet(&self, face: usize) -> Facet {
+        let vertices = self.mesh.triangles[face];
+        let normals =
+            (!self.normals.is_empty()).then(|| vertices.map(|vertex| self.normals[vertex as usize]));
+        let uvs = (!self.mesh.uvs.is_empty()).then(|| vertices.map(|vertex| self.mesh.uvs[vertex as usize]));
+        Facet { corners: self.mesh.corners(face), normals, uvs }
+    }
+}
