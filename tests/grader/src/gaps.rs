@@ -7,13 +7,12 @@ use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::root;
 use crate::pictures::{Scenes, Shown};
+use crate::queue;
 use crate::worker::{CALL_PATIENCE, Worker};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use raykata::kit::Door;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Whether to compare or to write.
 #[derive(Args)]
@@ -54,22 +53,10 @@ pub fn run(options: &Options) -> Result<bool> {
     let gaps = all(&root)?;
     let scenes = Scenes::read(&root)?.of_gaps();
     let whole = scenes.shown_by(&solutions::Kit);
-    let jobs = std::thread::available_parallelism().map_or(1, usize::from);
-    let workshops = Workshop::open_all(&root, jobs)?;
-    let (next, told) = (AtomicUsize::new(0), Mutex::new(vec![String::new(); gaps.len()]));
-    let work = |workshop: &Workshop| -> Result<()> {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(gap) = gaps.get(index) else { return Ok(()) };
-            let text = lacks(workshop, &[(&gap.file, &gap.text)], &scenes, &whole)?;
-            told.lock().unwrap_or_else(|broken| broken.into_inner())[index] = text;
-        }
-    };
-    std::thread::scope(|scope| {
-        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
-        running.into_iter().try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see above")))
+    let workshops = Workshop::open_all(&root, queue::cores())?;
+    let told = queue::run(&workshops, &gaps, |workshop, gap| {
+        lacks(workshop, &[(&gap.file, &gap.text)], &scenes, &whole)
     })?;
-    let told = told.into_inner().unwrap_or_default();
     let text: String =
         gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
     let file = root.join(RECORD);

@@ -15,6 +15,7 @@ use crate::corpus::workshop::{Built, Workshop};
 use crate::gaps::{self, Gap};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
+use crate::queue;
 use crate::worker::Worker;
 use anyhow::{Result, bail};
 use checks::{Check, STAGES, Verdict};
@@ -27,7 +28,6 @@ use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Which changes to try.
 #[derive(Args)]
@@ -41,7 +41,7 @@ pub struct Options {
     #[arg(long, conflicts_with = "resume")]
     again: bool,
     /// How many to try at once.
-    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
+    #[arg(long, default_value_t = queue::cores())]
     jobs: usize,
 }
 
@@ -112,33 +112,25 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
         bar.set_style(style);
     }
-    let (next, journal) = (AtomicUsize::new(0), Mutex::new(journal));
+    let journal = Mutex::new(journal);
     let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
-    let work = |workshop: &Workshop| -> Result<()> {
-        while let Some(mutant) = mutants.get(next.fetch_add(1, Ordering::Relaxed)) {
-            bar.set_message(mutant.file.clone());
-            if lock().of(mutant).is_none() {
-                let fate = match workshop.build(&mutant.file, &mutant.diff)? {
-                    Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
-                        Fate::Survived if mutant.stage().is_none() => {
-                            judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
-                        }
-                        fate => fate,
-                    },
-                    Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-                    Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
-                };
-                lock().write(mutant, fate)?;
-            }
-            bar.inc(1);
+    queue::run(&workshops, mutants, |workshop, mutant| {
+        bar.set_message(mutant.file.clone());
+        if lock().of(mutant).is_none() {
+            let fate = match workshop.build(&mutant.file, &mutant.diff)? {
+                Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                    Fate::Survived if mutant.stage().is_none() => {
+                        judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                    }
+                    fate => fate,
+                },
+                Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+                Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
+            };
+            lock().write(mutant, fate)?;
         }
+        bar.inc(1);
         Ok(())
-    };
-    std::thread::scope(|scope| {
-        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
-        running
-            .into_iter()
-            .try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see the message above")))
     })?;
     bar.finish_and_clear();
     Ok(())
