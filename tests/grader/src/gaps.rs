@@ -8,6 +8,7 @@ use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::root;
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
+use crate::sync::{self, Block};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -139,33 +140,48 @@ pub fn all(root: &Path) -> Result<Vec<Gap>> {
     for name in files {
         let file = format!("solutions/src/{name}");
         let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
-        gaps.extend(in_file(&file, &text));
+        gaps.extend(in_file(&file, &text)?);
     }
     Ok(gaps)
 }
 
-fn in_file(file: &str, text: &str) -> Vec<Gap> {
-    let lines: Vec<&str> = text.lines().collect();
+fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
+    let blocks = sync::blocks(text, Path::new(file))?;
     let mut gaps = Vec::new();
     let mut function = "";
-    let mut begun = None;
-    for (number, line) in lines.iter().enumerate() {
-        let mark = line.trim_start();
-        if let Some(rest) = line.strip_prefix("pub fn ") {
-            function = rest.split(['(', '<']).next().unwrap_or_default();
-        } else if mark == "// <solution>" {
-            begun = Some(number);
-        } else if let (Some(stub), Some(begin)) = (mark.strip_prefix("// <stub> "), begun) {
-            let end = lines[number..].iter().position(|line| line.trim_start() == "// </solution>");
-            let after = number + end.unwrap_or(0) + 1;
-            let text = [&lines[..begin], &[stub], &lines[after..]].concat().join("\n") + "\n";
-            gaps.push(Gap { file: file.into(), function: function.into(), text });
-            begun = None;
-        } else if mark == "// </solution>" {
-            begun = None;
+    for (number, block) in blocks.iter().enumerate() {
+        match block {
+            Block::Same(lines) => {
+                if let Some(head) = lines.iter().rev().find_map(|line| line.strip_prefix("pub fn ")) {
+                    function = head.split(['(', '<']).next().unwrap_or_default();
+                }
+            }
+            // A helper is asked for by no exercise.
+            Block::Answer(_, stub) if stub.is_empty() => {}
+            Block::Answer(..) => {
+                gaps.push(Gap {
+                    file: file.into(),
+                    function: function.into(),
+                    text: without(&blocks, number),
+                });
+            }
         }
     }
-    gaps
+    Ok(gaps)
+}
+
+/// The whole text but for the answer in block `gap`.
+fn without(blocks: &[Block<'_>], gap: usize) -> String {
+    let mut text = String::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let lines = match block {
+            Block::Answer(_, stub) if number == gap => stub.join("\n"),
+            Block::Same(lines) | Block::Answer(lines, _) => lines.join("\n"),
+        };
+        text += &lines;
+        text.push('\n');
+    }
+    text
 }
 
 #[cfg(test)]
@@ -174,11 +190,15 @@ mod tests {
 
     #[test]
     fn each_function_is_left_out_by_itself() {
-        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // </solution>\n}\n\
+        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // <stub> // and\n    // </solution>\n}\n\
                     // <solution>\nfn help() {}\n// </solution>\n";
-        let gaps = in_file("f", text);
+        let gaps = in_file("f", text).unwrap();
         assert_eq!(gaps.len(), 1);
         assert_eq!(gaps[0].function, "one");
-        assert!(gaps[0].text.starts_with("pub fn one(x: f32) -> f32 {\ntodo!(\"x\")\n}\n// <solution>"));
+        assert!(
+            gaps[0]
+                .text
+                .starts_with("pub fn one(x: f32) -> f32 {\n    todo!(\"x\")\n    // and\n}\n// <solution>")
+        );
     }
 }
