@@ -106,7 +106,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let workshops = Workshop::open_all(root, jobs)?;
     let scenes = Scenes::read(root)?;
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
-    let (gaps, of_gaps) = (gaps::that_show(root)?, Scenes::read(root)?.of_gaps());
+    let (gaps, of_gaps) = (gaps::that_show(root)?, scenes.of_gaps());
     let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
     let bar = ProgressBar::new(mutants.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
