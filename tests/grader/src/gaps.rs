@@ -55,9 +55,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let scenes = Scenes::read(&root)?.of_gaps();
     let whole = scenes.shown_by(&solutions::Kit);
     let workshops = Workshop::open_all(&root, queue::cores())?;
-    let told = queue::run(&workshops, &gaps, |workshop, gap| {
-        lacks(workshop, &[(&gap.file, &gap.text)], &scenes, &whole)
-    })?;
+    let told = told(&workshops, &gaps, &scenes, &whole)?;
     let text: String =
         gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
     let file = root.join(RECORD);
@@ -76,6 +74,11 @@ pub fn run(options: &Options) -> Result<bool> {
     Ok(false)
 }
 
+/// What pictures lack without each of these functions.
+fn told(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
+    queue::run(workshops, gaps, |workshop, gap| lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole))
+}
+
 /// In what the pictures of the solutions with these changes differ from those of the whole.
 pub fn lacks(
     workshop: &Workshop,
@@ -89,7 +92,7 @@ pub fn lacks(
     };
     // What is said, the scenes of which it is said, and hashes of what is seen there.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for (one, whole) in scenes.shown_by(&Door(Worker::new(worker, CALL_PATIENCE))).iter().zip(whole) {
+    for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
             Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
@@ -113,17 +116,18 @@ pub fn lacks(
     Ok(said.iter().map(line).collect())
 }
 
-/// Gaps that make another picture, as opposed to none, and what is kept of each in tests/corpus/gaps.txt.
-pub fn that_show(root: &Path) -> Result<Vec<(Gap, String)>> {
-    let kept = std::fs::read_to_string(root.join(RECORD)).with_context(|| RECORD.to_owned())?;
-    let kept_of = |gap: &Gap| {
-        let block = kept.split("\n\n").find(|block| block.lines().next() == Some(&gap.title()))?;
-        let told = block.split_once('\n')?.1;
-        (!told.contains(NOTHING) && !told.contains("not written yet: solutions/"))
-            .then(|| format!("{told}\n"))
-    };
-    let mut gaps: Vec<(Gap, String)> =
-        all(root)?.into_iter().filter_map(|gap| kept_of(&gap).map(|told| (gap, told))).collect();
+/// Gaps that make another picture, as opposed to none, and what each lacks. Not from the record, which may be of other
+/// solutions: then every change would seem to show.
+pub fn that_show(
+    root: &Path,
+    workshops: &[Workshop],
+    scenes: &Scenes,
+    whole: &[Shown],
+) -> Result<Vec<(Gap, String)>> {
+    let gaps = all(root)?;
+    let told = told(workshops, &gaps, scenes, whole)?;
+    let shows = |told: &str| !told.contains(NOTHING) && !told.contains("not written yet: solutions/");
+    let mut gaps: Vec<_> = gaps.into_iter().zip(told).filter(|(_, told)| shows(told)).collect();
     // Pictures without a hierarchy take longest.
     gaps.sort_by_key(|(_, told)| told.contains("every ray tests every primitive"));
     Ok(gaps)

@@ -16,7 +16,7 @@ use crate::gaps::{self, Gap};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
-use crate::worker::Worker;
+use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Result, bail};
 use checks::{Check, STAGES, Verdict};
 use clap::Args;
@@ -106,12 +106,19 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let workshops = Workshop::open_all(root, jobs)?;
     let scenes = Scenes::read(root)?;
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
-    let (gaps, of_gaps) = (gaps::that_show(root)?, scenes.of_gaps());
+    let of_gaps = scenes.of_gaps();
     let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
     let bar = ProgressBar::new(mutants.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
         bar.set_style(style);
     }
+    bar.set_message("what gaps show");
+    let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
+    let gaps = if mutants.iter().any(needs_gaps) {
+        gaps::that_show(root, &workshops, &of_gaps.1, &of_gaps.0)?
+    } else {
+        Vec::new()
+    };
     let journal = Mutex::new(journal);
     let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
     queue::run(&workshops, mutants, |workshop, mutant| {
@@ -151,8 +158,11 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
             false => Fate::ByAnotherStage(check.name.into()),
         })
     };
-    let by_picture =
-        || scenes.first_difference(&Door(Worker::hasty(worker.to_owned())), expected).map(Fate::ByPicture);
+    let by_picture = || {
+        scenes
+            .first_difference(&Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE)), expected)
+            .map(Fate::ByPicture)
+    };
     let noticed = match own {
         Some(own) => {
             by_checks(&|stage| stage == own).or_else(by_picture).or_else(|| by_checks(&|stage| stage != own))
@@ -172,9 +182,9 @@ fn judge_by_gaps(
     (whole, scenes): &(Vec<Shown>, Scenes),
 ) -> Result<Fate> {
     let changed = entry::apply(&mutant.file, &mutant.diff, &workshop.original(&mutant.file)?)?;
-    for (gap, kept) in gaps {
+    for (gap, unchanged) in gaps {
         let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
-        if gaps::lacks(workshop, &changes, scenes, whole)? != *kept {
+        if gaps::lacks(workshop, &changes, scenes, whole)? != *unchanged {
             return Ok(Fate::ByGap(gap.function.clone()));
         }
     }
