@@ -1,5 +1,5 @@
 //! The frame driver: every pixel once, on all cores, with the same result for any number of them; and no random number
-//! that the scene does not call for.
+//! that the scene does not call for. One idea in one file, a third of it tests.
 
 use crate::count::{Counts, Event, Tally};
 use crate::effects::{Effect, Effects};

@@ -1,4 +1,5 @@
 //! Nothing to do here: this connects the functions of the stage files with the door through which the kit calls them.
+//! It is one list, as long as that of the functions.
 
 use crate::{
     stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,

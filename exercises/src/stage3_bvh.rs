@@ -1,7 +1,7 @@
 //! Stage 3 · bounding volume hierarchies: boxes in boxes, so that most of a scene is never tested.
 //!
 //! Slides: "Bounding Volume Hierarchy", "Object Median", "Spatial Median", "Surface Area Heuristic", the box
-//! intersection with `t_b = t_x ∩ t_y ∩ t_z`, "Sort Bounding Volume Intersections".
+//! intersection with `t_b = t_x ∩ t_y ∩ t_z`, "Sort Bounding Volume Intersections". A stage is one file, however long.
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`Probe`] with `open` (what a node holds), `enter`
 //! (where the ray enters its box) and `hit` (where it hits a primitive). Searches ask the probe and nothing else.

@@ -70,6 +70,7 @@ pub fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<
 /// that starts 0.0001 away misses what touches the surface.
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
+    // `off_surface` of stage 4 does the same, but as a helper: here it is what is asked for.
     let side = if normal.dot(direction) < 0.0 { -normal } else { normal };
     let origin = point + error.dot(side.abs()) * side;
     // The sum is rounded as well, so go one more step outwards on each axis.

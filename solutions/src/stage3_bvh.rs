@@ -1,7 +1,7 @@
 //! Stage 3 · bounding volume hierarchies: boxes in boxes, so that most of a scene is never tested.
 //!
 //! Slides: "Bounding Volume Hierarchy", "Object Median", "Spatial Median", "Surface Area Heuristic", the box
-//! intersection with `t_b = t_x ∩ t_y ∩ t_z`, "Sort Bounding Volume Intersections".
+//! intersection with `t_b = t_x ∩ t_y ∩ t_z`, "Sort Bounding Volume Intersections". A stage is one file, however long.
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`Probe`] with `open` (what a node holds), `enter`
 //! (where the ray enters its box) and `hit` (where it hits a primitive). Searches ask the probe and nothing else.
@@ -105,8 +105,8 @@ pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
 const LATER: f32 = 1.0 + 2.0 * (3.0 * f32::EPSILON / 2.0);
 
 /// The way in is compared with the `t` of hits, which is rounded in another way: unless it is early by as much, a box is
-/// skipped that holds a hit at the very `t` of the best one. Measured: 1 of 1,000 rays that are aimed at corners of walls
-/// found another triangle than brute force.
+/// skipped that holds a hit at the very `t` of the best one. Measured: without this, 1 of 500 rays in a room of flat walls
+/// and 2 or 3 of 500 in a stadium with something small in it find another triangle than brute force.
 const EARLIER: f32 = 1.0 - 2.0 * (3.0 * f32::EPSILON / 2.0);
 // </solution>
 

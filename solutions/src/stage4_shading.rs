@@ -77,6 +77,7 @@ const BEFORE_THE_LIGHT: f32 = 0.9999;
 /// A point on the viewer's side of the surface, as near to it as its error allows (Pharr, Jakob and Humphreys,
 /// "Physically Based Rendering", 4th edition, section 6.8.6).
 pub fn off_surface(surface: &Surface) -> Vec3 {
+    // Stage 10 says this once more: its `offset_origin` is an exercise, and shadows may not wait for that.
     // The true surface is within `error` of the point; seen along the normal, that is this far.
     let normal = surface.geometric_normal;
     let origin = surface.point + surface.error.dot(normal.abs()) * normal;

@@ -51,7 +51,7 @@ pub fn list(root: &Path) -> Result<()> {
             println!("      waits for stage {stage}");
         }
     }
-    let waiting = cases.iter().filter(|case| case.checks.is_empty() && case.tests.is_empty()).count();
+    let waiting = cases.iter().filter(|case| case.awaits.is_some()).count();
     println!("\n{} cases, {waiting} of which wait for later stages", cases.len());
     Ok(())
 }

@@ -1,12 +1,10 @@
 //! `raykata check`, `list`, `hint`, and `raykata` alone: where a student stands and what comes next.
 
 use crate::kits::Source;
+use crate::queue;
 use anyhow::{Result, bail};
 use checks::rubric::{self, RUBRIC};
 use checks::{Check, STAGES, Verdict};
-use std::collections::BTreeMap;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A check and how it ended.
 pub struct Graded {
@@ -25,39 +23,19 @@ impl Graded {
 }
 
 /// Runs all checks of the stages for which `wanted` holds, each with a kit of its own, on all cores.
-pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Vec<Graded> {
-    run_checks_on(std::thread::available_parallelism().map_or(1, usize::from), source, wanted)
+pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
+    run_checks_on(queue::cores(), source, wanted)
 }
 
 /// The same on this many threads.
-pub fn run_checks_on(threads: usize, source: &Source, wanted: impl Fn(u8) -> bool) -> Vec<Graded> {
+pub fn run_checks_on(threads: usize, source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
     let checks: Vec<&'static Check> =
         STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
-    let next = AtomicUsize::new(0);
-    let verdicts = Mutex::new(BTreeMap::new());
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                while let Some(check) = checks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let verdict = checks::run(check, &source.fresh(), 0);
-                    if let Ok(mut verdicts) = verdicts.lock() {
-                        verdicts.insert((check.stage, check.name), verdict);
-                    }
-                }
-            });
-        }
-    });
-    let mut verdicts = verdicts.into_inner().unwrap_or_default();
-    checks
-        .into_iter()
-        .map(|check| Graded {
-            check,
-            verdict: verdicts
-                .remove(&(check.stage, check.name))
-                .unwrap_or_else(|| Verdict::Failed("the check itself broke\n".into())),
-            points: rubric::entry(check.stage, check.name).points,
-        })
-        .collect()
+    let grade = |_: &(), &check: &&'static Check| {
+        let verdict = checks::run(check, &source.fresh(), 0);
+        Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
+    };
+    queue::run(&vec![(); threads], &checks, grade)
 }
 
 /// Prints the scorecard; `Ok(true)` if everything passed.
@@ -67,7 +45,7 @@ pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     {
         bail!("there is no stage {stage}; `raykata list` shows what there is");
     }
-    let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number));
+    let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number))?;
     for (number, _) in STAGES.iter().filter(|(number, _)| stage.is_none_or(|stage| stage == *number)) {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
@@ -132,8 +110,8 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
 }
 
 /// Where the student stands, and the next step.
-pub fn status(source: &Source) {
-    let graded = run_checks(source, |_| true);
+pub fn status(source: &Source) -> Result<()> {
+    let graded = run_checks(source, |_| true)?;
     for (number, _) in STAGES {
         let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
         println!("{}", stage_line(*number, &of_stage));
@@ -154,6 +132,7 @@ pub fn status(source: &Source) {
             println!("  a hint:  cargo run -- hint {name}");
         }
     }
+    Ok(())
 }
 
 /// All checks with their points and laws.

@@ -7,13 +7,13 @@ use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::root;
 use crate::pictures::{Scenes, Shown};
+use crate::queue;
+use crate::sync::{self, Block};
 use crate::worker::{CALL_PATIENCE, Worker};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use raykata::kit::Door;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Whether to compare or to write.
 #[derive(Args)]
@@ -54,22 +54,8 @@ pub fn run(options: &Options) -> Result<bool> {
     let gaps = all(&root)?;
     let scenes = Scenes::read(&root)?.of_gaps();
     let whole = scenes.shown_by(&solutions::Kit);
-    let jobs = std::thread::available_parallelism().map_or(1, usize::from);
-    let workshops = Workshop::open_all(&root, jobs)?;
-    let (next, told) = (AtomicUsize::new(0), Mutex::new(vec![String::new(); gaps.len()]));
-    let work = |workshop: &Workshop| -> Result<()> {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(gap) = gaps.get(index) else { return Ok(()) };
-            let text = lacks(workshop, &[(&gap.file, &gap.text)], &scenes, &whole)?;
-            told.lock().unwrap_or_else(|broken| broken.into_inner())[index] = text;
-        }
-    };
-    std::thread::scope(|scope| {
-        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
-        running.into_iter().try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see above")))
-    })?;
-    let told = told.into_inner().unwrap_or_default();
+    let workshops = Workshop::open_all(&root, queue::cores())?;
+    let told = told(&workshops, &gaps, &scenes, &whole)?;
     let text: String =
         gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
     let file = root.join(RECORD);
@@ -88,6 +74,11 @@ pub fn run(options: &Options) -> Result<bool> {
     Ok(false)
 }
 
+/// What pictures lack without each of these functions.
+fn told(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
+    queue::run(workshops, gaps, |workshop, gap| lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole))
+}
+
 /// In what the pictures of the solutions with these changes differ from those of the whole.
 pub fn lacks(
     workshop: &Workshop,
@@ -101,7 +92,7 @@ pub fn lacks(
     };
     // What is said, the scenes of which it is said, and hashes of what is seen there.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
-    for (one, whole) in scenes.shown_by(&Door(Worker::new(worker, CALL_PATIENCE))).iter().zip(whole) {
+    for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
             Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
@@ -125,17 +116,18 @@ pub fn lacks(
     Ok(said.iter().map(line).collect())
 }
 
-/// Gaps that make another picture, as opposed to none, and what is kept of each in tests/corpus/gaps.txt.
-pub fn that_show(root: &Path) -> Result<Vec<(Gap, String)>> {
-    let kept = std::fs::read_to_string(root.join(RECORD)).with_context(|| RECORD.to_owned())?;
-    let kept_of = |gap: &Gap| {
-        let block = kept.split("\n\n").find(|block| block.lines().next() == Some(&gap.title()))?;
-        let told = block.split_once('\n')?.1;
-        (!told.contains(NOTHING) && !told.contains("not written yet: solutions/"))
-            .then(|| format!("{told}\n"))
-    };
-    let mut gaps: Vec<(Gap, String)> =
-        all(root)?.into_iter().filter_map(|gap| kept_of(&gap).map(|told| (gap, told))).collect();
+/// Gaps that make another picture, as opposed to none, and what each lacks. Not from the record, which may be of other
+/// solutions: then every change would seem to show.
+pub fn that_show(
+    root: &Path,
+    workshops: &[Workshop],
+    scenes: &Scenes,
+    whole: &[Shown],
+) -> Result<Vec<(Gap, String)>> {
+    let gaps = all(root)?;
+    let told = told(workshops, &gaps, scenes, whole)?;
+    let shows = |told: &str| !told.contains(NOTHING) && !told.contains("not written yet: solutions/");
+    let mut gaps: Vec<_> = gaps.into_iter().zip(told).filter(|(_, told)| shows(told)).collect();
     // Pictures without a hierarchy take longest.
     gaps.sort_by_key(|(_, told)| told.contains("every ray tests every primitive"));
     Ok(gaps)
@@ -152,33 +144,48 @@ pub fn all(root: &Path) -> Result<Vec<Gap>> {
     for name in files {
         let file = format!("solutions/src/{name}");
         let text = std::fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
-        gaps.extend(in_file(&file, &text));
+        gaps.extend(in_file(&file, &text)?);
     }
     Ok(gaps)
 }
 
-fn in_file(file: &str, text: &str) -> Vec<Gap> {
-    let lines: Vec<&str> = text.lines().collect();
+fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
+    let blocks = sync::blocks(text, Path::new(file))?;
     let mut gaps = Vec::new();
     let mut function = "";
-    let mut begun = None;
-    for (number, line) in lines.iter().enumerate() {
-        let mark = line.trim_start();
-        if let Some(rest) = line.strip_prefix("pub fn ") {
-            function = rest.split(['(', '<']).next().unwrap_or_default();
-        } else if mark == "// <solution>" {
-            begun = Some(number);
-        } else if let (Some(stub), Some(begin)) = (mark.strip_prefix("// <stub> "), begun) {
-            let end = lines[number..].iter().position(|line| line.trim_start() == "// </solution>");
-            let after = number + end.unwrap_or(0) + 1;
-            let text = [&lines[..begin], &[stub], &lines[after..]].concat().join("\n") + "\n";
-            gaps.push(Gap { file: file.into(), function: function.into(), text });
-            begun = None;
-        } else if mark == "// </solution>" {
-            begun = None;
+    for (number, block) in blocks.iter().enumerate() {
+        match block {
+            Block::Same(lines) => {
+                if let Some(head) = lines.iter().rev().find_map(|line| line.strip_prefix("pub fn ")) {
+                    function = head.split(['(', '<']).next().unwrap_or_default();
+                }
+            }
+            // A helper is asked for by no exercise.
+            Block::Answer(_, stub) if stub.is_empty() => {}
+            Block::Answer(..) => {
+                gaps.push(Gap {
+                    file: file.into(),
+                    function: function.into(),
+                    text: without(&blocks, number),
+                });
+            }
         }
     }
-    gaps
+    Ok(gaps)
+}
+
+/// The whole text but for the answer in block `gap`.
+fn without(blocks: &[Block<'_>], gap: usize) -> String {
+    let mut text = String::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let lines = match block {
+            Block::Answer(_, stub) if number == gap => stub.join("\n"),
+            Block::Same(lines) | Block::Answer(lines, _) => lines.join("\n"),
+        };
+        text += &lines;
+        text.push('\n');
+    }
+    text
 }
 
 #[cfg(test)]
@@ -187,11 +194,15 @@ mod tests {
 
     #[test]
     fn each_function_is_left_out_by_itself() {
-        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // </solution>\n}\n\
+        let text = "pub fn one(x: f32) -> f32 {\n    // <solution>\n    x\n    // <stub> todo!(\"x\")\n    // <stub> // and\n    // </solution>\n}\n\
                     // <solution>\nfn help() {}\n// </solution>\n";
-        let gaps = in_file("f", text);
+        let gaps = in_file("f", text).unwrap();
         assert_eq!(gaps.len(), 1);
         assert_eq!(gaps[0].function, "one");
-        assert!(gaps[0].text.starts_with("pub fn one(x: f32) -> f32 {\ntodo!(\"x\")\n}\n// <solution>"));
+        assert!(
+            gaps[0]
+                .text
+                .starts_with("pub fn one(x: f32) -> f32 {\n    todo!(\"x\")\n    // and\n}\n// <solution>")
+        );
     }
 }

@@ -11,6 +11,7 @@ pub mod kits;
 pub mod knobs;
 pub mod mutants;
 pub mod pictures;
+pub mod queue;
 pub mod render;
 pub mod report;
 pub mod strip;

@@ -93,7 +93,7 @@ fn main() -> ExitCode {
 /// Whether all went well.
 fn run(cli: Cli) -> Result<bool> {
     match cli.command {
-        None => check::status(&Source::prepare(Which::Exercises, &root()?)?),
+        None => check::status(&Source::prepare(Which::Exercises, &root()?)?)?,
         Some(Command::Render(options)) => render::run(&options)?,
         Some(Command::Explain(options)) => explain::run(&options)?,
         Some(Command::Gauntlet(options)) => return gauntlet::run(&options),

@@ -76,7 +76,7 @@ impl Scenes {
     }
 
     /// Those that between them ask for every function of the exercises.
-    pub fn of_gaps(mut self) -> Scenes {
+    pub fn of_gaps(&self) -> Scenes {
         let asked = [
             "stage2",
             "effects",
@@ -85,8 +85,7 @@ impl Scenes {
             "effects, lamps from the middle",
             "effects, no lens, all smooth",
         ];
-        self.0.retain(|(name, _)| asked.contains(&name.as_str()));
-        self
+        Scenes(self.0.iter().filter(|(name, _)| asked.contains(&name.as_str())).cloned().collect())
     }
 
     /// What a kit shows of them all.
@@ -143,12 +142,10 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
     let normals = mishap::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
     let frame = mishap::catch(|| kit.render(&job, &Unwatched));
-    let made_of =
-        frame.as_ref().ok().and_then(Option::as_ref).map(|frame| (frame.primitives, frame.hierarchy));
-    let notes =
-        frame.as_ref().ok().and_then(Option::as_ref).map_or_else(Vec::new, |frame| frame.notes.clone());
-    let counts =
-        frame.as_ref().ok().and_then(Option::as_ref).map_or_else(Counts::default, |frame| frame.counts);
+    let seen = frame.as_ref().ok().and_then(Option::as_ref);
+    let made_of = seen.map(|frame| (frame.primitives, frame.hierarchy));
+    let notes = seen.map_or_else(Vec::new, |frame| frame.notes.clone());
+    let counts = seen.map_or_else(Counts::default, |frame| frame.counts);
     let pixels = match frame {
         Ok(Some(frame)) => Ok(bits(&frame)),
         Ok(None) => Err("cancelled".into()),

@@ -92,38 +92,64 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
+/// Lines of a solution file that stand together.
+pub enum Block<'a> {
+    /// The same in both.
+    Same(Vec<&'a str>),
+    /// An answer with its marks, and the lines that replace it.
+    Answer(Vec<&'a str>, Vec<String>),
+}
+
 /// The exercise that a solution file makes.
 pub fn stub(solution: &str, path: &Path) -> Result<String> {
     let mut lines: Vec<String> = Vec::new();
+    for block in blocks(solution, path)? {
+        match block {
+            Block::Same(same) => lines.extend(same.into_iter().map(str::to_owned)),
+            Block::Answer(_, stub) => lines.extend(stub),
+        }
+    }
+    // An answer that leaves nothing behind leaves one blank line too many.
+    lines.dedup_by(|line, above| line.is_empty() && above.is_empty());
+    Ok(lines.join("\n").trim_end().to_owned() + "\n")
+}
+
+/// A solution file, cut at its marks.
+pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
+    let mut blocks: Vec<Block<'a>> = Vec::new();
     let mut opened = None;
     for (number, line) in solution.lines().enumerate() {
         let (number, mark) = (number + 1, line.trim_start());
         let indent = &line[..line.len() - mark.len()];
         let place = || format!("{}:{number}", path.display());
-        match opened {
-            _ if mark == BEGIN => {
-                if let Some(begun) = opened.replace(number) {
-                    bail!("{}: `{BEGIN}` inside the one that line {begun} began", place());
-                }
+        if mark == BEGIN {
+            if let Some(begun) = opened.replace(number) {
+                bail!("{}: `{BEGIN}` inside the one that line {begun} began", place());
             }
-            None if mark == END || mark.starts_with(STUB) => {
-                bail!("{}: `{mark}` outside of `{BEGIN}`", place())
-            }
-            None => lines.push(line.to_owned()),
-            Some(_) if mark == END => opened = None,
-            Some(_) => {
+            blocks.push(Block::Answer(Vec::new(), Vec::new()));
+        } else if opened.is_none() && (mark == END || mark.starts_with(STUB)) {
+            bail!("{}: `{mark}` outside of `{BEGIN}`", place());
+        } else if opened.is_none() && !matches!(blocks.last(), Some(Block::Same(_))) {
+            blocks.push(Block::Same(Vec::new()));
+        }
+        match blocks.last_mut() {
+            Some(Block::Answer(lines, stub)) => {
+                lines.push(line);
                 if let Some(text) = mark.strip_prefix(STUB) {
-                    lines.push(format!("{indent}{}", text.trim_start_matches(' ')));
+                    stub.push(format!("{indent}{}", text.trim_start_matches(' ')));
                 }
             }
+            Some(Block::Same(lines)) => lines.push(line),
+            None => {}
+        }
+        if mark == END {
+            opened = None;
         }
     }
-    if let Some(begun) = opened {
-        bail!("{}:{begun}: `{BEGIN}` is never closed by `{END}`", path.display());
+    match opened {
+        Some(begun) => bail!("{}:{begun}: `{BEGIN}` is never closed by `{END}`", path.display()),
+        None => Ok(blocks),
     }
-    // An answer that leaves nothing behind leaves one blank line too many.
-    lines.dedup_by(|line, above| line.is_empty() && above.is_empty());
-    Ok(lines.join("\n").trim_end().to_owned() + "\n")
 }
 
 fn read_record(root: &Path) -> BTreeMap<PathBuf, String> {

@@ -27,18 +27,54 @@ pub struct Worker {
     program: PathBuf,
     call_patience: Duration,
     frame_patience: Duration,
+    asks_again: AtomicBool,
     process: Mutex<Option<Process>>,
 }
 
 impl Worker {
     /// A worker that will run `program` when it is first asked something.
     pub fn new(program: PathBuf, call_patience: Duration) -> Self {
-        Worker { program, call_patience, frame_patience: FRAME_PATIENCE, process: Mutex::new(None) }
+        Worker {
+            program,
+            call_patience,
+            frame_patience: FRAME_PATIENCE,
+            asks_again: AtomicBool::new(false),
+            process: Mutex::new(None),
+        }
     }
 
-    /// The same, which waits no longer for a frame than for any other call.
-    pub fn hasty(program: PathBuf) -> Self {
-        Worker { frame_patience: CALL_PATIENCE, ..Worker::new(program, CALL_PATIENCE) }
+    /// The same for small pictures, of which some never end: it waits no longer for a frame than for any other call.
+    /// But on a busy machine that may be too short, so what is late is asked once more, with the long wait; until that
+    /// has been in vain.
+    pub fn hasty(program: PathBuf, patience: Duration) -> Self {
+        Worker {
+            frame_patience: patience,
+            asks_again: AtomicBool::new(true),
+            ..Worker::new(program, patience)
+        }
+    }
+
+    fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, Mishap> {
+        let mut slot = lock(&self.process);
+        let mut process = match slot.take().map_or_else(|| Process::start(&self.program), Ok) {
+            Ok(process) => process,
+            Err(error) => return Err(Mishap::Crashed { how: format!("it cannot be started: {error}") }),
+        };
+        match process.ask(request, watch, patience) {
+            Ok(Some(Reply::Mishap(mishap))) => {
+                *slot = Some(process);
+                Err(mishap)
+            }
+            Ok(Some(Reply::Answer(answer))) => {
+                *slot = Some(process);
+                Ok(*answer)
+            }
+            Ok(_) => Ok(Answer::Render(None)),
+            Err(error) => {
+                drop(slot);
+                Err(process.post_mortem(&error, patience))
+            }
+        }
     }
 }
 
@@ -46,27 +82,13 @@ impl Transport for Worker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let patience =
             if matches!(request, Request::Render(_)) { self.frame_patience } else { self.call_patience };
-        let mut slot = lock(&self.process);
-        let mut process = match slot.take().map_or_else(|| Process::start(&self.program), Ok) {
-            Ok(process) => process,
-            Err(error) => mishap::unwind(Mishap::Crashed { how: format!("it cannot be started: {error}") }),
-        };
-        match process.ask(&request, watch, patience) {
-            Ok(Some(Reply::Mishap(mishap))) => {
-                *slot = Some(process);
-                drop(slot);
-                mishap::unwind(mishap)
-            }
-            Ok(Some(Reply::Answer(answer))) => {
-                *slot = Some(process);
-                *answer
-            }
-            Ok(_) => Answer::Render(None),
-            Err(error) => {
-                drop(slot);
-                mishap::unwind(process.post_mortem(&error, patience))
-            }
+        let mut answer = self.ask(&request, watch, patience);
+        let late = |answer: &Result<Answer, Mishap>| matches!(answer, Err(Mishap::TimedOut { .. }));
+        if late(&answer) && self.asks_again.load(Ordering::Relaxed) {
+            answer = self.ask(&request, watch, FRAME_PATIENCE);
+            self.asks_again.store(!late(&answer), Ordering::Relaxed);
         }
+        answer.unwrap_or_else(|mishap| mishap::unwind(mishap))
     }
 }
 

@@ -66,6 +66,14 @@ fn an_endless_loop_ends() {
 }
 
 #[test]
+fn what_is_late_on_a_busy_machine_is_no_endless_loop() {
+    let program = || env!("CARGO_BIN_EXE_misbehaving-worker").into();
+    let second = Duration::from_secs(1);
+    assert_eq!(ask(&Door(Worker::new(program(), second)), -9.0), Err(Mishap::TimedOut { seconds: 1 }));
+    assert!(ask(&Door(Worker::hasty(program(), second)), -9.0).is_ok());
+}
+
+#[test]
 fn what_student_code_prints_does_not_reach_the_pipe() {
     assert_eq!(ask(&door(), -6.0), Ok(vec![None]));
 }

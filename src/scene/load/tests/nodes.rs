@@ -93,7 +93,7 @@ fn shapes_that_no_ray_can_hit_are_refused() {
     shape(
         "",
         "3:9: `shape` needs one of `sphere`, `plane`, `triangle`, `box`, `cylinder`, `cone`, `disk`, `polygon`, \
-         `mesh`, and has none",
+         `bezier`, `mesh`, and has none",
     );
     shape("mesh = 'bunny'", "3:18: unknown mesh `bunny`\nhelp: the scene defines none");
     shape(

@@ -10,14 +10,13 @@ pub mod workshop;
 
 use crate::check::run_checks_on;
 use crate::kits::Source;
+use crate::queue;
 use anyhow::{Result, bail};
 use clap::Args;
 use entry::{Claim, Entry};
 use indicatif::{ProgressBar, ProgressStyle};
 use records::Matrix;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use verdict::{Fate, Tried};
 use workshop::{Built, Workshop};
 
@@ -33,7 +32,7 @@ pub struct Options {
     #[arg(long)]
     slice: bool,
     /// How many to try at once.
-    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
+    #[arg(long, default_value_t = queue::cores())]
     jobs: usize,
     /// Also compare with tests/corpus/matrix.txt and tests/corpus/messages.
     #[arg(long)]
@@ -49,7 +48,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let n_all = all.len();
     let chosen = choose(all, options)?;
     let complete = chosen.len() == n_all;
-    let tried = try_all(root, chosen, options.jobs.max(1))?;
+    let tried = try_all(root, &chosen, options.jobs.max(1))?;
 
     let matrix = Matrix::read(root);
     let differences = if options.check { records::differences(root, &matrix, &tried) } else { Vec::new() };
@@ -102,7 +101,7 @@ fn slice(all: &[Entry]) -> Vec<String> {
 }
 
 /// Tries entries in as many workshops as there are jobs.
-fn try_all(root: &Path, entries: Vec<Entry>, jobs: usize) -> Result<Vec<Tried>> {
+fn try_all(root: &Path, entries: &[Entry], jobs: usize) -> Result<Vec<Tried>> {
     let bar = ProgressBar::new(entries.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}  {msg}") {
         bar.set_style(style);
@@ -110,28 +109,14 @@ fn try_all(root: &Path, entries: Vec<Entry>, jobs: usize) -> Result<Vec<Tried>> 
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
     let workshops = Workshop::open_all(root, jobs)?;
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).div_ceil(jobs);
-    let (next, tried) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
-    let work = |workshop: &Workshop| -> Result<()> {
-        while let Some(entry) = entries.get(next.fetch_add(1, Ordering::Relaxed)) {
-            bar.set_message(entry.to_string());
-            let one = try_one(workshop, entry, threads)?;
-            bar.inc(1);
-            if let Ok(mut tried) = tried.lock() {
-                tried.push(one);
-            }
-        }
-        Ok(())
-    };
-    std::thread::scope(|scope| {
-        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
-        running.into_iter().try_for_each(|job| {
-            job.join().unwrap_or_else(|_| bail!("a job of the corpus broke: see the message above"))
-        })
+    let threads = queue::cores().div_ceil(jobs);
+    let tried = queue::run(&workshops, entries, |workshop, entry| {
+        bar.set_message(entry.to_string());
+        let one = try_one(workshop, entry, threads)?;
+        bar.inc(1);
+        Ok(one)
     })?;
     bar.finish_and_clear();
-    let mut tried = tried.into_inner().unwrap_or_default();
-    tried.sort_by_key(|one| entries.iter().position(|entry| *entry == one.entry));
     Ok(tried)
 }
 
@@ -142,7 +127,7 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize) -> Result<Tried> 
         Built::DoesNotApply(why) => return tried(Fate::DoesNotApply(why), Default::default()),
         Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
     };
-    let graded = run_checks_on(threads, &Source::Worker(worker), |stage| stage == entry.stage);
+    let graded = run_checks_on(threads, &Source::Worker(worker), |stage| stage == entry.stage)?;
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     tried(Fate::of(entry, &failures), failures)

@@ -1,37 +1,23 @@
 //! Leaks of closed meshes: of every method, and of the functions of the kit.
 
 use super::{Answers, Input, Row};
+use crate::queue;
+use anyhow::Result;
 use checks::gauntlet::leaks::{self, Aim, aimed};
 use checks::gauntlet::meshes::{Closed, closed};
 use checks::gauntlet::methods::METHODS;
 use checks::splitmix::Random;
 use raykata::ray::Ray;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 /// One method a thread at a time, and then what the kit has, row by row.
-pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) {
+pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<()> {
     let meshes = closed();
-    let next = AtomicUsize::new(0);
-    let counted = Mutex::new(vec![String::new(); METHODS.len()]);
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(method) = METHODS.get(index) else { break };
-            let line = line(&meshes, |mesh, aim| leaks::count(mesh, aim, seed, rays, method.hit));
-            counted.lock().unwrap_or_else(|broken| broken.into_inner())[index] = line;
-        }
-    };
-    thread::scope(|scope| {
-        for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(work);
-        }
-    });
+    let counted = queue::run(&queue::one_a_core(), &METHODS, |(), method| {
+        Ok(line(&meshes, |mesh, aim| leaks::count(mesh, aim, seed, rays, method.hit)))
+    })?;
     println!("leaks of {rays} rays at edges / at vertices, from inside closed meshes");
     let heads: String = meshes.iter().map(|mesh| format!("{:>15}", mesh.name)).collect();
     println!("{:<36}{heads}", "");
-    let counted = counted.into_inner().unwrap_or_else(|broken| broken.into_inner());
     for (method, line) in METHODS.iter().zip(counted) {
         println!("{:<36}{line}", method.name);
     }
@@ -39,6 +25,7 @@ pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) {
         let answer = &row.answer;
         println!("{:<36}{}", row.name, line(&meshes, |mesh, aim| in_batches(mesh, aim, seed, rays, answer)));
     }
+    Ok(())
 }
 
 fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> String {

@@ -3,6 +3,7 @@
 
 use super::leaving;
 use super::traversal::{Triangles, hierarchy};
+use crate::queue;
 use crate::render::Bar;
 use crate::report::Thousands;
 use anyhow::{Context, Result, bail};
@@ -21,8 +22,6 @@ use solutions::{stage2_triangles, stage3_bvh};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// Rays of one piece of work.
@@ -181,29 +180,19 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
     let meshes: Vec<Prepared> = closed().into_iter().map(Prepared::new).collect();
     let bar = Bar::new();
     bar.0.set_length(work.len() as u64);
-    let (next, state) = (AtomicUsize::new(0), Mutex::new((state, Instant::now())));
-    let one = || -> Result<()> {
-        while let Some(&(trial, piece)) = work.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let failures = trial.failures(&meshes, seed, piece)?;
-            bar.0.inc(1);
-            let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
-            let (state, kept) = &mut *guard;
-            let done = state.done.entry(trial.name()).or_default();
-            done.pieces.push(piece);
-            done.rays += PIECE;
-            done.failures += failures;
-            if kept.elapsed() > PAUSE {
-                write(state, file)?;
-                *kept = Instant::now();
-            }
-        }
-        Ok(())
-    };
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    thread::scope(|scope| -> Result<()> {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(one)).collect();
-        for worker in workers {
-            worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    let state = Mutex::new((state, Instant::now()));
+    queue::run(&queue::one_a_core(), &work, |(), &(trial, piece)| {
+        let failures = trial.failures(&meshes, seed, piece)?;
+        bar.0.inc(1);
+        let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
+        let (state, kept) = &mut *guard;
+        let done = state.done.entry(trial.name()).or_default();
+        done.pieces.push(piece);
+        done.rays += PIECE;
+        done.failures += failures;
+        if kept.elapsed() > PAUSE {
+            write(state, file)?;
+            *kept = Instant::now();
         }
         Ok(())
     })?;

@@ -131,7 +131,7 @@ fn tables(options: &Options) -> Result<bool> {
         println!("  {:<9} {}", distribution.name, distribution.what);
     }
     println!();
-    leak_table::table(&rows, options.seed, options.inputs);
+    leak_table::table(&rows, options.seed, options.inputs)?;
     println!();
     Ok(agreement_table(options))
 }

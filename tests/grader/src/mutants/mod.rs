@@ -15,7 +15,8 @@ use crate::corpus::workshop::{Built, Workshop};
 use crate::gaps::{self, Gap};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
-use crate::worker::Worker;
+use crate::queue;
+use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Result, bail};
 use checks::{Check, STAGES, Verdict};
 use clap::Args;
@@ -27,7 +28,6 @@ use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Which changes to try.
 #[derive(Args)]
@@ -41,7 +41,7 @@ pub struct Options {
     #[arg(long, conflicts_with = "resume")]
     again: bool,
     /// How many to try at once.
-    #[arg(long, default_value_t = std::thread::available_parallelism().map_or(1, usize::from))]
+    #[arg(long, default_value_t = queue::cores())]
     jobs: usize,
 }
 
@@ -106,39 +106,38 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let workshops = Workshop::open_all(root, jobs)?;
     let scenes = Scenes::read(root)?;
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
-    let (gaps, of_gaps) = (gaps::that_show(root)?, Scenes::read(root)?.of_gaps());
+    let of_gaps = scenes.of_gaps();
     let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
     let bar = ProgressBar::new(mutants.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
         bar.set_style(style);
     }
-    let (next, journal) = (AtomicUsize::new(0), Mutex::new(journal));
-    let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
-    let work = |workshop: &Workshop| -> Result<()> {
-        while let Some(mutant) = mutants.get(next.fetch_add(1, Ordering::Relaxed)) {
-            bar.set_message(mutant.file.clone());
-            if lock().of(mutant).is_none() {
-                let fate = match workshop.build(&mutant.file, &mutant.diff)? {
-                    Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
-                        Fate::Survived if mutant.stage().is_none() => {
-                            judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
-                        }
-                        fate => fate,
-                    },
-                    Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-                    Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
-                };
-                lock().write(mutant, fate)?;
-            }
-            bar.inc(1);
-        }
-        Ok(())
+    bar.set_message("what gaps show");
+    let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
+    let gaps = if mutants.iter().any(needs_gaps) {
+        gaps::that_show(root, &workshops, &of_gaps.1, &of_gaps.0)?
+    } else {
+        Vec::new()
     };
-    std::thread::scope(|scope| {
-        let running: Vec<_> = workshops.iter().map(|workshop| scope.spawn(|| work(workshop))).collect();
-        running
-            .into_iter()
-            .try_for_each(|job| job.join().unwrap_or_else(|_| bail!("a job broke: see the message above")))
+    let journal = Mutex::new(journal);
+    let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
+    queue::run(&workshops, mutants, |workshop, mutant| {
+        bar.set_message(mutant.file.clone());
+        if lock().of(mutant).is_none() {
+            let fate = match workshop.build(&mutant.file, &mutant.diff)? {
+                Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                    Fate::Survived if mutant.stage().is_none() => {
+                        judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                    }
+                    fate => fate,
+                },
+                Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+                Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
+            };
+            lock().write(mutant, fate)?;
+        }
+        bar.inc(1);
+        Ok(())
     })?;
     bar.finish_and_clear();
     Ok(())
@@ -159,8 +158,11 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
             false => Fate::ByAnotherStage(check.name.into()),
         })
     };
-    let by_picture =
-        || scenes.first_difference(&Door(Worker::hasty(worker.to_owned())), expected).map(Fate::ByPicture);
+    let by_picture = || {
+        scenes
+            .first_difference(&Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE)), expected)
+            .map(Fate::ByPicture)
+    };
     let noticed = match own {
         Some(own) => {
             by_checks(&|stage| stage == own).or_else(by_picture).or_else(|| by_checks(&|stage| stage != own))
@@ -180,9 +182,9 @@ fn judge_by_gaps(
     (whole, scenes): &(Vec<Shown>, Scenes),
 ) -> Result<Fate> {
     let changed = entry::apply(&mutant.file, &mutant.diff, &workshop.original(&mutant.file)?)?;
-    for (gap, kept) in gaps {
+    for (gap, unchanged) in gaps {
         let changes = [(mutant.file.as_str(), changed.as_str()), (gap.file.as_str(), gap.text.as_str())];
-        if gaps::lacks(workshop, &changes, scenes, whole)? != *kept {
+        if gaps::lacks(workshop, &changes, scenes, whole)? != *unchanged {
             return Ok(Fate::ByGap(gap.function.clone()));
         }
     }
