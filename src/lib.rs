@@ -10,6 +10,7 @@ pub mod frame;
 pub mod kit;
 pub mod material;
 pub mod mesh;
+pub mod partition;
 pub mod random;
 pub mod ray;
 pub mod scene;
