@@ -22,6 +22,7 @@ pub mod stage4;
 pub mod stage5;
 pub mod stage6;
 pub mod stage7;
+pub mod stage9;
 pub mod statistics;
 pub mod tree;
 pub mod trial;
@@ -38,6 +39,7 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (5, stage5::CHECKS),
     (6, stage6::CHECKS),
     (7, stage7::CHECKS),
+    (9, stage9::CHECKS),
     (10, stage10::CHECKS),
 ];
 

@@ -64,11 +64,17 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
     let tested = expected.is_some_and(|(primitive, _)| yours.tests.contains(&primitive));
     let diagnosis = match (found, expected) {
         (Some((_, t)), _) if !ray.contains(t) => "a hit outside of the ray's range",
-        (Some((_, t)), Some((_, best))) if t == best => "of two hits at one t the smaller primitive number wins",
-        (Some(_), Some(_)) if tested => "the farther of two hits was kept: keep the best so far, over all cells",
+        (Some((_, t)), Some((_, best))) if t == best => {
+            "of two hits at one t the smaller primitive number wins"
+        }
+        (Some(_), Some(_)) if tested => {
+            "the farther of two hits was kept: keep the best so far, over all cells"
+        }
         (Some(_), Some(_)) => "the search stopped before it came to a cell with a nearer hit",
         (None, Some(_)) if tested => "a hit was found and thrown away: it counts wherever its cell ends",
-        (None, Some(_)) if yours.visits.is_empty() => "nothing was visited: does the ray meet the box around all?",
+        (None, Some(_)) if yours.visits.is_empty() => {
+            "nothing was visited: does the ray meet the box around all?"
+        }
         (None, Some(_)) => "a cell was left out that the ray goes through",
         _ => "",
     };
@@ -106,7 +112,13 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
 pub(super) type Parts = Vec<(u32, f64, f64)>;
 
 /// What a search visits must be entered by the ray before its hit: `parts` are all nodes that the ray so much as touches.
-pub(super) fn judge_visits(what: &str, ray: &Ray, parts: &Parts, yours: &CellsAnswer, fewest: bool) -> Outcome {
+pub(super) fn judge_visits(
+    what: &str,
+    ray: &Ray,
+    parts: &Parts,
+    yours: &CellsAnswer,
+    fewest: bool,
+) -> Outcome {
     let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
     // 2⁻¹⁴, far more than roundings need and far less than a cell.
     let room = (-14f64).exp2();

@@ -85,13 +85,7 @@ pub(super) fn kd_tree(boxes: &[Aabb], leaf_size: usize, max_depth: usize) -> KdT
     tree
 }
 
-fn halve(
-    tree: &mut KdTree,
-    boxes: &[(u32, Aabb)],
-    cell: Cell,
-    depth: usize,
-    limits: (usize, usize),
-) -> u32 {
+fn halve(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Cell, depth: usize, limits: (usize, usize)) -> u32 {
     let node = tree.add_node(depth, limits.1);
     if boxes.len() <= limits.0 || depth >= limits.1 {
         tree.set_leaf(node, &ids(boxes));
@@ -117,13 +111,7 @@ pub(super) fn bsp(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bs
     bsp
 }
 
-fn by_planes(
-    bsp: &mut Bsp,
-    hulls: &[Vec<Vec3>],
-    ids: &[u32],
-    depth: usize,
-    limits: (usize, usize),
-) -> u32 {
+fn by_planes(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, limits: (usize, usize)) -> u32 {
     let node = bsp.add_node(depth, limits.1);
     if ids.len() <= limits.0 || depth >= limits.1 {
         bsp.set_leaf(node, ids);

@@ -1,0 +1,312 @@
+//! The BSP tree: what is where, and the way of a ray through it.
+
+use super::parts;
+use super::scenes::{Scene, Thing, ball, wall};
+use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::structures::bsp;
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use crate::generate::point;
+use crate::judge::{compare, known};
+use glam::{DVec3, Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{BspQuery, CellsQuery, mishap};
+use raykata::partition::{Bsp, BspNode, CutPlane, corners};
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+fn told(query: &BspQuery) -> String {
+    let hulls: Vec<String> = query.hulls.iter().map(|hull| crate::paste::list(hull)).collect();
+    format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
+}
+
+fn leaves(bsp: &Bsp) -> Vec<(u32, Vec<(CutPlane, f64)>, Vec<u32>)> {
+    let mut leaves = Vec::new();
+    bsp.walk(|node, above, _| {
+        if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
+            leaves.push((node, above.to_vec(), bsp.primitives(first, count).to_vec()));
+        }
+    });
+    leaves
+}
+
+fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
+    let fault = |yours: String, expected: String, diagnosis: &'static str| {
+        Err(Broken::told(told(query), yours, expected, "what makes a BSP tree").looks_like(known(diagnosis)))
+    };
+    let usable = |hull: &[Vec3]| !hull.is_empty() && hull.iter().all(|corner| corner.is_finite());
+    if !query.hulls.iter().any(|hull| usable(hull)) {
+        let n = yours.nodes.len();
+        return if n == 0 {
+            Ok(())
+        } else {
+            fault(format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")
+        };
+    }
+    let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
+    // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
+    let size = f64::from(size.fold(0.0, f32::max));
+    let (step, room) = (size * (-23f64).exp2(), size / 64.0);
+    for (node, above, listed) in leaves(yours) {
+        for (id, hull) in query.hulls.iter().enumerate() {
+            let times = listed.iter().filter(|&&other| other == id as u32).count();
+            let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
+            if !usable(hull) {
+                if times > 0 {
+                    return fault(count(times), count(0), "what is not a number is in no cell");
+                }
+                continue;
+            }
+            // A hull of which a corner is inside certainly reaches into the leaf; one that is all outside of a plane is
+            // certainly not in it.
+            let inside =
+                |p: &Vec3, room: f64| above.iter().all(|(plane, side)| side * plane.distance(*p) >= room);
+            let reaches = hull.iter().any(|p| inside(p, -step));
+            let outside =
+                above.iter().any(|(plane, side)| hull.iter().all(|p| side * plane.distance(*p) < -room));
+            if reaches && times != 1 {
+                let on_plane =
+                    hull.iter().any(|p| above.iter().any(|(plane, _)| plane.distance(*p).abs() <= step));
+                let diagnosis = match times {
+                    0 if on_plane => "what touches a plane, or lies in it, belongs to both sides",
+                    0 => "a primitive that reaches over a plane belongs to both sides",
+                    _ => "a primitive is listed twice in one leaf",
+                };
+                return fault(count(times), count(1), diagnosis);
+            }
+            if outside && times > 0 {
+                return fault(
+                    count(times),
+                    count(0),
+                    "a primitive is listed in a leaf that it does not reach",
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+    let tile = (point(4), point(4), point(4), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
+        0 => vec![a, Vec3::NAN, c],
+        1..=3 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
+        4..=6 => corners(&Aabb::new(a, a + b.abs())),
+        _ => vec![a, b, c],
+    });
+    let inputs = (prop::collection::vec(tile, 1..20), 1..=4usize, 0..=6usize)
+        .prop_map(|(hulls, leaf_size, max_depth)| BspQuery { hulls, leaf_size, max_depth });
+    trial.forall(200, inputs, |queries| {
+        compare(queries, trial.kit.bsp_build(queries), |query, yours| judge_tree(query, &yours))
+    })
+}
+
+pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
+    let square = |size: f32, z: f32| {
+        let s = size;
+        vec![vec3(-s, -s, z), vec3(s, -s, z), vec3(s, s, z), vec3(-s, s, z)]
+    };
+    let stack: Vec<Vec<Vec3>> = (1..=40).map(|i| square(i as f32, 0.0)).collect();
+    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
+    let star: Vec<Vec<Vec3>> = (0..30)
+        .map(|i| {
+            let (y, x) = (i as f32 * 0.21).sin_cos();
+            vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
+        })
+        .collect();
+    let line = (0..20).map(|i| {
+        vec![vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0), vec3(i as f32 + 0.7, 0.0, 0.0)]
+    });
+    let hulls = [
+        ("forty squares in one plane", stack),
+        ("thirty sheets through one line", star),
+        ("twenty slivers in a line", line.collect()),
+    ];
+    let sets = super::lists::endless().into_iter().map(|(name, all)| (name, boxes(all)));
+    for (name, hulls) in sets.chain(hulls) {
+        let n = hulls.len();
+        let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
+        let input = format!("build of {name}, leaf_size 1, max_depth 12");
+        let yours = match mishap::catch(|| trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0)) {
+            Ok(yours) => yours,
+            Err(mishap::Mishap::Panicked { message, .. }) => {
+                let broken = Broken::told(input, message, "a tree", "what makes a BSP tree");
+                return Err(broken.looks_like(Some("stop at max_depth, and where no plane divides")));
+            }
+            Err(mishap) => mishap::unwind(mishap),
+        };
+        judge_tree(&query, &yours)?;
+        let most = 1024 + 64 * n;
+        if yours.n_references() > most {
+            let told = |n: usize| format!("{n} references");
+            let broken =
+                Broken::told(input, told(yours.n_references()), format!("at most {}", told(most)), "counted");
+            return Err(broken.looks_like(Some("all are on both sides of each plane: make a leaf of them")));
+        }
+    }
+    Ok(())
+}
+
+/// Sheets across a diagonal: no plane across an axis divides them, and their own planes do.
+pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
+    let sheet = |at: f32| {
+        let p = |u: f32, v: f32| vec3(at + u, at - u, v);
+        vec![p(-40.0, -40.0), p(40.0, -40.0), p(40.0, 40.0), p(-40.0, 40.0)]
+    };
+    let n = 31;
+    let hulls = (0..n).map(|i| sheet(0.25 * i as f32)).collect();
+    let query = BspQuery { hulls, leaf_size: 2, max_depth: 12 };
+    let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+    judge_tree(&query, &yours)?;
+    let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
+    // A cut along a sheet lists it on both sides, so there is one reference more for each cut.
+    let (references, depth) = (yours.n_references(), yours.depth());
+    if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
+        return Ok(());
+    }
+    let diagnosis = match () {
+        () if yours.nodes.len() == 1 => "nothing is cut: the planes of the polygons are the candidates",
+        () if fullest > 2 => {
+            "sheets side by side are not divided: the planes of the polygons are the candidates"
+        }
+        () => "a poor choice of planes: leave few on the fuller side",
+    };
+    let yours = format!("up to {fullest} sheets a leaf, {references} references, {depth} levels");
+    let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
+    Err(Broken::told(input, yours, format!("2 a leaf, at most {} references, 8 levels", 2 * n), "counted")
+        .looks_like(Some(diagnosis)))
+}
+
+pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::Bsp)
+}
+
+/// A tree of one plane, with these primitives on either side.
+fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
+    let mut bsp = Bsp::default();
+    let root = bsp.add_node(0, 1);
+    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
+    bsp.set_leaf(back, behind);
+    bsp.set_leaf(front, before);
+    bsp.set_children(root, plane, back, front);
+    bsp
+}
+
+fn diagonal() -> CutPlane {
+    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
+}
+
+fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, says: &str) -> Outcome {
+    let hits = scene.hits(ray);
+    let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
+    let yours = trial.kit.bsp_search(&[query]).remove(0);
+    judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
+}
+
+/// Trap A7: the plane lies behind the ray, beyond its end, or is never met.
+pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A7: where the plane is behind the ray or beyond its end, the ray is on one side all the way, and that side must be searched";
+    let scene =
+        Scene::new(vec![ball(-4.0, -4.0, 0.0, 1.0), ball(4.0, 4.0, 0.0, 1.0), ball(-4.0, 2.0, 0.0, 1.0)]);
+    let tree = two_leaves(diagonal(), &[0, 2], &[1]);
+    let cases = [
+        ("the plane is behind the ray", Ray::new(vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0))),
+        ("the plane is behind the ray", Ray::new(vec3(-1.0, -1.0, 0.0), vec3(-1.0, -1.0, 0.0))),
+        ("the ray ends before the plane", Ray::new(vec3(-8.0, -8.0, 0.0), Vec3::ONE).with_range(0.0, 5.0)),
+        (
+            "the ray starts beyond the plane",
+            Ray::new(vec3(-8.0, -8.0, 0.0), vec3(1.0, 1.0, 0.0)).with_range(9.0, 20.0),
+        ),
+        ("the ray runs along the plane", Ray::new(vec3(-8.0, 6.0, 0.0), vec3(1.0, -1.0, 0.0))),
+        (
+            "the plane is crossed, with nothing before it",
+            Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0)),
+        ),
+    ];
+    cases.iter().try_for_each(|(what, ray)| {
+        ask(trial, &tree, &scene, ray, &format!("BSP tree of one plane x + y = 0: {what}"), says)
+    })
+}
+
+/// Rays in the plane and from it, and polygons that lie in it.
+pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
+    let says = "a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
+    let balls =
+        Scene::new(vec![ball(3.0, -3.0, 0.0, 0.5), ball(-3.0, 3.0, 0.0, 0.5), ball(0.0, 0.0, 4.0, 0.5)]);
+    let tile = |z: f32| {
+        Thing::Tile(Triangle {
+            a: vec3(4.0, -4.0, z - 4.0),
+            b: vec3(-4.0, 4.0, z - 4.0),
+            c: vec3(0.0, 0.0, z + 4.0),
+        })
+    };
+    let stack = Scene::new(vec![tile(0.0), tile(1.0), tile(-1.0)]);
+    for (behind, before) in
+        [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
+    {
+        let tree = two_leaves(diagonal(), behind, before);
+        for dir in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
+            ask(
+                trial,
+                &tree,
+                &balls,
+                &Ray::new(Vec3::ZERO, dir),
+                "BSP tree of one plane x + y = 0, and a ray in it",
+                says,
+            )?;
+        }
+        for (origin, dir) in
+            [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
+        {
+            ask(
+                trial,
+                &tree,
+                &stack,
+                &Ray::new(origin, dir),
+                "BSP tree of one plane x + y = 0, with triangles in it",
+                says,
+            )?;
+        }
+    }
+    // From a point of the plane to either side.
+    let sides = Scene::new(vec![ball(3.0, 3.0, 0.0, 0.5), ball(-3.0, -3.0, 0.0, 0.5)]);
+    let tree = two_leaves(diagonal(), &[1], &[0]);
+    for dir in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
+        for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
+            let dir = dir - origin / 3.0;
+            ask(
+                trial,
+                &tree,
+                &sides,
+                &Ray::new(origin, dir),
+                "BSP tree of one plane x + y = 0, and a ray that starts on it",
+                says,
+            )?;
+        }
+    }
+    // A room whose walls are the planes.
+    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
+    let room = Scene::new(walls.collect());
+    let tree = bsp(&room.hulls(), 2, 5);
+    for i in 0..64 {
+        let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
+        let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
+        ask(trial, &tree, &room, &ray, "BSP tree over a room of twelve triangles", says)?;
+    }
+    Ok(())
+}
+
+pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
+    let balls = (0..64).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
+    let scene = Scene::new(balls.collect());
+    let cells = bsp(&scene.hulls(), 2, 8);
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(12.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let looks = |eye: Vec3| (0..64).step_by(5).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
+    let query = |ray: Ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) };
+    let queries: Vec<CellsQuery<Bsp>> = eyes.into_iter().flat_map(looks).map(query).collect();
+    for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
+        judge_visits("BSP tree over 64 balls", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
+    }
+    Ok(())
+}
