@@ -2,15 +2,17 @@
 
 use crate::{
     stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
-    stage7_effects, stage10_stability, tracer,
+    stage7_effects, stage9_bsp, stage9_cells, stage9_coherence, stage9_grid, stage9_kd_tree, stage9_octree,
+    stage10_stability, tracer,
 };
-use glam::{Vec2, Vec3};
+use glam::{UVec3, Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::frame::Watch;
 use raykata::kit::*;
 use raykata::mesh::Mesh;
+use raykata::partition::{Bsp, Cell, Grid, KdTree, Octree};
 use raykata::random::Stratum;
 use raykata::ray::Ray;
 use raykata::scene::{Sampler, Scene, Split};
@@ -273,6 +275,67 @@ impl Economy for Kit {
     fn texture_color(&self, queries: &[TextureQuery]) -> Vec<Vec3> {
         each(queries, |q| stage7_effects::texture_color(&q.texture, q.uv))
     }
+}
+
+impl Partitions for Kit {
+    fn cell_span(&self, queries: &[SlabQuery]) -> Vec<Option<(f64, f64)>> {
+        each(queries, |q| stage9_cells::span(&q.ray, &Cell::new(&q.bounds)))
+    }
+    fn grid_resolution(&self, queries: &[ResolutionQuery]) -> Vec<UVec3> {
+        each(queries, |q| stage9_grid::resolution(&q.bounds, q.n_primitives, q.density))
+    }
+    fn grid_build(&self, queries: &[GridQuery]) -> Vec<Grid> {
+        each(queries, |q| stage9_grid::build(&q.bounds, q.resolution))
+    }
+    fn grid_search(&self, queries: &[CellsQuery<Grid>]) -> Vec<CellsAnswer> {
+        each(queries, |q| look(q, |probe| stage9_grid::closest_hit(&q.cells, probe, &q.ray)))
+    }
+    fn octree_build(&self, queries: &[OctreeQuery]) -> Vec<Octree> {
+        each(queries, |q| stage9_octree::build(&q.bounds, q.leaf_size, q.max_depth))
+    }
+    fn octree_by_cells(&self, queries: &[CellsQuery<Octree>]) -> Vec<CellsAnswer> {
+        each(queries, |q| look(q, |probe| stage9_octree::closest_hit_by_cells(&q.cells, probe, &q.ray)))
+    }
+    fn octree_search(&self, queries: &[CellsQuery<Octree>]) -> Vec<CellsAnswer> {
+        each(queries, |q| look(q, |probe| stage9_octree::closest_hit(&q.cells, probe, &q.ray)))
+    }
+    fn kd_build(&self, queries: &[KdQuery]) -> Vec<KdTree> {
+        each(queries, |q| stage9_kd_tree::build(&q.bounds, &q.heuristics, q.leaf_size))
+    }
+    fn kd_search(&self, queries: &[CellsQuery<KdTree>]) -> Vec<CellsAnswer> {
+        each(queries, |q| look(q, |probe| stage9_kd_tree::closest_hit(&q.cells, probe, &q.ray)))
+    }
+    fn bsp_build(&self, queries: &[BspQuery]) -> Vec<Bsp> {
+        each(queries, |q| stage9_bsp::build(&q.hulls, q.leaf_size, q.max_depth))
+    }
+    fn bsp_search(&self, queries: &[CellsQuery<Bsp>]) -> Vec<CellsAnswer> {
+        each(queries, |q| look(q, |probe| stage9_bsp::closest_hit(&q.cells, probe, &q.ray)))
+    }
+    fn cached_search(&self, queries: &[CachedQuery]) -> Vec<CellsAnswer> {
+        each(queries, |q| {
+            let mut probe = CellsProbe::new(&q.hits);
+            let search = |probe: &mut CellsProbe<'_>, ray: &Ray| q.search(probe, ray);
+            let hit = stage9_coherence::closest_hit_cached(q.last, &mut probe, &q.ray, search);
+            CellsAnswer { hit, ..probe.answer }
+        })
+    }
+    fn packet_search(&self, queries: &[PacketQuery]) -> Vec<PacketAnswer> {
+        each(queries, |q| {
+            let mut probe = PacketProbe::new(q);
+            let hits = stage9_coherence::closest_hit_packet(&q.bvh, &mut probe, &q.rays);
+            PacketAnswer { hits, ..probe.answer }
+        })
+    }
+}
+
+/// Runs a search of cells on a table; gives its answer with what it did.
+fn look<S>(
+    query: &CellsQuery<S>,
+    find: impl FnOnce(&mut CellsProbe<'_>) -> Option<PrimitiveHit>,
+) -> CellsAnswer {
+    let mut probe = CellsProbe::new(&query.hits);
+    let hit = find(&mut probe);
+    CellsAnswer { hit, ..probe.answer }
 }
 
 impl Stability for Kit {

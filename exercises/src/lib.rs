@@ -13,6 +13,12 @@ pub mod stage4_shading;
 pub mod stage5_recursion;
 pub mod stage6_distribution;
 pub mod stage7_effects;
+pub mod stage9_bsp;
+pub mod stage9_cells;
+pub mod stage9_coherence;
+pub mod stage9_grid;
+pub mod stage9_kd_tree;
+pub mod stage9_octree;
 mod surfaces; // nothing to do here
 mod tracer; // nothing to do here
 

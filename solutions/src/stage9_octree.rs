@@ -53,7 +53,7 @@ fn divide(octree: &mut Octree, node: u32, boxes: &[(u32, Aabb)], cell: Cell, dep
         let ids: Vec<u32> = boxes.iter().map(|(id, _)| *id).collect();
         return octree.set_leaf(node, &ids);
     }
-    let first = octree.divide(node, depth, limits.max_depth);
+    let first = octree.divide(node, depth + 1, limits.max_depth);
     for (octant, boxes) in octants.iter().enumerate() {
         divide(octree, first + octant as u32, boxes, cell.octant(octant), depth + 1, limits);
     }

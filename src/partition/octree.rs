@@ -51,8 +51,8 @@ impl Octree {
         self.nodes[node as usize] = OctreeNode::Leaf { first, count: primitives.len() as u32 };
     }
 
-    /// Gives `node` eight children, at depth `depth`, that are leaves with nothing in them; tells the first. The root is
-    /// at depth 0.
+    /// Gives `node` eight children, which are at `depth`, the root being at 0: leaves with nothing in them. Tells the
+    /// first.
     ///
     /// # Panics
     ///

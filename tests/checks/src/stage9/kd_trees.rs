@@ -157,6 +157,26 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outco
     Ok(())
 }
 
+/// Trap A6 alone: what lies in the plane from the right comes out a step nearer than what lies in it from the left.
+pub(super) fn kd_hits_at_the_plane_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
+    let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
+    for (at, x) in [(1.0f32, -2.0f32), (0.7, -5.3), (-3.1, -7.7)] {
+        let exact = at - x;
+        let hits = vec![exact.next_down(), exact.next_down().next_down()];
+        let ray = Ray::new(vec3(x, 0.0, 0.0), Vec3::X);
+        let query = CellsQuery { cells: two_leaves(bounds, at, &[0], &[1]), ray, hits: hits.clone() };
+        let yours = trial.kit.kd_search(&[query]).remove(0);
+        judge("kd-tree of two leaves, a primitive of each in the plane between them", &ray, &hits, &yours).map_err(
+            |broken| {
+                broken.looks_like(Some(
+                    "trap A6: t of a hit and t of a cell are rounded in two ways; stop only if the hit is before the cell by more than that",
+                ))
+            },
+        )?;
+    }
+    Ok(())
+}
+
 pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
     let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
     let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25)]);

@@ -1,9 +1,10 @@
 //! Stage 9: partitions of space.
 //!
-//! `resolutions` (and where a ray is in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` · `coherence`.
+//! `resolutions` (and where a ray is in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` · `bsp_searches` · `coherence`.
 //! What they share: `scenes` (what is searched), `structures` (plain builders), `searches` (asked and judged alike), `parts`
 //! (where a ray is in each node), `lists` (what stands in cells).
 
+mod bsp_searches;
 mod bsps;
 mod coherence;
 mod grids;
@@ -18,11 +19,11 @@ mod searches;
 mod structures;
 
 use crate::checks;
-use bsps::{
-    bsp_build_ends, bsp_cuts_along_polygons, bsp_lists_what_reaches_into_leaves,
+use bsp_searches::{
     bsp_planes_behind_and_beyond_do_not_end_the_search, bsp_search_agrees_with_brute_force,
     bsp_search_visits_what_the_ray_enters_before_its_hit, bsp_takes_rays_on_and_along_planes,
 };
+use bsps::{bsp_build_ends, bsp_cuts_along_polygons, bsp_lists_what_reaches_into_leaves};
 use coherence::{
     cached_hit_changes_no_answer, cached_hit_saves_tests, packet_finds_what_single_rays_find,
     packet_opens_a_node_once,
@@ -38,9 +39,9 @@ use heuristics::{
 };
 use kd_trees::{
     kd_finds_a_wall_on_the_face_of_the_box, kd_hit_beyond_its_leaf_waits,
-    kd_rays_in_the_plane_search_both_sides, kd_search_agrees_with_brute_force,
-    kd_search_visits_what_the_ray_enters_before_its_hit, kd_tree_build_ends,
-    kd_tree_lists_what_reaches_into_leaves,
+    kd_hits_at_the_plane_are_compared_with_each_other, kd_rays_in_the_plane_search_both_sides,
+    kd_search_agrees_with_brute_force, kd_search_visits_what_the_ray_enters_before_its_hit,
+    kd_tree_build_ends, kd_tree_lists_what_reaches_into_leaves,
 };
 use octrees::{
     octree_build_ends, octree_by_cells_agrees_with_brute_force, octree_by_cells_goes_along_edges,
@@ -81,6 +82,7 @@ checks! { ($) 9 stage9 [
     kd_stops_at_overlap
     kd_search_agrees_with_brute_force
     kd_finds_a_wall_on_the_face_of_the_box
+    kd_hits_at_the_plane_are_compared_with_each_other
     kd_hit_beyond_its_leaf_waits
     kd_rays_in_the_plane_search_both_sides
     kd_search_visits_what_the_ray_enters_before_its_hit

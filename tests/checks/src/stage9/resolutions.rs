@@ -119,7 +119,12 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Outc
     ];
     for (query, expected) in cases {
         let yours = trial.kit.grid_resolution(std::slice::from_ref(&query))[0];
-        if yours != expected {
+        // Rounding may go up or down; what is flat is one cell, and the limit holds.
+        let fits = (0..3).all(|axis| match expected[axis] {
+            1 => yours[axis] == 1,
+            n => yours[axis].abs_diff(n) <= 1.max(n / 8) && (1..=256).contains(&yours[axis]),
+        });
+        if !fits {
             let diagnosis = match () {
                 () if yours.min_element() == 0 => "an axis without a cell: at least 1",
                 () if yours.max_element() > 256 => "more cells along an axis than MOST_CELLS_ALONG",

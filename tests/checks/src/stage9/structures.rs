@@ -23,8 +23,9 @@ fn in_cell(boxes: &[(u32, Aabb)], cell: &Cell) -> Vec<(u32, Aabb)> {
     boxes.iter().filter(|(_, one)| cell.touches(one)).copied().collect()
 }
 
+/// From the largest number down: of two hits at one `t` the larger number comes first.
 fn ids(boxes: &[(u32, Aabb)]) -> Vec<u32> {
-    boxes.iter().map(|(id, _)| *id).collect()
+    boxes.iter().rev().map(|(id, _)| *id).collect()
 }
 
 /// A grid of so many cells.
@@ -68,7 +69,7 @@ fn in_octants(
     if boxes.len() <= limits.0 || depth >= limits.1 {
         return octree.set_leaf(node, &ids(boxes));
     }
-    let first = octree.divide(node, depth, limits.1);
+    let first = octree.divide(node, depth + 1, limits.1);
     for octant in 0..8 {
         let part = cell.octant(octant);
         in_octants(octree, first + octant as u32, &in_cell(boxes, &part), part, depth + 1, limits);
@@ -114,7 +115,7 @@ pub(super) fn bsp(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bs
 fn by_planes(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, limits: (usize, usize)) -> u32 {
     let node = bsp.add_node(depth, limits.1);
     if ids.len() <= limits.0 || depth >= limits.1 {
-        bsp.set_leaf(node, ids);
+        bsp.set_leaf(node, &ids.iter().rev().copied().collect::<Vec<u32>>());
         return node;
     }
     let normals = [DVec3::X, DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0), DVec3::NEG_Z, DVec3::ONE];
