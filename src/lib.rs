@@ -11,6 +11,7 @@ pub mod graph;
 pub mod kit;
 pub mod material;
 pub mod mesh;
+pub mod partition;
 pub mod random;
 pub mod ray;
 pub mod scene;

@@ -1,27 +1,26 @@
 //! Nothing to do here: this connects the functions of the stage files with the door through which the kit calls them.
-//! It is one list, as long as that of the functions.
+//! It is one list, as long as that of the functions; what has to do with spaces and cells is in glue_structures.rs.
 
 use crate::{
     stage1_shapes, stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution,
-    stage7_effects, stage8_scene_graph, stage8_solids, stage8_surfaces, stage10_stability, tracer,
+    stage7_effects, stage10_stability, tracer,
 };
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::frame::Watch;
-use raykata::graph::Placement;
 use raykata::kit::*;
 use raykata::mesh::Mesh;
 use raykata::random::Stratum;
 use raykata::ray::Ray;
 use raykata::scene::{Sampler, Scene, Split};
-use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
+use raykata::shape::{Disk, Sphere, Triangle};
 
 /// The code in this folder, as the kit sees it.
 pub struct Kit;
 
-fn each<Q, A>(queries: &[Q], answer: impl FnMut(&Q) -> A) -> Vec<A> {
+pub fn each<Q, A>(queries: &[Q], answer: impl FnMut(&Q) -> A) -> Vec<A> {
     queries.iter().map(answer).collect()
 }
 
@@ -274,55 +273,6 @@ impl Economy for Kit {
     }
     fn texture_color(&self, queries: &[TextureQuery]) -> Vec<Vec3> {
         each(queries, |q| stage7_effects::texture_color(&q.texture, q.uv))
-    }
-}
-
-impl SceneGraph for Kit {
-    fn ray_to_object(&self, queries: &[ObjectRayQuery]) -> Vec<Ray> {
-        each(queries, |q| stage8_scene_graph::ray_to_object(&q.ray, &q.to_object))
-    }
-    fn normal_to_world(&self, queries: &[NormalQuery]) -> Vec<Vec3> {
-        each(queries, |q| stage8_scene_graph::normal_to_world(q.normal, &q.to_object))
-    }
-    fn placement(&self, queries: &[Vec<Affine3A>]) -> Vec<Option<Placement>> {
-        each(queries, |path| stage8_scene_graph::placement(path))
-    }
-    fn bounds_to_world(&self, queries: &[BoundsQuery]) -> Vec<Aabb> {
-        each(queries, |q| stage8_scene_graph::bounds_to_world(&q.to_world, &q.bounds))
-    }
-    fn bounding_ball(&self, queries: &[Vec<Vec3>]) -> Vec<Sphere> {
-        each(queries, |points| stage8_scene_graph::bounding_ball(points))
-    }
-    fn enter_ball(&self, queries: &[BallEntryQuery]) -> Vec<Option<f32>> {
-        each(queries, |q| stage8_scene_graph::enter_ball(&q.ray, &q.ball))
-    }
-    fn closest_hit_in_graph(&self, queries: &[GraphQuery]) -> Vec<GraphAnswer> {
-        each(queries, |q| {
-            let mut probe = TableProbe::without_hierarchy(&q.table);
-            let hit = stage8_scene_graph::closest_hit_in_graph(&q.graph, &mut probe, &q.ray, q.savings);
-            GraphAnswer { search: probe.answer(hit), asked: probe.asked }
-        })
-    }
-    fn cuboid(&self, queries: &[SolidQuery<Cuboid>]) -> Vec<Option<SolidHit>> {
-        each(queries, |q| stage8_solids::cuboid(&q.ray, &q.solid))
-    }
-    fn cylinder(&self, queries: &[SolidQuery<Cylinder>]) -> Vec<Option<SolidHit>> {
-        each(queries, |q| stage8_solids::cylinder(&q.ray, &q.solid))
-    }
-    fn cone(&self, queries: &[SolidQuery<Cone>]) -> Vec<Option<SolidHit>> {
-        each(queries, |q| stage8_solids::cone(&q.ray, &q.solid))
-    }
-    fn disk(&self, queries: &[SolidQuery<Disk>]) -> Vec<Option<SolidHit>> {
-        each(queries, |q| stage8_solids::disk(&q.ray, &q.solid))
-    }
-    fn polygon(&self, queries: &[SolidQuery<Polygon>]) -> Vec<Option<SolidHit>> {
-        each(queries, |q| stage8_solids::polygon(&q.ray, &q.solid))
-    }
-    fn bezier_point(&self, queries: &[PatchQuery]) -> Vec<Vec3> {
-        each(queries, |q| stage8_surfaces::bezier_point(&q.patch, q.uv))
-    }
-    fn loop_subdivide(&self, queries: &[Mesh]) -> Vec<Mesh> {
-        each(queries, stage8_surfaces::loop_subdivide)
     }
 }
 

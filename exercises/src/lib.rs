@@ -4,6 +4,7 @@
 mod camera_rays; // nothing to do here
 mod finder; // nothing to do here
 mod glue; // nothing to do here
+mod glue_structures; // nothing to do here
 mod placed; // nothing to do here
 mod plan; // nothing to do here
 pub mod stage10_stability;
@@ -17,6 +18,12 @@ pub mod stage7_effects;
 pub mod stage8_scene_graph;
 pub mod stage8_solids;
 pub mod stage8_surfaces;
+pub mod stage9_bsp;
+pub mod stage9_cells;
+pub mod stage9_coherence;
+pub mod stage9_grid;
+pub mod stage9_kd_tree;
+pub mod stage9_octree;
 mod structure; // nothing to do here
 mod surfaces; // nothing to do here
 mod tracer; // nothing to do here

@@ -7,11 +7,12 @@ use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
 use crate::graph::Placement;
 use crate::mesh::Mesh;
+use crate::partition::{Bsp, Grid, KdTree, Octree};
 use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, UVec3, Vec2, Vec3};
 
 /// Carries a request to where the student's code lives and brings the answer back.
 ///
@@ -35,6 +36,7 @@ pub trait Kit:
     + Distribution
     + Economy
     + SceneGraph
+    + Partitions
     + Stability
     + Frames
     + Sync
@@ -49,6 +51,7 @@ impl<T> Kit for T where
         + Distribution
         + Economy
         + SceneGraph
+        + Partitions
         + Stability
         + Frames
         + Sync
@@ -315,6 +318,36 @@ door! {
         BezierPoint fn bezier_point(PatchQuery) -> Vec3;
         /// A mesh with four triangles for each.
         LoopSubdivide fn loop_subdivide(Mesh) -> Mesh;
+    }
+
+    /// Stage 9: cells of space.
+    trait Partitions {
+        /// Where a ray is in a cell, in double precision.
+        CellSpan fn cell_span(SlabQuery) -> Option<(f64, f64)>;
+        /// How many cells a grid should have along each axis.
+        GridResolution fn grid_resolution(ResolutionQuery) -> UVec3;
+        /// A grid over boxes.
+        GridBuild fn grid_build(GridQuery) -> Grid;
+        /// The closest hit in a grid.
+        GridSearch fn grid_search(CellsQuery<Grid>) -> CellsAnswer;
+        /// An octree over boxes.
+        OctreeBuild fn octree_build(OctreeQuery) -> Octree;
+        /// The closest hit in an octree, from cell to cell.
+        OctreeByCells fn octree_by_cells(CellsQuery<Octree>) -> CellsAnswer;
+        /// The closest hit in an octree, from the root down.
+        OctreeSearch fn octree_search(CellsQuery<Octree>) -> CellsAnswer;
+        /// A kd-tree over boxes.
+        KdBuild fn kd_build(KdQuery) -> KdTree;
+        /// The closest hit in a kd-tree.
+        KdSearch fn kd_search(CellsQuery<KdTree>) -> CellsAnswer;
+        /// A BSP tree over hulls.
+        BspBuild fn bsp_build(BspQuery) -> Bsp;
+        /// The closest hit in a BSP tree.
+        BspSearch fn bsp_search(CellsQuery<Bsp>) -> CellsAnswer;
+        /// The closest hit, knowing what the ray before hit.
+        CachedSearch fn cached_search(CachedQuery) -> CellsAnswer;
+        /// The closest hits of several rays.
+        PacketSearch fn packet_search(PacketQuery) -> PacketAnswer;
     }
 
     /// Stage 10: answers that survive rounding.

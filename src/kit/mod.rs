@@ -8,6 +8,7 @@ mod distribution;
 pub mod door;
 mod economy;
 pub mod mishap;
+mod partitions;
 mod recursion;
 mod scene_graph;
 mod shading;
@@ -21,13 +22,17 @@ pub use distribution::{
     BallQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
-    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Recursion, Request, SceneGraph, Shading,
-    Shapes, Stability, Transport, Triangles,
+    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Partitions, Recursion, Request,
+    SceneGraph, Shading, Shapes, Stability, Transport, Triangles,
 };
 pub use economy::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
 pub use mishap::Mishap;
+pub use partitions::{
+    BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
+    PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,
+};
 pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};
 pub use scene_graph::{
     BallEntryQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,

@@ -23,6 +23,7 @@ pub mod stage5;
 pub mod stage6;
 pub mod stage7;
 pub mod stage8;
+pub mod stage9;
 pub mod statistics;
 pub mod tree;
 pub mod trial;
@@ -40,6 +41,7 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (6, stage6::CHECKS),
     (7, stage7::CHECKS),
     (8, stage8::CHECKS),
+    (9, stage9::CHECKS),
     (10, stage10::CHECKS),
 ];
 

@@ -1,0 +1,163 @@
+//! Stage 9 · the BSP tree: planes in any direction, those of the polygons themselves.
+//!
+//! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
+//!
+//! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`.
+
+use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+use glam::{DVec3, Vec3};
+use raykata::bvh::PrimitiveHit;
+use raykata::partition::{Bsp, BspNode, Cells, CutPlane};
+use raykata::ray::Ray;
+
+/// Builds a BSP tree over hulls: the corners of a polygon, or the eight of a box. Candidates for a cut are the planes of
+/// the polygons, and one across each axis in the middle of things, for those of a convex body divide nothing. The plane is
+/// taken that leaves the fewest primitives on its fuller side. A leaf is made if there are no more than `leaf_size`, at
+/// `max_depth`, or if no plane leaves fewer on either side and less than 60 % on both.
+///
+/// A primitive is listed on each side that it reaches into; one that touches the plane, on both. What is not a number is
+/// left out.
+pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
+    // <solution>
+    let usable = |hull: &[Vec3]| !hull.is_empty() && hull.iter().all(|corner| corner.is_finite());
+    let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
+    let corners: Vec<DVec3> = ids.iter().flat_map(|&id| &hulls[id as usize]).map(|p| p.as_dvec3()).collect();
+    let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+
+    let mut bsp = Bsp::default();
+    if !ids.is_empty() {
+        // As wide as the room that boxes get: 2⁻¹⁸ of the extent, or some steps of the largest coordinate.
+        let extent = (high - low).max_element() * (-18f64).exp2();
+        let room = extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2());
+        let scene = Scene { hulls, room, leaf_size, max_depth };
+        divide(&mut bsp, &scene, &ids, 0);
+    }
+    bsp
+    // <stub> todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
+    // </solution>
+}
+
+// <solution>
+struct Scene<'a> {
+    hulls: &'a [Vec<Vec3>],
+    room: f64,
+    leaf_size: usize,
+    max_depth: usize,
+}
+
+impl Scene<'_> {
+    /// The primitives behind and in front of a plane.
+    fn sides(&self, ids: &[u32], plane: &CutPlane) -> [Vec<u32>; 2] {
+        let reaches = |id: u32, side: f64| {
+            self.hulls[id as usize].iter().any(|corner| side * plane.distance(*corner) >= -self.room)
+        };
+        [-1.0, 1.0].map(|side| ids.iter().copied().filter(|&id| reaches(id, side)).collect())
+    }
+
+    /// The plane of a hull, if all its corners lie in one.
+    fn plane_of(&self, id: u32) -> Option<CutPlane> {
+        let hull: Vec<DVec3> = self.hulls[id as usize].iter().map(|corner| corner.as_dvec3()).collect();
+        // Newell: the sum over the edges is twice the area times the normal, whichever corners are in a line.
+        let next = hull.iter().cycle().skip(1);
+        let normal = hull.iter().zip(next).map(|(p, q)| (*p - hull[0]).cross(*q - hull[0])).sum::<DVec3>();
+        let normal = normal.try_normalize()?;
+        let plane = CutPlane { normal, offset: normal.dot(hull[0]) };
+        self.hulls[id as usize]
+            .iter()
+            .all(|corner| plane.distance(*corner).abs() <= self.room)
+            .then_some(plane)
+    }
+
+    fn candidates(&self, ids: &[u32]) -> Vec<CutPlane> {
+        // Sixteen polygons, spread over all: to try each against each takes too long.
+        let step = ids.len().div_ceil(16);
+        let of_polygons = ids.iter().step_by(step).filter_map(|&id| self.plane_of(id));
+        let across = (0..3).map(|axis| {
+            let hull = |id: u32| self.hulls[id as usize].iter().map(move |corner| f64::from(corner[axis]));
+            let center = |id: u32| hull(id).sum::<f64>() / self.hulls[id as usize].len() as f64;
+            let mut centers: Vec<f64> = ids.iter().map(|&id| center(id)).collect();
+            centers.sort_by(f64::total_cmp);
+            let (p, q) = (centers[(centers.len() - 1) / 2], centers[centers.len() / 2]);
+            CutPlane::across(axis, 0.5 * (p + q))
+        });
+        of_polygons.chain(across).collect()
+    }
+
+    /// The plane that leaves the fewest on its fuller side, if it divides.
+    fn choose(&self, ids: &[u32]) -> Option<(CutPlane, [Vec<u32>; 2])> {
+        let cuts = self.candidates(ids).into_iter().map(|plane| (plane, self.sides(ids, &plane)));
+        let divides = |[back, front]: &[Vec<u32>; 2]| {
+            let (n, fuller) = (ids.len(), back.len().max(front.len()));
+            fuller < n && 10 * (back.len() + front.len() - n) < 6 * n
+        };
+        cuts.filter(|(_, sides)| divides(sides))
+            .min_by_key(|(_, [back, front])| (back.len().max(front.len()), back.len() + front.len()))
+    }
+}
+
+fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], depth: usize) -> u32 {
+    let node = bsp.add_node(depth, scene.max_depth);
+    let divided = ids.len() > scene.leaf_size && depth < scene.max_depth;
+    match divided.then(|| scene.choose(ids)).flatten() {
+        None => bsp.set_leaf(node, ids),
+        Some((plane, [behind, before])) => {
+            let back = divide(bsp, scene, &behind, depth + 1);
+            let front = divide(bsp, scene, &before, depth + 1);
+            bsp.set_children(node, plane, back, front);
+        }
+    }
+    node
+}
+// </solution>
+
+/// The closest hit: the side that the ray comes from first, then the other one, each with the part of the ray that is on
+/// it.
+///
+/// Where the formula lies: `if (t < min_t) || (t < max_t)) return no_intersection` gives up where the plane is behind the
+/// ray or beyond its end; there the ray is on one side all the way, and that side must be searched. A ray in the plane is
+/// on both sides, and so is one that starts on it.
+pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
+    // <solution>
+    if bsp.nodes.is_empty() {
+        return None;
+    }
+    let mut ray = *ray;
+    let mut best = None;
+    search(bsp, 0, range(&ray), probe, &mut ray, &mut best);
+    best
+    // <stub> todo!("search the near side of each plane first, then the far one if it can matter")
+    // </solution>
+}
+
+// <solution>
+fn search(
+    bsp: &Bsp,
+    node: u32,
+    part: (f64, f64),
+    probe: &mut impl Cells,
+    ray: &mut Ray,
+    best: &mut Option<PrimitiveHit>,
+) {
+    if settled(best, part.0) {
+        return;
+    }
+    probe.visit(node);
+    match bsp.nodes[node as usize] {
+        BspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
+        BspNode::Inner { plane, back, front } => {
+            let origin = ray.origin.as_dvec3();
+            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.dir.as_dvec3()));
+            // The height is a difference of numbers of this size, and off by some of their last digits.
+            let digits = plane.normal.abs().dot(origin.abs()) + plane.offset.abs();
+            let room = ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;
+            let before = part_above(height, rate, room, part).map(|part| (front, part));
+            let behind = part_above(-height, -rate, room, part).map(|part| (back, part));
+            let in_order = if rate > 0.0 { [behind, before] } else { [before, behind] };
+            for (child, part) in in_order.into_iter().flatten() {
+                search(bsp, child, part, probe, ray, best);
+            }
+        }
+    }
+}
+// </solution>

@@ -1,0 +1,134 @@
+//! The BSP tree as data: planes in any direction.
+
+use super::check_depth;
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// A plane that divides space: all points `p` with `normal · p = offset`. In front is where the normal points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CutPlane {
+    /// At right angles to the plane, of length 1.
+    pub normal: DVec3,
+    /// The distance of the plane from the origin of space, along the normal.
+    pub offset: f64,
+}
+
+impl CutPlane {
+    /// The plane across `axis` at `at`.
+    pub fn across(axis: usize, at: f64) -> Self {
+        CutPlane { normal: DVec3::AXES[axis], offset: at }
+    }
+
+    /// How far in front of the plane `point` lies; negative behind it.
+    pub fn distance(&self, point: Vec3) -> f64 {
+        self.normal.dot(point.as_dvec3()) - self.offset
+    }
+}
+
+/// What a node of a BSP tree holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum BspNode {
+    /// Two nodes, one on either side of a plane.
+    Inner {
+        /// The plane.
+        plane: CutPlane,
+        /// The node behind it.
+        back: u32,
+        /// The node in front of it.
+        front: u32,
+    },
+    /// The primitives `items[first..first + count]`.
+    Leaf {
+        /// Where they begin in [`Bsp::items`].
+        first: u32,
+        /// How many they are; a leaf may hold none.
+        count: u32,
+    },
+}
+
+/// Space, divided by planes in any direction. Node 0 is the root and is all of space. A tree over nothing has no nodes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bsp {
+    /// All nodes, a parent before its children.
+    pub nodes: Vec<BspNode>,
+    /// Numbers of primitives, those of a leaf side by side. A primitive stands in every leaf that it reaches into.
+    pub items: Vec<u32>,
+}
+
+impl Bsp {
+    /// Adds a node at `depth`, the root being at depth 0, and gives its number. It is a leaf with nothing in it until
+    /// [`Bsp::set_leaf`] or [`Bsp::set_children`] says otherwise.
+    ///
+    /// # Panics
+    ///
+    /// When `depth` is beyond `max_depth`: then the recursion would never end.
+    #[track_caller]
+    pub fn add_node(&mut self, depth: usize, max_depth: usize) -> u32 {
+        check_depth(depth, max_depth);
+        self.nodes.push(BspNode::Leaf { first: 0, count: 0 });
+        self.nodes.len() as u32 - 1
+    }
+
+    /// Makes `node` a leaf that holds `primitives`.
+    pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
+        let first = self.items.len() as u32;
+        self.items.extend(primitives);
+        self.nodes[node as usize] = BspNode::Leaf { first, count: primitives.len() as u32 };
+    }
+
+    /// Makes `node` the parent of `back` and `front`.
+    pub fn set_children(&mut self, node: u32, plane: CutPlane, back: u32, front: u32) {
+        self.nodes[node as usize] = BspNode::Inner { plane, back, front };
+    }
+
+    /// The primitives of a leaf.
+    pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
+        &self.items[first as usize..(first + count) as usize]
+    }
+
+    /// How many nodes there are.
+    pub fn n_nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// How many primitives stand in leaves, each counted once a leaf.
+    pub fn n_references(&self) -> usize {
+        self.items.len()
+    }
+
+    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    pub fn depth(&self) -> usize {
+        let mut deepest = 0;
+        self.walk(|_, _, depth| deepest = deepest.max(depth + 1));
+        deepest
+    }
+
+    /// The planes at `depth`; the root is at depth 0.
+    pub fn planes(&self, depth: usize) -> Vec<CutPlane> {
+        let mut planes = Vec::new();
+        self.walk(|node, _, at| {
+            if let BspNode::Inner { plane, .. } = self.nodes[node as usize]
+                && at == depth
+            {
+                planes.push(plane);
+            }
+        });
+        planes
+    }
+
+    /// Tells `each` about all nodes: number, the planes above with the side on which the node lies (1 in front, -1
+    /// behind), and depth.
+    pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) {
+        let mut waiting: Vec<(u32, Vec<(CutPlane, f64)>)> = Vec::new();
+        if !self.nodes.is_empty() {
+            waiting.push((0, Vec::new()));
+        }
+        while let Some((node, above)) = waiting.pop() {
+            each(node, &above, above.len());
+            if let BspNode::Inner { plane, back, front } = self.nodes[node as usize] {
+                let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect();
+                waiting.extend([(front, with(1.0)), (back, with(-1.0))]);
+            }
+        }
+    }
+}

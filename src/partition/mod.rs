@@ -1,0 +1,99 @@
+//! Partitions of space as data: cells, and in each the numbers of the primitives that reach into it. Building and searching
+//! them are exercises of stage 9.
+//!
+//! `grid` · `octree` · `kd_tree` · `bsp`
+
+pub mod bsp;
+pub mod grid;
+pub mod kd_tree;
+pub mod octree;
+
+pub use bsp::{Bsp, BspNode, CutPlane};
+pub use grid::{Grid, MOST_CELLS_ALONG};
+pub use kd_tree::{KdHeuristics, KdNode, KdTree};
+pub use octree::{Octree, OctreeNode};
+
+use crate::aabb::Aabb;
+use crate::ray::Ray;
+use glam::{DVec3, Vec3};
+
+/// Everything that a search of cells may ask. Each question is counted, so what a search costs is known exactly.
+pub trait Cells {
+    /// To be called once for each node or cell that the search comes to. Counts a node visit.
+    fn visit(&mut self, node: u32);
+
+    /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
+}
+
+/// A box of space in double precision: where cells meet, both have the very same face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The corner with the smallest coordinates.
+    pub min: DVec3,
+    /// The corner with the largest coordinates.
+    pub max: DVec3,
+}
+
+impl Cell {
+    /// The box as a cell.
+    pub fn new(bounds: &Aabb) -> Self {
+        Cell { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() }
+    }
+
+    /// The middle, where octants meet.
+    pub fn middle(&self) -> DVec3 {
+        0.5 * (self.min + self.max)
+    }
+
+    /// One of the eight octants: bit 0 of `octant` is 1 for the upper half along x, bit 1 along y, bit 2 along z.
+    pub fn octant(&self, octant: usize) -> Cell {
+        let middle = self.middle();
+        let mut cell = *self;
+        for axis in 0..3 {
+            match octant >> axis & 1 {
+                0 => cell.max[axis] = middle[axis],
+                _ => cell.min[axis] = middle[axis],
+            }
+        }
+        cell
+    }
+
+    /// The parts below and above `at` along `axis`.
+    pub fn cut(&self, axis: usize, at: f64) -> [Cell; 2] {
+        let (mut below, mut above) = (*self, *self);
+        below.max[axis] = at;
+        above.min[axis] = at;
+        [below, above]
+    }
+
+    /// Whether the box and the cell share a point; to touch is to share. Never for a box that is not a number.
+    pub fn touches(&self, bounds: &Aabb) -> bool {
+        (0..3).all(|axis| {
+            f64::from(bounds.min[axis]) <= self.max[axis] && self.min[axis] <= f64::from(bounds.max[axis])
+        })
+    }
+
+    /// The cell in single precision, to be drawn.
+    pub fn to_box(&self) -> Aabb {
+        Aabb::new(self.min.as_vec3(), self.max.as_vec3())
+    }
+}
+
+/// The corners of a box, as the hull of a primitive that is no polygon.
+pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
+    let pick = |corner: usize, axis: usize| match corner >> axis & 1 {
+        0 => bounds.min[axis],
+        _ => bounds.max[axis],
+    };
+    (0..8).map(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2))).collect()
+}
+
+/// Ends a recursion that would never end by itself.
+#[track_caller]
+fn check_depth(depth: usize, most: usize) {
+    assert!(
+        depth <= most,
+        "a node at depth {depth} of a tree that may be {most} deep: does every division divide?"
+    );
+}

@@ -1,0 +1,285 @@
+//! The kd-tree: what is where, and the way of a ray through it.
+
+use super::lists::{endless, lists_fault, some_boxes};
+use super::parts;
+use super::scenes::{Scene, Thing, ball, closest, wall};
+use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::structures::kd_tree;
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use crate::judge::{compare, known};
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{CellsQuery, KdQuery, mishap};
+use raykata::partition::{KdHeuristics, KdNode, KdTree};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+fn told(query: &KdQuery) -> String {
+    let boxes = crate::paste::list(&query.bounds);
+    format!("build(&{boxes},\n&{:?}, {})", query.heuristics, query.leaf_size)
+}
+
+fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
+    let fault = |(yours, expected, diagnosis): (String, String, &'static str)| {
+        Err(Broken::told(told(query), yours, expected, "what makes a kd-tree").looks_like(known(diagnosis)))
+    };
+    if query.bounds.iter().all(Aabb::is_empty) {
+        let n = yours.nodes.len();
+        return if n == 0 {
+            Ok(())
+        } else {
+            fault((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree"))
+        };
+    }
+    let mut leaves = Vec::new();
+    let mut outside = None;
+    yours.walk(64, |node, cell, _| match yours.nodes[node as usize] {
+        KdNode::Leaf { first, count } => leaves.push((node, cell, yours.primitives(first, count).to_vec())),
+        KdNode::Inner { axis, at, .. } => {
+            let (axis, at) = (usize::from(axis), f64::from(at));
+            if !(cell.min[axis] <= at && at <= cell.max[axis]) {
+                outside =
+                    Some((format!("node {node} is cut at {at}"), format!("within {:?}", cell.to_box())));
+            }
+        }
+    });
+    if let Some((yours, expected)) = outside {
+        return fault((yours, expected, "a plane outside of the cell divides nothing"));
+    }
+    match lists_fault(&yours.bounds, &query.bounds, &leaves) {
+        Some(wrong) => fault(wrong),
+        None => Ok(()),
+    }
+}
+
+/// Any of the 32 sets of heuristics.
+fn heuristics() -> impl Strategy<Value = KdHeuristics> + Clone {
+    (0..32u8).prop_map(|bits| KdHeuristics {
+        longest_axis: bits & 1 != 0,
+        balanced_counts: bits & 2 != 0,
+        few_straddlers: bits & 4 != 0,
+        cut_off_empty_space: bits & 8 != 0,
+        stop_at_overlap: bits & 16 != 0,
+    })
+}
+
+pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+    let inputs = (some_boxes(), heuristics(), 1..=4usize)
+        .prop_map(|(bounds, heuristics, leaf_size)| KdQuery { bounds, heuristics, leaf_size });
+    trial.forall(300, inputs, |queries| {
+        compare(queries, trial.kit.kd_build(queries), |query, yours| judge_tree(query, &yours))
+    })
+}
+
+pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
+    for (name, bounds) in endless() {
+        for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
+            let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
+            let yours = match mishap::catch(|| trial.kit.kd_build(std::slice::from_ref(&query)).remove(0)) {
+                Ok(yours) => yours,
+                Err(mishap::Mishap::Panicked { message, .. }) => {
+                    let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
+                    let broken = Broken::told(input, message, "a tree", "what makes a kd-tree");
+                    return Err(broken
+                        .looks_like(Some("stop at KdTree::most_depth, and where all are on both sides")));
+                }
+                Err(mishap) => mishap::unwind(mishap),
+            };
+            judge_tree(&query, &yours)?;
+            let most = 1 << 17;
+            if yours.n_references() > most {
+                let told = |n: usize| format!("{n} references");
+                let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
+                let broken = Broken::told(
+                    input,
+                    told(yours.n_references()),
+                    format!("at most {}", told(most)),
+                    "counted",
+                );
+                return Err(
+                    broken.looks_like(Some("all are on both sides, again and again: make a leaf of them"))
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::KdTree)
+}
+
+/// A tree of one cut across x, with these primitives on either side.
+fn two_leaves(bounds: Aabb, at: f32, left: &[u32], right: &[u32]) -> KdTree {
+    let mut tree = KdTree::new(bounds);
+    let root = tree.add_node(0, 1);
+    let [below, above] = [tree.add_node(1, 1), tree.add_node(1, 1)];
+    tree.set_leaf(below, left);
+    tree.set_leaf(above, right);
+    tree.set_children(root, 0, at, below, above);
+    tree
+}
+
+fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, says: &str) -> Outcome {
+    let hits = scene.hits(ray);
+    let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
+    let yours = trial.kit.kd_search(&[query]).remove(0);
+    judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
+}
+
+/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded in two ways.
+pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outcome {
+    let says = "traps A4 and A6: `hit.distance < t'` drops what lies on the far face, and the two t are rounded in two ways; keep the best hit, wherever its cell ends";
+    for (size, rough) in [(1.0, false), (1.0, true), (100.0, true), (1e5, true)] {
+        let walls = [wall(0, size, size), wall(0, 0.0, size)];
+        let scene = Scene { things: walls.into_iter().flatten().collect(), rough };
+        let bounds = Aabb::new(Vec3::splat(-size), Vec3::splat(size));
+        let whole = two_leaves(bounds, 0.0, &[2, 3], &[0, 1, 2, 3]);
+        for i in 0..12 {
+            let y = (i as f32 - 5.5) * 0.07;
+            // The far wall, behind nothing; and the wall in the plane of the cut, listed on both sides.
+            let right = Ray::new(size * vec3(0.2, y, 0.3 * y), vec3(1.0, 0.2 * y, 0.1).normalize());
+            let through = Ray::new(size * vec3(-0.7, y, 0.3 * y), vec3(1.0, 0.2 * y, 0.1).normalize());
+            for ray in [right, through] {
+                ask(
+                    trial,
+                    &whole,
+                    &scene,
+                    &ray,
+                    &format!("kd-tree of two leaves with walls on faces, size {size}"),
+                    says,
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Trap A6 alone: what lies in the plane from the right comes out a step nearer than what lies in it from the left.
+pub(super) fn kd_hits_at_the_plane_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
+    let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
+    for (at, x) in [(1.0f32, -2.0f32), (0.7, -5.3), (-3.1, -7.7)] {
+        let exact = at - x;
+        let hits = vec![exact.next_down(), exact.next_down().next_down()];
+        let ray = Ray::new(vec3(x, 0.0, 0.0), Vec3::X);
+        let query = CellsQuery { cells: two_leaves(bounds, at, &[0], &[1]), ray, hits: hits.clone() };
+        let yours = trial.kit.kd_search(&[query]).remove(0);
+        judge("kd-tree of two leaves, a primitive of each in the plane between them", &ray, &hits, &yours).map_err(
+            |broken| {
+                broken.looks_like(Some(
+                    "trap A6: t of a hit and t of a cell are rounded in two ways; stop only if the hit is before the cell by more than that",
+                ))
+            },
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
+    let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
+    let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25)]);
+    let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 5.0, 4.0));
+    let tree = two_leaves(bounds, 2.0, &[0], &[0, 1]);
+    let says =
+        "the hit of a leaf lies beyond the leaf, where another is nearer: `Some hit → Some hit` is too soon";
+    ask(
+        trial,
+        &tree,
+        &scene,
+        &Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X),
+        "kd-tree; primitive 0 reaches into both leaves",
+        says,
+    )?;
+    // And nothing nearer: the hit counts although it lies beyond the first leaf, and the second does not list it.
+    let tree = two_leaves(bounds, 2.0, &[0], &[]);
+    let alone = Scene::new(vec![large]);
+    let says = "a hit beyond its leaf was thrown away: it is a hit all the same";
+    ask(
+        trial,
+        &tree,
+        &alone,
+        &Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X),
+        "kd-tree; primitive 0 is listed in the first leaf only",
+        says,
+    )
+}
+
+/// Trap A5: a ray in the plane of a cut, or that starts on it, is on both sides.
+pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A5: a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
+    let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
+    for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])] {
+        let tree = two_leaves(bounds, 1.0, left, right);
+        // Two balls whose middles lie in the plane, and walls in it.
+        let balls =
+            Scene::new(vec![ball(1.0, 5.0, 0.0, 0.5), ball(1.0, 0.0, 5.0, 0.5), ball(1.0, -5.0, 0.0, 0.5)]);
+        for zero in [0.0, -0.0] {
+            for (y, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)] {
+                let ray = Ray::new(vec3(1.0, 0.0, 0.0), vec3(zero, y, z));
+                ask(
+                    trial,
+                    &tree,
+                    &balls,
+                    &ray,
+                    "kd-tree of two leaves, and a ray in the plane between them",
+                    says,
+                )?;
+            }
+        }
+        // From a point of the plane to what touches it on either side.
+        let beside =
+            Scene::new(vec![ball(-3.0, 0.5, 0.0, 0.5), ball(-5.0, -0.5, 0.5, 1.0), ball(5.0, 0.5, 0.0, 0.5)]);
+        let sides = two_leaves(bounds, 1.0, &[0, 1], &[2]);
+        for dir in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
+            ask(
+                trial,
+                &sides,
+                &beside,
+                &Ray::new(Vec3::X, dir),
+                "kd-tree of two leaves, and a ray from the plane between them",
+                says,
+            )?;
+        }
+    }
+    // A whole wall in the plane, listed on one side: rays at it from either side, from far and near.
+    let wall = Scene::new(wall(0, 1.0, 4.0).to_vec());
+    for (left, right) in [(&[0u32, 1][..], &[][..]), (&[][..], &[0, 1][..])] {
+        let tree = two_leaves(bounds, 1.0, left, right);
+        for x in [-7.5, 0.3, 1.7, 7.5] {
+            let ray = Ray::new(vec3(x, 0.3, 0.4), vec3(1.0 - x, 0.1, 0.2).normalize());
+            ask(
+                trial,
+                &tree,
+                &wall,
+                &ray,
+                "kd-tree of two leaves, and a wall in the plane, listed on one side",
+                says,
+            )?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+    let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
+    let balls = (0..128).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
+    let scene = Scene::new(balls.collect());
+    let cells = kd_tree(&scene.boxes(), 2, 10);
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(20.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let looks = |eye: Vec3| (0..128).step_by(9).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
+    let query = |ray: Ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) };
+    let queries: Vec<CellsQuery<KdTree>> = eyes.into_iter().flat_map(looks).map(query).collect();
+    for (query, yours) in queries.iter().zip(trial.kit.kd_search(&queries)) {
+        assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a ball");
+        judge_visits(
+            "kd-tree over 128 balls",
+            &query.ray,
+            &parts::of_kd_tree(&cells, &query.ray),
+            &yours,
+            true,
+        )?;
+    }
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! What stands in cells: the laws that all builders share.
+
+use crate::paste::Paste;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::partition::Cell;
+
+/// Boxes on a coarse grid, so that many touch; some flat, some not numbers.
+pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
+    let one =
+        (crate::generate::point(4), crate::generate::point(2), 0..20i32).prop_map(
+            |(p, size, kind)| match kind {
+                0 => Aabb::new(Vec3::NAN, Vec3::NAN),
+                1..=5 => Aabb::new(p.round(), p.round() + size.abs().round()),
+                _ => Aabb::new(p, p + size.abs()),
+            },
+        );
+    prop::collection::vec(one, 1..24)
+}
+
+/// What is wrong with the box around all, if anything is: `(yours, expected)`.
+pub(super) fn bounds_fault(bounds: &Aabb, boxes: &[Aabb]) -> Option<(String, String)> {
+    let all = crate::tree::around(boxes.iter().filter(|one| !one.is_empty()));
+    (!bounds.contains_box(&all)).then(|| {
+        (format!("the structure ends at {}", bounds.paste()), format!("all of {} within", all.paste()))
+    })
+}
+
+/// Whether a box that a cell lists has nothing to do with it: it is farther off than a 64th of all.
+pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
+    let room = (all.max - all.min).max_element() / 64.0;
+    let gap = (one.min - cell.max).max(cell.min - one.max);
+    !(gap.max_element() <= room)
+}
+
+/// What is wrong with the lists of leaves, if anything is: `(yours, expected, diagnosis)`. Each leaf comes with its cell.
+pub(super) fn lists_fault(
+    bounds: &Aabb,
+    boxes: &[Aabb],
+    leaves: &[(u32, Cell, Vec<u32>)],
+) -> Option<(String, String, &'static str)> {
+    if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
+        return Some((yours, expected, "bounds must be around all boxes that are numbers"));
+    }
+    for (node, cell, listed) in leaves {
+        for (id, one) in boxes.iter().enumerate() {
+            let times = listed.iter().filter(|&&other| other == id as u32).count();
+            let told = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
+            if one.is_empty() && times > 0 {
+                return Some((told(times), told(0), "what is not a number is in no cell"));
+            }
+            if !one.is_empty() && cell.touches(one) && times != 1 {
+                let touches = (0..3).any(|axis| {
+                    let [low, high] = [one.min[axis], one.max[axis]].map(f64::from);
+                    high == cell.min[axis] || low == cell.max[axis]
+                });
+                let diagnosis = match times {
+                    0 if touches => "trap A5: what touches a plane belongs to both sides",
+                    0 => "a primitive that reaches into several cells belongs to all of them",
+                    _ => "a primitive is listed twice in one leaf",
+                };
+                return Some((told(times), told(1), diagnosis));
+            }
+            if times > 0 && is_far_off(bounds, &cell.to_box(), one) {
+                return Some((
+                    told(times),
+                    told(0),
+                    "a primitive is listed in a leaf that it does not reach",
+                ));
+            }
+        }
+    }
+    None
+}
+
+/// Sets of boxes on which builders may not end, each with its name.
+pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
+    let cube = Aabb::new(Vec3::ZERO, Vec3::ONE);
+    let corner = Aabb::new(Vec3::splat(9.0), Vec3::splat(9.0));
+    let concentric = (1..=24).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
+    let line = (0..64).map(|i| Aabb::new(Vec3::X * i as f32, Vec3::X * i as f32)).collect();
+    let halving =
+        (0..100).map(|i| Aabb::new(Vec3::splat(2f32.powi(-i)), Vec3::splat(2f32.powi(-i)))).collect();
+    // Of ten, six reach across everything.
+    let long = (0..10).map(|i| {
+        let x = i as f32;
+        if i < 6 {
+            Aabb::new(Vec3::ZERO, Vec3::splat(10.0))
+        } else {
+            Aabb::new(Vec3::splat(x), Vec3::splat(x + 0.5))
+        }
+    });
+    vec![
+        ("no boxes", Vec::new()),
+        ("one box", vec![cube]),
+        ("two boxes", vec![cube, corner]),
+        ("1000 boxes in one place", vec![cube; 1000]),
+        ("1000 points in one place", vec![Aabb::new(Vec3::ONE, Vec3::ONE); 1000]),
+        ("1000 boxes in one place and a point", std::iter::repeat_n(cube, 1000).chain([corner]).collect()),
+        ("24 boxes in one another", concentric),
+        ("64 points in a line", line),
+        ("100 points, each half as far as the one before", halving),
+        ("ten boxes of which six are everywhere", long.collect()),
+        ("boxes that are not numbers", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
+    ]
+}

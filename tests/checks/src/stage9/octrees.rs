@@ -1,0 +1,214 @@
+//! The octree: what is where, and two ways of a ray through it.
+
+use super::lists::{endless, lists_fault, some_boxes};
+use super::parts;
+use super::scenes::{Scene, Thing, ball};
+use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::structures::octree;
+use crate::Trial;
+use crate::broken::{Broken, Outcome};
+use crate::judge::{compare, known};
+use glam::{Vec3, vec3};
+use proptest::prelude::Strategy;
+use raykata::aabb::Aabb;
+use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, mishap};
+use raykata::partition::{Octree, OctreeNode};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+fn told(query: &OctreeQuery) -> String {
+    let boxes = crate::paste::list(&query.bounds);
+    format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
+}
+
+fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
+    let fault = |(yours, expected, diagnosis): (String, String, &'static str)| {
+        Err(Broken::told(told(query), yours, expected, "what makes an octree").looks_like(known(diagnosis)))
+    };
+    if query.bounds.iter().all(Aabb::is_empty) {
+        let n = yours.nodes.len();
+        return if n == 0 {
+            Ok(())
+        } else {
+            fault((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree"))
+        };
+    }
+    let mut leaves = Vec::new();
+    let mut deepest = 0;
+    yours.walk(64, |node, cell, depth| {
+        deepest = deepest.max(depth);
+        if let OctreeNode::Leaf { first, count } = yours.nodes[node as usize] {
+            leaves.push((node, cell, yours.primitives(first, count).to_vec()));
+        }
+    });
+    if deepest > query.max_depth {
+        let expected = format!("at most {}", query.max_depth);
+        return fault((format!("a node at depth {deepest}"), expected, "max_depth is passed"));
+    }
+    match lists_fault(&yours.bounds, &query.bounds, &leaves) {
+        Some(wrong) => fault(wrong),
+        None => Ok(()),
+    }
+}
+
+pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+    let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
+        .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
+    trial.forall(200, inputs, |queries| {
+        compare(queries, trial.kit.octree_build(queries), |query, yours| judge_octree(query, &yours))
+    })
+}
+
+pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
+    // 64 small boxes, one in each cell of the third level, and 8 more in one of them.
+    let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;
+    let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
+    let dense =
+        (0..8).map(|i| Aabb::new(Vec3::splat(6.0) + 0.125 * at(i), Vec3::splat(6.02) + 0.125 * at(i)));
+    let query = OctreeQuery { bounds: even.chain(dense).collect(), leaf_size: 2, max_depth: 8 };
+    let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
+    judge_octree(&query, &yours)?;
+    let most = yours.nodes.iter().map(|node| match node {
+        OctreeNode::Leaf { count, .. } => *count,
+        OctreeNode::Inner { .. } => 0,
+    });
+    let most = most.max().unwrap_or(0);
+    let (depth, n) = (yours.depth(), yours.n_nodes());
+    // A full tree of eight levels would have 2,396,745 nodes.
+    if most <= 2 && depth > 3 && n < 1000 {
+        return Ok(());
+    }
+    let diagnosis = match () {
+        () if n >= 1000 => "cells are divided that hold leaf_size or fewer",
+        () => "cells with more than leaf_size primitives are not divided",
+    };
+    let yours = format!("up to {most} primitives a leaf, {depth} levels, {n} nodes");
+    let expected = "2 a leaf, more levels where boxes are dense, fewer than 1000 nodes";
+    Err(Broken::told(
+        "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
+        yours,
+        expected,
+        "counted",
+    )
+    .looks_like(Some(diagnosis)))
+}
+
+pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
+    for (name, bounds) in endless() {
+        let n = bounds.len();
+        let query = OctreeQuery { bounds, leaf_size: 1, max_depth: 12 };
+        let yours = match mishap::catch(|| trial.kit.octree_build(std::slice::from_ref(&query)).remove(0)) {
+            Ok(yours) => yours,
+            Err(mishap::Mishap::Panicked { message, .. }) => {
+                let broken = Broken::told(
+                    format!("build of {name}, leaf_size 1, max_depth 12"),
+                    message,
+                    "a tree",
+                    "what makes an octree",
+                );
+                return Err(broken.looks_like(Some("stop at max_depth, and where dividing does not help")));
+            }
+            Err(mishap) => mishap::unwind(mishap),
+        };
+        judge_octree(&query, &yours)?;
+        // Eight times as many at each of five levels are not worth it, whatever the boxes.
+        let most = 4096 + 64 * n;
+        if yours.n_references() > most {
+            let told = |n: usize| format!("{n} references");
+            let broken = Broken::told(
+                format!("build of {name}, leaf_size 1, max_depth 12"),
+                told(yours.n_references()),
+                format!("at most {}", told(most)),
+                "counted",
+            );
+            return Err(broken.looks_like(Some(
+                "all go to all octants, again and again: make a leaf if dividing does not help",
+            )));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::OctreeByCells)
+}
+
+pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::Octree)
+}
+
+/// Rays along the edges and through the corners at which octants meet, with zeros of either sign.
+fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Outcome {
+    let things: Vec<Thing> = (0..27)
+        .map(|i| ball((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
+        .collect();
+    let scene = Scene::new(things);
+    let steps = [-1.0, 0.0, -0.0, 1.0];
+    let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
+    let rays: Vec<Ray> = dirs
+        .filter(|dir| dir.length_squared() > 0.0)
+        .flat_map(|dir| [0.0, 2.0, 4.0].map(|at| Ray::new(Vec3::splat(at) - 12.0 * dir, dir)))
+        .collect();
+    let answers = searcher.ask(trial.kit, &scene, &rays);
+    for (ray, yours) in rays.iter().zip(&answers) {
+        judge(&format!("{} over 3 × 3 × 3 balls", searcher.name()), ray, &scene.hits(ray), yours)
+            .map_err(|broken| broken.looks_like(Some(says)))?;
+    }
+    Ok(())
+}
+
+pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> Outcome {
+    let says = "a point on a face is in the cell that the ray is about to enter: step onto the face, exactly, and decide by the sign of d";
+    along_edges(trial, Searcher::OctreeByCells, says)
+}
+
+pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A9: octants that are entered at one t need an order, too, and a ray in a face gives 0 / 0 unless you ask";
+    along_edges(trial, Searcher::Octree, says)
+}
+
+/// Trap A9: a large ball that reaches into the first octant is met in the second, behind a small one.
+pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
+    let large = Thing::Ball(Sphere { center: vec3(5.0, 4.5, 1.0), radius: 3.75 });
+    let filler = (0..3).map(|i| ball(0.25, 7.0, 2.0 * i as f32, 0.25));
+    let things: Vec<Thing> = [large, ball(4.5, 0.75, 1.0, 0.25)].into_iter().chain(filler).collect();
+    let scene = Scene::new(things);
+    let ray = Ray::new(vec3(-1.0, 0.8, 1.0), vec3(1.0, 0.0, 0.0));
+    for searcher in [Searcher::Octree, Searcher::OctreeByCells] {
+        let yours = searcher.ask(trial.kit, &scene, &[ray]).remove(0);
+        let what = format!("{}: primitive 0 reaches into several octants", searcher.name());
+        judge(&what, &ray, &scene.hits(&ray), &yours).map_err(|broken| {
+            broken.looks_like(Some(
+                "trap A9: the hit of an octant lies beyond it, where another is nearer: go on until the next octant begins behind it",
+            ))
+        })?;
+    }
+    Ok(())
+}
+
+pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
+    let balls = (0..128).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
+    let scene = Scene::new(balls.collect());
+    let cells = octree(&scene.boxes(), 2, 5);
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(12.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let looks = |eye: Vec3| (0..128).step_by(9).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
+    let queries: Vec<CellsQuery<Octree>> = eyes
+        .into_iter()
+        .flat_map(looks)
+        .map(|ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) })
+        .collect();
+    let by_cells = trial.kit.octree_by_cells(&queries);
+    for (query, (down, along)) in
+        queries.iter().zip(trial.kit.octree_search(&queries).into_iter().zip(by_cells))
+    {
+        let parts = parts::of_octree(&cells, &query.ray);
+        judge_visits("octree over 128 balls, from the root down", &query.ray, &parts, &down, true)?;
+        // On the way down to a leaf, nodes above are visited each time.
+        let leaves = parts::of_leaves(&cells, &parts);
+        let visits = along.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
+        let along = CellsAnswer { visits, ..along };
+        judge_visits("octree over 128 balls, cell by cell", &query.ray, &parts, &along, true)?;
+    }
+    Ok(())
+}
