@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours share caches.
-const TILE: u32 = 16;
+pub const TILE: u32 = 16;
 
 /// Someone who waits for a frame.
 pub trait Watch: Sync {
@@ -70,6 +70,8 @@ pub struct CameraSample {
     pub column: u32,
     /// Row of the pixel.
     pub row: u32,
+    /// Which of the pixel's samples.
+    pub sample: u32,
     /// Where in the pixel; `None` is its centre.
     pub pixel: Option<Stratum>,
     /// Where on the lens; `None` is its centre.
@@ -98,6 +100,7 @@ impl CameraSample {
         CameraSample {
             column,
             row,
+            sample,
             pixel: draw(spread, Purpose::Pixel),
             lens: draw(lens, Purpose::Lens),
             time: draw(motion, Purpose::Time),

@@ -66,6 +66,10 @@ pub trait Frames {
     /// The rays behind the first sample of the pixel in column `x` and row `y` of `job`, the very ones that a frame
     /// traces, parents before children.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
+
+    /// The boxes or cells of the structure over the scene at this depth, the root being at depth 0, and the leaves above
+    /// it.
+    fn cells(&self, job: &RenderJob, depth: u32) -> Vec<Aabb>;
 }
 
 macro_rules! door {
@@ -84,6 +88,8 @@ macro_rules! door {
             Render(Box<RenderJob>),
             /// The rays behind a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
+            /// The cells of the structure at a depth.
+            CellsAt(Box<RenderJob>, u32),
         }
 
         /// An answer as a message.
@@ -94,6 +100,8 @@ macro_rules! door {
             Render(Option<Box<Rendering>>),
             /// The rays behind a pixel.
             Trace(Vec<TracedRay>),
+            /// The cells of the structure at a depth.
+            CellsAt(Vec<Aabb>),
         }
 
         impl Request {
@@ -103,6 +111,7 @@ macro_rules! door {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
                     Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
+                    Request::CellsAt(job, depth) => Answer::CellsAt(kit.cells(job, *depth)),
                 }
             }
         }
@@ -129,6 +138,13 @@ impl<T: Transport> Frames for Door<T> {
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
         match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
             Answer::Trace(rays) => rays,
+            answer => mishap::wrong_answer(&format!("{answer:?}")),
+        }
+    }
+
+    fn cells(&self, job: &RenderJob, depth: u32) -> Vec<Aabb> {
+        match self.0.call(Request::CellsAt(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
+            Answer::CellsAt(cells) => cells,
             answer => mishap::wrong_answer(&format!("{answer:?}")),
         }
     }

@@ -60,6 +60,9 @@ pub enum View {
     Shaded,
     /// The normals of the surfaces, as colours.
     Normals,
+    /// What a pixel cost: node visits, box tests and primitive tests of all its rays, a sample, in place of red, green and
+    /// blue.
+    Work,
 }
 
 /// A whole frame to render where the student's code lives.
@@ -77,6 +80,19 @@ pub struct RenderJob {
     pub count: bool,
 }
 
+/// How large a structure is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StructureSize {
+    /// Nodes or cells.
+    pub nodes: u64,
+    /// Nodes on the longest way down, the root counted.
+    pub levels: u64,
+    /// How often primitives are listed, all together.
+    pub references: u64,
+    /// Memory of nodes and lists.
+    pub bytes: u64,
+}
+
 /// A rendered frame and what it took.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rendering {
@@ -86,8 +102,10 @@ pub struct Rendering {
     pub counts: Counts,
     /// Primitives that the frame was made of.
     pub primitives: u64,
-    /// Nodes and depth of the hierarchy, if one was built.
-    pub hierarchy: Option<(u64, u64)>,
+    /// How large the structure over the scene is, if one was built; parts that stand in several places have their own.
+    pub structure: Option<StructureSize>,
+    /// Bytes of the structures of all parts together.
+    pub bytes_of_parts: u64,
     /// Seconds to build the structure.
     pub build_seconds: f64,
     /// Seconds to render the pixels.

@@ -12,6 +12,7 @@ use crate::camera::Camera;
 use crate::graph::Savings;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
+use crate::partition::KdHeuristics;
 use crate::shape::Shape;
 use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
@@ -56,10 +57,50 @@ pub enum Accelerator {
     Grid,
     /// An octree (stage 9).
     Octree,
+    /// An octree, searched from cell to cell and not from the root down (stage 9).
+    OctreeByCells,
     /// A kd-tree (stage 9).
     KdTree,
     /// A binary space partition (stage 9).
     Bsp,
+    /// A bounding volume hierarchy, after what the ray before met (stage 9).
+    CachedBvh,
+    /// A bounding volume hierarchy, with rays from the camera in packets of eight (stage 9).
+    PacketBvh,
+}
+
+impl Accelerator {
+    /// All of them.
+    pub const ALL: [Accelerator; 11] = [
+        Accelerator::BruteForce,
+        Accelerator::BoundingBoxes,
+        Accelerator::BoundingSpheres,
+        Accelerator::Bvh,
+        Accelerator::CachedBvh,
+        Accelerator::PacketBvh,
+        Accelerator::Grid,
+        Accelerator::Octree,
+        Accelerator::OctreeByCells,
+        Accelerator::KdTree,
+        Accelerator::Bsp,
+    ];
+
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Accelerator::BruteForce => "brute_force",
+            Accelerator::BoundingBoxes => "bounding_boxes",
+            Accelerator::BoundingSpheres => "bounding_spheres",
+            Accelerator::Bvh => "bvh",
+            Accelerator::CachedBvh => "cached_bvh",
+            Accelerator::PacketBvh => "packet_bvh",
+            Accelerator::Grid => "grid",
+            Accelerator::Octree => "octree",
+            Accelerator::OctreeByCells => "octree_by_cells",
+            Accelerator::KdTree => "kd_tree",
+            Accelerator::Bsp => "bsp",
+        }
+    }
 }
 
 /// How a hierarchy divides its primitives.
@@ -163,6 +204,8 @@ pub struct Quality {
     pub precision: Precision,
     /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
     pub grid_resolution: u32,
+    /// What the builder of a kd-tree minds (stage 9).
+    pub kd_heuristics: KdHeuristics,
 }
 
 impl Default for Quality {
@@ -182,6 +225,7 @@ impl Default for Quality {
             savings: Savings::default(),
             precision: Precision::default(),
             grid_resolution: 0,
+            kd_heuristics: KdHeuristics::default(),
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::reader::Value;
 use crate::camera::{Camera, Lens, Shutter};
 use crate::graph::Savings;
+use crate::partition::KdHeuristics;
 use crate::scene::error::LoadError;
 use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
@@ -109,7 +110,7 @@ pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError
     })
 }
 
-const QUALITY_KEYS: [&str; 14] = [
+const QUALITY_KEYS: [&str; 15] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
@@ -124,6 +125,7 @@ const QUALITY_KEYS: [&str; 14] = [
     "triangle_method",
     "precision",
     "grid_resolution",
+    "kd_heuristics",
 ];
 
 pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
@@ -136,9 +138,12 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "gloss_samples" => quality.gloss_samples = value.whole(1..=MAX_SAMPLES)?,
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
-            "accelerator" => quality.accelerator = value.choice(&ACCELERATORS)?,
+            "accelerator" => {
+                quality.accelerator = value.choice(&Accelerator::ALL.map(|one| (one.name(), one)))?
+            }
             "copies" => quality.copies = value.truth()?,
             "savings" => quality.savings = savings(value)?,
+            "kd_heuristics" => quality.kd_heuristics = kd_heuristics(value)?,
             "sampler" => quality.sampler = value.choice(&SAMPLERS)?,
             "precision" => quality.precision = value.choice(&PRECISIONS)?,
             "split" => quality.split = value.choice(&SPLITS)?,
@@ -156,6 +161,20 @@ fn savings(value: Value) -> Result<Savings, LoadError> {
     Ok(Savings { volumes: wanted("volumes")?, skip: wanted("skip")?, sort: wanted("sort")? })
 }
 
+fn kd_heuristics(value: Value) -> Result<KdHeuristics, LoadError> {
+    const KEYS: [&str; 5] =
+        ["longest_axis", "balanced_counts", "few_straddlers", "cut_off_empty_space", "stop_at_overlap"];
+    let table = value.table(&KEYS)?;
+    let wanted = |key: &str| table.get(key).map_or(Ok(true), |wanted| wanted.truth());
+    Ok(KdHeuristics {
+        longest_axis: wanted("longest_axis")?,
+        balanced_counts: wanted("balanced_counts")?,
+        few_straddlers: wanted("few_straddlers")?,
+        cut_off_empty_space: wanted("cut_off_empty_space")?,
+        stop_at_overlap: wanted("stop_at_overlap")?,
+    })
+}
+
 const SAMPLERS: [(&str, Sampler); 5] = [
     ("center", Sampler::Center),
     ("random", Sampler::Random),
@@ -165,17 +184,6 @@ const SAMPLERS: [(&str, Sampler); 5] = [
 ];
 
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
-
-const ACCELERATORS: [(&str, Accelerator); 8] = [
-    ("brute_force", Accelerator::BruteForce),
-    ("bounding_boxes", Accelerator::BoundingBoxes),
-    ("bounding_spheres", Accelerator::BoundingSpheres),
-    ("bvh", Accelerator::Bvh),
-    ("grid", Accelerator::Grid),
-    ("octree", Accelerator::Octree),
-    ("kd_tree", Accelerator::KdTree),
-    ("bsp", Accelerator::Bsp),
-];
 
 const SPLITS: [(&str, Split); 3] = [
     ("object_median", Split::ObjectMedian),

@@ -30,9 +30,13 @@ pub struct Knobs {
     /// Most primitives in a leaf [default: the scene's].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
     leaf_size: Option<u32>,
-    /// What finds the closest hit [default: the scene's].
-    #[arg(long, value_enum)]
-    accelerator: Option<AcceleratorName>,
+    /// What finds the closest hit: brute-force, bounding-boxes, bounding-spheres, bvh, cached-bvh, packet-bvh, grid, octree,
+    /// octree-by-cells, kd-tree or bsp [default: the scene's].
+    #[arg(long, value_parser = parse_accelerator)]
+    accelerator: Option<Accelerator>,
+    /// Cells of a grid along its longest side; 0 takes the formula's number [default: the scene's].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=1024))]
+    grid_resolution: Option<u32>,
     /// Ray/triangle test [default: the scene's].
     #[arg(long, value_enum)]
     triangles: Option<TriangleName>,
@@ -56,12 +60,8 @@ impl Knobs {
             SplitName::SpatialMedian => Split::SpatialMedian,
             SplitName::SurfaceArea => Split::SurfaceArea,
         });
-        quality.accelerator = self.accelerator.map_or(quality.accelerator, |accelerator| match accelerator {
-            AcceleratorName::BruteForce => Accelerator::BruteForce,
-            AcceleratorName::BoundingBoxes => Accelerator::BoundingBoxes,
-            AcceleratorName::BoundingSpheres => Accelerator::BoundingSpheres,
-            AcceleratorName::Bvh => Accelerator::Bvh,
-        });
+        quality.accelerator = self.accelerator.unwrap_or(quality.accelerator);
+        quality.grid_resolution = self.grid_resolution.unwrap_or(quality.grid_resolution);
         quality.triangle_method = self.triangles.map_or(quality.triangle_method, |method| match method {
             TriangleName::Cramer => TriangleMethod::Cramer,
             TriangleName::Gram => TriangleMethod::Gram,
@@ -99,12 +99,13 @@ enum SplitName {
     SurfaceArea,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum AcceleratorName {
-    BruteForce,
-    BoundingBoxes,
-    BoundingSpheres,
-    Bvh,
+/// An accelerator by the name that scene files use, with `-` for `_`.
+pub(crate) fn parse_accelerator(text: &str) -> Result<Accelerator, String> {
+    let name = text.replace('-', "_");
+    Accelerator::ALL.into_iter().find(|one| one.name() == name).ok_or_else(|| {
+        let known: Vec<String> = Accelerator::ALL.map(|one| one.name().replace('_', "-")).to_vec();
+        format!("known are {}", known.join(", "))
+    })
 }
 
 #[derive(Clone, Copy, ValueEnum)]

@@ -2,6 +2,7 @@
 
 pub mod cases;
 pub mod check;
+pub mod compare;
 pub mod corpus;
 pub mod explain;
 pub mod gaps;

@@ -3,7 +3,9 @@
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 use grader::kits::{Source, Which, root};
-use grader::{cases, check, corpus, explain, gaps, gauntlet, generate, mutants, render, strip, sync, tree};
+use grader::{
+    cases, check, compare, corpus, explain, gaps, gauntlet, generate, mutants, render, strip, sync, tree,
+};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -27,6 +29,8 @@ enum Command {
     Render(render::Options),
     /// Say what a scene calls for, why, what it costs, and what is left out.
     Explain(explain::Options),
+    /// Compare the structures that find what rays meet, side by side on one scene.
+    Compare(compare::Options),
     /// Render a scene at growing depths of recursion, or with each sampler, side by side.
     Strip(strip::Options),
     /// Show the rays behind one pixel, for the first of its samples.
@@ -96,6 +100,7 @@ fn run(cli: Cli) -> Result<bool> {
         None => check::status(&Source::prepare(Which::Exercises, &root()?)?)?,
         Some(Command::Render(options)) => render::run(&options)?,
         Some(Command::Explain(options)) => explain::run(&options)?,
+        Some(Command::Compare(options)) => return compare::run(&options),
         Some(Command::Gauntlet(options)) => return gauntlet::run(&options),
         Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,

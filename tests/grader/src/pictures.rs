@@ -34,7 +34,7 @@ pub struct Shown {
     pub pixels: Result<Vec<[u32; 3]>, String>,
     /// The same for the picture of normals.
     pub normals: Option<Vec<[u32; 3]>>,
-    /// Primitives, and nodes and depth of the hierarchy.
+    /// Primitives, and nodes and depth of the structure.
     pub made_of: Option<(u64, Option<(u64, u64)>)>,
     /// What the picture lacks.
     pub notes: Vec<String>,
@@ -143,7 +143,7 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let normals = mishap::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
     let frame = mishap::catch(|| kit.render(&job, &Unwatched));
     let seen = frame.as_ref().ok().and_then(Option::as_ref);
-    let made_of = seen.map(|frame| (frame.primitives, frame.hierarchy));
+    let made_of = seen.map(|frame| (frame.primitives, frame.structure.map(|size| (size.nodes, size.levels))));
     let notes = seen.map_or_else(Vec::new, |frame| frame.notes.clone());
     let counts = seen.map_or_else(Counts::default, |frame| frame.counts);
     let pixels = match frame {

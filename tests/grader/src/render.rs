@@ -2,14 +2,14 @@
 
 use crate::kits::{Source, Which};
 use crate::knobs::Knobs;
-use crate::report::{Thousands, load_scene};
+use crate::report::{Bytes, Thousands, load_scene};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Watch;
 use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
-use raykata::scene::Encoding;
+use raykata::scene::{Accelerator, Encoding};
 use std::path::{Path, PathBuf};
 
 /// What to render and how.
@@ -154,13 +154,23 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     };
     println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
     println!("  primitives       {}", Thousands(rendering.primitives));
-    if let Some((nodes, depth)) = rendering.hierarchy {
+    if let Some(size) = rendering.structure {
+        let how = match quality.accelerator {
+            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => {
+                format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
+            }
+            _ => format!(", {} references", Thousands(size.references)),
+        };
         println!(
-            "  hierarchy        {} nodes, {depth} levels, {:?}, leaves of {} or fewer",
-            Thousands(nodes),
-            quality.split,
-            quality.leaf_size
+            "  {:<16} {} nodes, {} levels{how}, {}",
+            quality.accelerator.name().replace('_', " "),
+            Thousands(size.nodes),
+            size.levels,
+            Bytes(size.bytes)
         );
+    }
+    if rendering.bytes_of_parts > 0 {
+        println!("  inside instances {}", Bytes(rendering.bytes_of_parts));
     }
     println!("  build            {:.3} s", rendering.build_seconds);
     println!("  render           {:.3} s", rendering.render_seconds);

@@ -25,6 +25,22 @@ impl fmt::Display for Thousands {
     }
 }
 
+/// A size in bytes, in the unit that leaves a number of people's size.
+pub struct Bytes(pub u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bytes = self.0 as f64;
+        let text = match self.0 {
+            0..10_000 => format!("{bytes} B"),
+            10_000..1_000_000 => format!("{:.0} kB", bytes / 1e3),
+            1_000_000..1_000_000_000 => format!("{:.1} MB", bytes / 1e6),
+            _ => format!("{:.1} GB", bytes / 1e9),
+        };
+        f.pad(&text)
+    }
+}
+
 /// Reads a scene; an error shows the line that is to blame.
 pub fn load_scene(file: &Path) -> Result<Scene> {
     load::load(file).map_err(|error| anyhow!(draw(&error)))

@@ -1,0 +1,77 @@
+//! `raykata compare`: the structures of stages 3, 8 and 9 side by side on one scene: what each costs to build, in memory,
+//! in questions a ray and in time; and pictures of where it divides space and of where rays are dear.
+//!
+//! `rows` (what is compared) · `measure` (how) · `table` and `plot` (how it is told) · `drawing` (pictures)
+
+mod drawing;
+mod measure;
+mod plot;
+mod rows;
+mod table;
+
+use crate::kits::{Source, Which};
+use crate::knobs::Knobs;
+use crate::report::load_scene;
+use anyhow::{Context, Result};
+use clap::Args;
+use measure::Bench;
+use raykata::scene::Accelerator;
+use rows::Of;
+use std::path::{Path, PathBuf};
+
+/// Which scene, what of it, and how long.
+#[derive(Args)]
+pub struct Options {
+    /// The scene, a TOML file.
+    scene: PathBuf,
+    /// What is compared.
+    #[arg(long, value_enum, default_value_t = Of::Structures)]
+    of: Of,
+    /// Only these accelerators, instead of all.
+    #[arg(long, value_delimiter = ',', value_parser = crate::knobs::parse_accelerator, conflicts_with = "of")]
+    only: Vec<Accelerator>,
+    /// Whose code builds and searches.
+    #[arg(long, value_enum, default_value_t = Which::Solutions)]
+    kit: Which,
+    /// How often each picture is timed, by turns; the median counts.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    rounds: u32,
+    /// Threads; 0 takes one a core.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+    /// At which depth boxes and cells are drawn, the root being at depth 0.
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=64))]
+    depth: u32,
+    #[command(flatten)]
+    knobs: Knobs,
+    /// The folder for pictures, plot and numbers [default: out/NAME-compare].
+    #[arg(long, short)]
+    out: Option<PathBuf>,
+    /// Only the table: no pictures, no plot.
+    #[arg(long)]
+    table: bool,
+}
+
+/// Measures, prints the table and writes the rest. Whether all rows make the same picture.
+pub fn run(options: &Options) -> Result<bool> {
+    let mut scene = load_scene(&options.scene)?;
+    options.knobs.apply(&mut scene);
+    let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
+    let source = Source::here(options.kit)?;
+    let kit = &*source.fresh();
+
+    let rows = rows::rows(options.of, &options.only, &scene);
+    let bench = Bench { kit, rounds: options.rounds, threads: usize::from(options.threads) };
+    let measured = bench.measure(&scene, &rows)?;
+    let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
+    table::print(&title, &measured);
+    if !options.table {
+        std::fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+        drawing::write(&out, kit, &scene, &measured, options.depth)?;
+        plot::write(&out.join("compare.svg"), &title, &measured)?;
+        table::write_json(&out.join("compare.json"), &measured)?;
+        println!("\npictures, plot and numbers are in {}", out.display());
+    }
+    Ok(measured.iter().all(|row| row.different_pixels == Some(0) || row.slice > 1))
+}

@@ -1,0 +1,112 @@
+//! The table, with the winner of each column marked; and the same numbers for machines.
+
+use super::measure::Measured;
+use crate::report::{Bytes, Thousands};
+use anyhow::{Context, Result};
+use std::path::Path;
+
+/// A column: its head, its numbers, and how they are written. Less is better in all of them.
+struct Column {
+    head: &'static str,
+    value: fn(&Measured) -> Option<f64>,
+    write: fn(f64) -> String,
+    /// Whether the least of them wins.
+    contest: bool,
+}
+
+fn a_ray(one: &Measured, n: u64) -> Option<f64> {
+    Some(n as f64 / one.rays.max(1) as f64)
+}
+
+const COLUMNS: [Column; 8] = [
+    Column {
+        head: "build s",
+        value: |one| one.size.map(|_| one.build_seconds),
+        write: |x| format!("{x:.3}"),
+        contest: true,
+    },
+    Column {
+        head: "memory",
+        value: |one| one.size.map(|_| one.bytes as f64),
+        write: |x| Bytes(x as u64).to_string(),
+        contest: true,
+    },
+    Column {
+        head: "nodes",
+        value: |one| one.size.map(|size| size.nodes as f64),
+        write: |x| Thousands(x as u64).to_string(),
+        contest: false,
+    },
+    Column {
+        head: "visits/ray",
+        value: |one| a_ray(one, one.counts.node_visits),
+        write: |x| format!("{x:.2}"),
+        contest: false,
+    },
+    Column {
+        head: "boxes/ray",
+        value: |one| a_ray(one, one.counts.box_tests),
+        write: |x| format!("{x:.2}"),
+        contest: false,
+    },
+    Column {
+        head: "prims/ray",
+        value: |one| a_ray(one, one.counts.primitive_tests),
+        write: |x| format!("{x:.2}"),
+        contest: true,
+    },
+    Column {
+        head: "ns/ray",
+        value: |one| Some(one.nanoseconds),
+        write: |x| format!("{x:.0}"),
+        contest: true,
+    },
+    Column {
+        head: "±",
+        value: |one| Some(100.0 * one.spread),
+        write: |x| format!("{x:.0} %"),
+        contest: false,
+    },
+];
+
+/// Prints the table.
+pub fn print(title: &str, rows: &[Measured]) {
+    println!("{title}");
+    let width = rows.iter().map(|row| row.name.chars().count()).max().unwrap_or_default().max(12);
+    let heads: String = COLUMNS.iter().map(|column| format!("{:>12} ", column.head)).collect();
+    println!("{:<width$}{heads}{:>10}", "", "pixels off");
+    for row in rows {
+        let cells: String = COLUMNS.iter().map(|column| cell(column, row, rows)).collect();
+        let off =
+            row.different_pixels.map_or_else(|| format!("1/{} ", row.slice), |n| Thousands(n).to_string());
+        println!("{:<width$}{cells}{off:>10}", row.name);
+    }
+    println!(
+        "* least of its column; visits: nodes or cells looked into; ns: on all threads together, the median of rounds"
+    );
+    if rows.iter().any(|row| row.slice > 1) {
+        println!(
+            "1/n: made at an n-th of the columns and rows, because the whole picture would take too long"
+        );
+    }
+    let mut notes: Vec<&String> = rows.iter().flat_map(|row| &row.notes).collect();
+    notes.sort();
+    notes.dedup();
+    for note in notes {
+        println!("not simulated: {note}");
+    }
+}
+
+fn cell(column: &Column, row: &Measured, rows: &[Measured]) -> String {
+    let Some(value) = (column.value)(row) else { return format!("{:>12} ", "–") };
+    let least = rows.iter().filter_map(column.value).fold(f64::INFINITY, f64::min);
+    let wins = column.contest && rows.len() > 1 && value == least;
+    format!("{:>12}{}", (column.write)(value), if wins { '*' } else { ' ' })
+}
+
+/// Writes all numbers.
+pub fn write_json(file: &Path, rows: &[Measured]) -> Result<()> {
+    let text = serde_json::to_string_pretty(rows)?;
+    raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, text.as_bytes()))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
