@@ -117,7 +117,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         ("twenty slivers in a line", line.collect()),
     ];
     let sets = super::lists::endless().into_iter().map(|(name, all)| (name, boxes(all)));
-    for (name, hulls) in sets.chain(hulls) {
+    for (name, hulls) in hulls.into_iter().chain(sets) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");

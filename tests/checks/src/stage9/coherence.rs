@@ -63,7 +63,9 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
                 .looks_like(known(diagnosis)))
         })
     };
-    judge(&[tie]).into_iter().collect::<Outcome>()?;
+    let behind = Scene::new(vec![ball(2.0, 0.0, 0.0, 0.5), ball(5.0, 0.0, 0.0, 1.0)]);
+    let nearer = (cached(&behind, &ray, Some(1)), 2);
+    judge(&[nearer, tie]).into_iter().collect::<Outcome>()?;
     trial.forall(1000, inputs, judge)
 }
 
