@@ -38,6 +38,11 @@ fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
             fault(format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")
         };
     }
+    if yours.depth() > query.max_depth + 1 {
+        let (yours, expected) = (yours.depth() - 1, query.max_depth);
+        let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
+        return fault(yours, expected, "max_depth is passed");
+    }
     let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
     // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
     let size = f64::from(size.fold(0.0, f32::max));

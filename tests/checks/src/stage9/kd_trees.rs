@@ -45,6 +45,11 @@ fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
             }
         }
     });
+    let most = KdTree::most_depth(query.bounds.iter().filter(|one| !one.is_empty()).count());
+    if yours.depth() > most + 1 {
+        let yours = format!("a node at depth {}", yours.depth() - 1);
+        return fault((yours, format!("at most {most}"), "KdTree::most_depth is passed"));
+    }
     if let Some((yours, expected)) = outside {
         return fault((yours, expected, "a plane outside of the cell divides nothing"));
     }
