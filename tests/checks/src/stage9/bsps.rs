@@ -11,11 +11,14 @@ use raykata::kit::{BspQuery, mishap};
 use raykata::partition::{Bsp, BspNode, CutPlane, corners};
 
 fn told(query: &BspQuery) -> String {
-    let hulls: Vec<String> = query.hulls.iter().map(|hull| crate::paste::list(hull)).collect();
+    let hulls: Vec<String> = query.hulls.iter().map(crate::paste::list).collect();
     format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
 }
 
-fn leaves(bsp: &Bsp) -> Vec<(u32, Vec<(CutPlane, f64)>, Vec<u32>)> {
+/// A leaf: its number, the planes above it with the side on which it lies, and what stands in it.
+type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
+
+fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     bsp.walk(|node, above, _| {
         if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
