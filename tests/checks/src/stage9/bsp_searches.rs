@@ -13,6 +13,13 @@ use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    // The large ball reaches through the plane x + y = 0, and is hit behind it and behind the small one.
+    let large = Thing::Ball(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
+    let scene = Scene::new(vec![large, ball(0.25, 0.2, 0.0, 0.125)]);
+    let says = "the search stopped before it came to the side with a nearer hit: a hit need not be on the side that lists it";
+    let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
+    let tree = two_leaves(diagonal(), &[0], &[0, 1]);
+    ask(trial, &tree, &scene, &ray, "BSP tree of one plane x + y = 0, across which primitive 0 lies", says)?;
     agrees(trial, Searcher::Bsp)
 }
 

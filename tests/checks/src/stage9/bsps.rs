@@ -11,11 +11,14 @@ use raykata::kit::{BspQuery, mishap};
 use raykata::partition::{Bsp, BspNode, CutPlane, corners};
 
 fn told(query: &BspQuery) -> String {
-    let hulls: Vec<String> = query.hulls.iter().map(|hull| crate::paste::list(hull)).collect();
+    let hulls: Vec<String> = query.hulls.iter().map(crate::paste::list).collect();
     format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
 }
 
-fn leaves(bsp: &Bsp) -> Vec<(u32, Vec<(CutPlane, f64)>, Vec<u32>)> {
+/// A leaf: its number, the planes above it with the side on which it lies, and what stands in it.
+type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
+
+fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     let mut leaves = Vec::new();
     bsp.walk(|node, above, _| {
         if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
@@ -37,6 +40,11 @@ fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
         } else {
             fault(format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")
         };
+    }
+    if yours.depth() > query.max_depth + 1 {
+        let (yours, expected) = (yours.depth() - 1, query.max_depth);
+        let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
+        return fault(yours, expected, "max_depth is passed");
     }
     let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
     // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
@@ -117,7 +125,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         ("twenty slivers in a line", line.collect()),
     ];
     let sets = super::lists::endless().into_iter().map(|(name, all)| (name, boxes(all)));
-    for (name, hulls) in sets.chain(hulls) {
+    for (name, hulls) in hulls.into_iter().chain(sets) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");

@@ -180,15 +180,15 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
     Ok(())
 }
 
-/// Trap A8, second part: 256 cells along each axis, far from the origin.
+/// Trap A8, second part: 250 cells along an axis.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
-    let n = 250u32;
-    // Sides that are no multiples of a power of two, so that a step is rounded.
-    let bounds = Aabb::new(vec3(100.1, 200.3, -300.7), vec3(101.4, 201.6, -299.4));
-    let grid = bare_grid(bounds, UVec3::new(n, n, 1));
-    // Just beside the diagonal: which of two neighbours comes next is decided late, by little.
-    for (row, off) in [(0.5, 2e-6f32), (0.5, -2e-6), (0.75, 3e-6), (0.25, -3e-6)] {
-        let origin = vec3(100.1 - 0.5, 200.3 - 0.5 + off, -300.7 + row);
+    // Sides that are no multiples of a power of two, so that a step is rounded; and cells twice as long along y, so that
+    // one axis takes twice as many steps as the other.
+    let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
+    let grid = bare_grid(bounds, uvec3(250, 125, 1));
+    // Just beside corners: which of two neighbours comes next is decided by little, but by far more than doubles need.
+    for off in [7e-7f32, -7e-7, 1.2e-6, -1.2e-6] {
+        let origin = vec3(1.1 - 0.5, 2.3 - 0.5 + off, -3.0);
         let query =
             CellsQuery { cells: grid.clone(), ray: Ray::new(origin, vec3(1.0, 1.0, 0.0)), hits: Vec::new() };
         let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
@@ -198,7 +198,7 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
                 format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
             };
             let input =
-                format!("a ray beside the diagonal of a grid of 250 × 250 cells\n{}", query.ray.paste());
+                format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
             let broken =
                 Broken::told(input, told(&yours.visits), told(&expected), "planes in double precision");
             return Err(broken.looks_like(Some(

@@ -8,11 +8,11 @@ use super::structures::kd_tree;
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::judge::{compare, known};
-use glam::{Vec3, vec3};
+use glam::{Vec3, uvec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, KdQuery, mishap};
-use raykata::partition::{KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -45,6 +45,11 @@ fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
             }
         }
     });
+    let most = KdTree::most_depth(query.bounds.iter().filter(|one| !one.is_empty()).count());
+    if yours.depth() > most + 1 {
+        let yours = format!("a node at depth {}", yours.depth() - 1);
+        return fault((yours, format!("at most {most}"), "KdTree::most_depth is passed"));
+    }
     if let Some((yours, expected)) = outside {
         return fault((yours, expected, "a plane outside of the cell divides nothing"));
     }
@@ -157,22 +162,23 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outco
     Ok(())
 }
 
-/// Trap A6 alone: what lies in the plane from the right comes out a step nearer than what lies in it from the left.
-pub(super) fn kd_hits_at_the_plane_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
-    let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
-    for (at, x) in [(1.0f32, -2.0f32), (0.7, -5.3), (-3.1, -7.7)] {
+/// Trap A6 alone: what lies in a face from the right comes out a step nearer than what lies in it from the left.
+pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A6: t of a hit and t of a cell are rounded in two ways; stop only if the hit is before the cell by more than that";
+    for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7)] {
+        let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
         let exact = at - x;
         let hits = vec![exact.next_down(), exact.next_down().next_down()];
         let ray = Ray::new(vec3(x, 0.0, 0.0), Vec3::X);
-        let query = CellsQuery { cells: two_leaves(bounds, at, &[0], &[1]), ray, hits: hits.clone() };
-        let yours = trial.kit.kd_search(&[query]).remove(0);
-        judge("kd-tree of two leaves, a primitive of each in the plane between them", &ray, &hits, &yours).map_err(
-            |broken| {
-                broken.looks_like(Some(
-                    "trap A6: t of a hit and t of a cell are rounded in two ways; stop only if the hit is before the cell by more than that",
-                ))
-            },
-        )?;
+        let tree = CellsQuery { cells: two_leaves(bounds, at, &[0], &[1]), ray, hits: hits.clone() };
+        let grid = Grid { bounds, resolution: uvec3(2, 1, 1), starts: vec![0, 1, 2], items: vec![0, 1] };
+        let grid = CellsQuery { cells: grid, ray, hits: hits.clone() };
+        for (name, yours) in
+            [("kd-tree", trial.kit.kd_search(&[tree])), ("grid", trial.kit.grid_search(&[grid]))]
+        {
+            let what = format!("{name} of two cells, a primitive of each in the face between them");
+            judge(&what, &ray, &hits, &yours[0]).map_err(|broken| broken.looks_like(Some(says)))?;
+        }
     }
     Ok(())
 }

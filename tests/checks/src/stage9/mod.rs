@@ -38,10 +38,10 @@ use heuristics::{
     kd_stops_at_overlap,
 };
 use kd_trees::{
-    kd_finds_a_wall_on_the_face_of_the_box, kd_hit_beyond_its_leaf_waits,
-    kd_hits_at_the_plane_are_compared_with_each_other, kd_rays_in_the_plane_search_both_sides,
-    kd_search_agrees_with_brute_force, kd_search_visits_what_the_ray_enters_before_its_hit,
-    kd_tree_build_ends, kd_tree_lists_what_reaches_into_leaves,
+    hits_at_a_face_are_compared_with_each_other, kd_finds_a_wall_on_the_face_of_the_box,
+    kd_hit_beyond_its_leaf_waits, kd_rays_in_the_plane_search_both_sides, kd_search_agrees_with_brute_force,
+    kd_search_visits_what_the_ray_enters_before_its_hit, kd_tree_build_ends,
+    kd_tree_lists_what_reaches_into_leaves,
 };
 use octrees::{
     octree_build_ends, octree_by_cells_agrees_with_brute_force, octree_by_cells_goes_along_edges,
@@ -82,7 +82,7 @@ checks! { ($) 9 stage9 [
     kd_stops_at_overlap
     kd_search_agrees_with_brute_force
     kd_finds_a_wall_on_the_face_of_the_box
-    kd_hits_at_the_plane_are_compared_with_each_other
+    hits_at_a_face_are_compared_with_each_other
     kd_hit_beyond_its_leaf_waits
     kd_rays_in_the_plane_search_both_sides
     kd_search_visits_what_the_ray_enters_before_its_hit

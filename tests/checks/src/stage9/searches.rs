@@ -1,14 +1,15 @@
 //! The five searches of cells, asked and judged alike.
 
-use super::scenes::{Scene, closest, odd_scenes, scenes};
+use super::scenes::{Scene, Thing, ball, closest, odd_scenes, scenes};
 use super::structures;
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::judge::known;
 use crate::paste::Paste;
-use glam::UVec3;
+use glam::{UVec3, Vec3, vec3};
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
 use raykata::ray::Ray;
+use raykata::shape::Sphere;
 
 /// A search of the student.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,6 +92,17 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
 
 /// What brute force finds, in random scenes and in odd ones.
 pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
+    // Three balls in a row, few enough for one leaf, the nearest of them listed last; and a ball that reaches through many
+    // cells, with a nearer one before it.
+    let row = Scene::new((0..3).map(|i| ball(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
+    let large = Thing::Ball(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
+    let small = (0..8).map(|i| ball(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
+    let through = Scene::new([large].into_iter().chain(small).collect());
+    for (name, scene) in [("three balls in a row", row), ("a large ball and eight small ones", through)] {
+        let ray = Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X);
+        let yours = searcher.ask(trial.kit, &scene, &[ray]).remove(0);
+        judge(&format!("{} over {name}", searcher.name()), &ray, &scene.hits(&ray), &yours)?;
+    }
     trial.forall(500, scenes(), |cases| {
         let one = |(scene, ray): &(Scene, Ray)| {
             let answer = searcher.ask(trial.kit, scene, std::slice::from_ref(ray)).remove(0);

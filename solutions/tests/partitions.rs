@@ -1,0 +1,210 @@
+//! All structures of stage 9, built and searched by the reference with its own triangle and sphere tests in single
+//! precision, against brute force: the same primitive and the same `t`, ray by ray.
+
+use checks::splitmix::Random;
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
+use raykata::partition::{Cells, KdHeuristics, corners};
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::shape::{Sphere, Triangle};
+use solutions::{
+    stage1_shapes, stage2_triangles, stage3_bvh, stage9_bsp, stage9_cells, stage9_coherence, stage9_grid,
+    stage9_kd_tree, stage9_octree,
+};
+
+/// Rays a scene. `RAYS=1000000 cargo test --release -p solutions --test partitions -- --nocapture` tries more.
+fn n_rays() -> u64 {
+    std::env::var("RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1500)
+}
+
+enum Thing {
+    Tile(Triangle),
+    Ball(Sphere),
+}
+
+struct Things(Vec<Thing>);
+
+impl Things {
+    fn boxes(&self) -> Vec<Aabb> {
+        let bounds = |thing: &Thing| match thing {
+            Thing::Tile(tile) => stage3_bvh::triangle_bounds(tile),
+            Thing::Ball(ball) => stage3_bvh::sphere_bounds(ball),
+        };
+        self.0.iter().map(bounds).collect()
+    }
+
+    fn hulls(&self) -> Vec<Vec<Vec3>> {
+        let hull = |thing: &Thing| match thing {
+            Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
+            Thing::Ball(ball) => corners(&stage3_bvh::sphere_bounds(ball)),
+        };
+        self.0.iter().map(hull).collect()
+    }
+}
+
+/// Tests things, in cells or in boxes of a hierarchy.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    things: &'a Things,
+    bvh: &'a Bvh,
+    visits: u64,
+}
+
+impl Asked<'_> {
+    fn meet(&self, primitive: u32, ray: &Ray) -> Option<f32> {
+        match &self.things.0[primitive as usize] {
+            Thing::Tile(tile) => stage2_triangles::triangle_choice(ray, tile).map(|hit| hit.t),
+            Thing::Ball(ball) => stage1_shapes::sphere_algebraic(ray, ball.center, ball.radius),
+        }
+    }
+}
+
+impl Cells for Asked<'_> {
+    fn visit(&mut self, _: u32) {
+        self.visits += 1;
+    }
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.meet(primitive, ray)
+    }
+}
+
+impl Probe for Asked<'_> {
+    fn open(&mut self, node: u32) -> Contents {
+        self.bvh.nodes[node as usize].contents
+    }
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        let bounds = &self.bvh.nodes[node as usize].bounds;
+        stage3_bvh::slab(ray, ray.dir.recip(), bounds).map(|(enter, _)| enter)
+    }
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.meet(primitive, ray)
+    }
+}
+
+/// A soup of triangles and balls, `size` large and moved to `at`; some on a lattice, so that much touches and coincides.
+fn soup(random: &mut Random, n: usize, size: f32, at: Vec3) -> Things {
+    let things = (0..n).map(|i| {
+        let snap = |p: Vec3| if i % 3 == 0 { (4.0 * p).round() / 4.0 } else { p };
+        let p = snap(random.in_cube());
+        let mut corner = || at + size * (p + 0.2 * snap(random.in_cube()));
+        match i % 4 {
+            3 => Thing::Ball(Sphere { center: corner(), radius: 0.06 * size }),
+            _ => Thing::Tile(Triangle { a: corner(), b: corner(), c: corner() }),
+        }
+    });
+    let mut things: Vec<Thing> = things.collect();
+    // A room around it, whose walls are the faces of all boxes, and a tile twice.
+    for axis in 0..3 {
+        for side in [-1.25, 1.25] {
+            let corner = |u: f32, v: f32| {
+                let mut p = Vec3::splat(side);
+                p[(axis + 1) % 3] = u;
+                p[(axis + 2) % 3] = v;
+                at + size * p
+            };
+            let [a, b, c, d] =
+                [corner(-1.25, -1.25), corner(1.25, -1.25), corner(1.25, 1.25), corner(-1.25, 1.25)];
+            things.extend([Thing::Tile(Triangle { a, b, c }), Thing::Tile(Triangle { a, b: c, c: d })]);
+        }
+    }
+    if let Some(Thing::Tile(tile)) = things.first() {
+        things.push(Thing::Tile(*tile));
+    }
+    Things(things)
+}
+
+/// Rays from inside, from outside, along axes, along diagonals, and at corners.
+fn ray(random: &mut Random, things: &Things, size: f32, at: Vec3) -> Ray {
+    let origin = match random.below(4) {
+        0 => at + size * (4.0 * random.in_cube()).round() / 4.0,
+        1 => at + 20.0 * size * random.direction(),
+        _ => at + size * random.in_cube(),
+    };
+    let dir = match random.below(4) {
+        0 => {
+            let step = |n: u64| [0.0, -0.0, 1.0, -1.0][n as usize];
+            let [x, y, z] = [random.below(4), random.below(4), random.below(4)].map(step);
+            if [x, y, z].iter().all(|d: &f32| *d == 0.0) { Vec3::X } else { vec3(x, y, z) }
+        }
+        1 => random.direction(),
+        _ => match &things.0[random.below(things.0.len() as u64) as usize] {
+            Thing::Tile(tile) => (tile.a - origin).normalize_or(Vec3::X),
+            Thing::Ball(ball) => (ball.center - origin).normalize_or(Vec3::X),
+        },
+    };
+    Ray::new(origin, dir)
+}
+
+fn check(seed: u64, n: usize, size: f32, at: Vec3) {
+    let mut random = Random::new(seed, 0);
+    let things = soup(&mut random, n, size, at);
+    let (boxes, hulls) = (things.boxes(), things.hulls());
+    let around = stage9_cells::widened(&boxes).around;
+    let grid = stage9_grid::build(&boxes, stage9_grid::resolution(&around, boxes.len(), 2.0));
+    let octree = stage9_octree::build(&boxes, 4, 8);
+    let trees = [KdHeuristics::default(), KdHeuristics::NONE];
+    let trees = trees.map(|heuristics| stage9_kd_tree::build(&boxes, &heuristics, 4));
+    let bsp = stage9_bsp::build(&hulls, 4, 16);
+    let bvh = stage3_bvh::build(&boxes, Split::SurfaceArea, 4);
+    let (mut last, mut waiting) = (None, Vec::new());
+    let mut visits = [0; 8];
+    for case in 0..n_rays() {
+        let ray = ray(&mut random, &things, size, at);
+        let mut asked = Asked { things: &things, bvh: &bvh, visits: 0 };
+        let expected = stage2_triangles::brute_force(boxes.len() as u32, &mut asked, &ray);
+        let near = |asked: &mut Asked<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&trees[0], asked, ray);
+        let mut judge = |index: usize, what: &str, find: &dyn Fn(&mut Asked<'_>) -> Option<PrimitiveHit>| {
+            let mut probe = asked;
+            let found = find(&mut probe);
+            visits[index] += probe.visits;
+            assert_eq!(found, expected, "{what}, size {size} at {at}, seed {seed}, ray {case}: {ray:?}");
+        };
+        judge(0, "grid", &|probe| stage9_grid::closest_hit(&grid, probe, &ray));
+        judge(1, "octree by cells", &|probe| stage9_octree::closest_hit_by_cells(&octree, probe, &ray));
+        judge(2, "octree", &|probe| stage9_octree::closest_hit(&octree, probe, &ray));
+        judge(3, "kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[0], probe, &ray));
+        judge(4, "plain kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[1], probe, &ray));
+        judge(5, "BSP tree", &|probe| stage9_bsp::closest_hit(&bsp, probe, &ray));
+        judge(6, "last hit", &|probe| stage9_coherence::closest_hit_cached(last, probe, &ray, near));
+        last = expected.map(|hit| hit.primitive);
+        waiting.push((ray, expected));
+        if waiting.len() == stage9_coherence::PACKET {
+            let (rays, expected): (Vec<Ray>, Vec<Option<PrimitiveHit>>) = waiting.drain(..).unzip();
+            let found = stage9_coherence::closest_hit_packet(&bvh, &mut asked, &rays);
+            assert_eq!(found, expected, "packet, size {size} at {at}, seed {seed}, ray {case}");
+        }
+    }
+    let a_ray = |index: usize| visits[index] as f64 / n_rays() as f64;
+    println!(
+        "size {size}, {} primitives, {} rays; visits a ray: grid {:.1}, octree by cells {:.1}, octree {:.1}, kd-tree {:.1}, \
+         plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
+        boxes.len(),
+        n_rays(),
+        a_ray(0),
+        a_ray(1),
+        a_ray(2),
+        a_ray(3),
+        a_ray(4),
+        a_ray(5),
+        grid.n_references(),
+        octree.n_references(),
+        trees[0].n_references(),
+        trees[1].n_references(),
+        bsp.n_references(),
+    );
+}
+
+#[test]
+fn every_structure_finds_what_brute_force_finds() {
+    for (seed, size, at) in [
+        (1, 1.0, Vec3::ZERO),
+        (2, 1.0, vec3(1e5, -2e5, 3e4)),
+        (3, 1e-6, Vec3::ZERO),
+        (4, 1e15, Vec3::ZERO),
+        (5, 100.0, vec3(10.0, 20.0, 30.0)),
+    ] {
+        check(seed, 150, size, at);
+    }
+}
