@@ -2,16 +2,22 @@
 
 use crate::camera_rays::{geometry_at, plane_at};
 use crate::placed::{bounds_of_shape, meet_solid, placed_bounds};
-use crate::plan::{Plan, Search};
+use crate::plan::Plan;
+use crate::search::Search;
 use crate::stage8_scene_graph::{closest_hit_in_graph, ray_to_object};
+use crate::stage9_coherence::{closest_hit_cached, closest_hit_packet};
 use crate::structure::Structure;
 use crate::surfaces::{Hit, meet_triangle};
-use crate::{stage1_shapes, stage2_triangles, stage3_bvh, stage6_distribution};
+use crate::{
+    stage1_shapes, stage2_triangles, stage3_bvh, stage6_distribution, stage9_bsp, stage9_grid,
+    stage9_kd_tree, stage9_octree,
+};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Contents, Node, PrimitiveHit, Probe};
 use raykata::count::{Event, Tally};
-use raykata::graph::Savings;
+use raykata::graph::{Graph, Savings};
+use raykata::partition::Cells;
 use raykata::ray::Ray;
 use raykata::scene::{Quality, TriangleMethod};
 use raykata::world::{Geometry, Primitive, World};
@@ -41,15 +47,24 @@ impl Finder {
             |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| stage3_bvh::union(&all, one));
         let around: Vec<Aabb> = of_parts.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
-        let structure = Structure::new(&of_scene, Some(&world.graph), plan.search, quality);
-        let part = |bounds: &Vec<Aabb>| Structure::new(bounds, None, plan.search, quality);
-        let parts = of_parts.iter().map(part).collect();
+        let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<&Graph>| {
+            Structure::new(bounds, graph, |index| hull(&primitives[index]), plan.search, quality)
+        };
+        let structure = over(&of_scene, &world.primitives, Some(&world.graph));
+        let parts = world.parts.iter().zip(&of_parts);
+        let parts = parts.map(|(part, bounds)| over(bounds, &part.primitives, None)).collect();
         let (search, savings, method) = (plan.search, quality.savings, quality.triangle_method);
         Finder { world, structure, parts, search, savings, method }
     }
 
+    /// Bytes of the structures of all parts.
+    pub fn bytes_of_parts(&self) -> u64 {
+        self.parts.iter().filter_map(Structure::size).map(|size| size.bytes).sum()
+    }
+
+    /// `last` is the primitive that the ray before met.
     #[inline(always)]
-    pub fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> Option<Hit> {
+    pub fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T, last: &mut Option<u32>) -> Option<Hit> {
         // Most scenes have no endless plane, and then the ray need not be copied: 3 % of a plain frame.
         let (shorter, plane) = match self.world.planes.as_slice() {
             [] => (None, None),
@@ -57,8 +72,41 @@ impl Finder {
         };
         let ray = shorter.as_ref().unwrap_or(ray);
         let mut probe = SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally);
-        let hit = self.closest(&self.structure, &mut probe, ray);
+        let hit = if self.search == Search::Cached {
+            let search = |probe: &mut SceneProbe<'_, T>, ray: &Ray| self.closest(&self.structure, probe, ray);
+            let hit = closest_hit_cached(*last, &mut probe, ray, search);
+            *last = hit.map_or(*last, |hit| Some(hit.primitive));
+            hit
+        } else {
+            self.closest(&self.structure, &mut probe, ray)
+        };
         hit.map(|hit| probe.told(hit, ray)).or(plane)
+    }
+
+    /// Whether rays from the camera are to come in packets.
+    pub fn likes_packets(&self) -> bool {
+        self.search == Search::Packets
+    }
+
+    /// What several rays meet, each by itself.
+    pub fn closest_hits<T: Tally>(&self, rays: &[Ray], tally: &mut T) -> Vec<Option<Hit>> {
+        let Structure::Hierarchy(bvh) = &self.structure else {
+            return rays.iter().map(|ray| self.closest_hit(ray, tally, &mut None)).collect();
+        };
+        let shortened: Vec<(Option<Ray>, Option<Hit>)> =
+            rays.iter().map(|ray| self.closest_plane(ray, tally)).collect();
+        let rays: Vec<Ray> =
+            rays.iter().zip(&shortened).map(|(ray, (shorter, _))| shorter.unwrap_or(*ray)).collect();
+        let Some(first) = rays.first() else { return Vec::new() };
+        let probe = SceneProbe::new(self, &self.structure, &self.world.primitives, first, tally);
+        let mut probe = PacketProbe(probe);
+        let hits = closest_hit_packet(bvh, &mut probe, &rays);
+        let told = hits.into_iter().zip(&rays).zip(shortened).map(|((hit, ray), (_, plane))| {
+            // What is inside an instance was written down for whichever ray came last.
+            probe.0.inside = None;
+            hit.map(|hit| probe.0.told(hit, ray)).or(plane)
+        });
+        told.collect()
     }
 
     /// The closest hit in the scene or in a part.
@@ -72,6 +120,13 @@ impl Finder {
         match structure {
             Structure::Hierarchy(bvh) => stage3_bvh::closest_hit(bvh, probe, ray),
             Structure::Graph { graph, .. } => closest_hit_in_graph(graph, probe, ray, self.savings),
+            Structure::Grid(grid) => stage9_grid::closest_hit(grid, probe, ray),
+            Structure::Octree(tree) if self.search == Search::OctreeByCells => {
+                stage9_octree::closest_hit_by_cells(tree, probe, ray)
+            }
+            Structure::Octree(tree) => stage9_octree::closest_hit(tree, probe, ray),
+            Structure::KdTree(tree) => stage9_kd_tree::closest_hit(tree, probe, ray),
+            Structure::Bsp(tree) => stage9_bsp::closest_hit(tree, probe, ray),
             Structure::None if self.search == Search::Painter => probe.last_hit(ray),
             Structure::None => stage2_triangles::brute_force(probe.primitives.len() as u32, probe, ray),
         }
@@ -195,10 +250,21 @@ impl<'a, T: Tally> SceneProbe<'a, T> {
         if self.inside.is_none_or(|(best, _)| best.primitive != primitive) {
             // A search may prefer another hit than the closest; then that instance is asked again.
             self.inside = None;
-            let _ = self.hit(primitive, ray);
+            let _ = self.test(primitive, ray);
         }
         let inner = self.inside.map_or(0, |(_, inner)| inner);
         Hit::Inner { t, outer: primitive, inner }
+    }
+
+    #[inline(always)]
+    fn test(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.tally.note(Event::PrimitiveTest);
+        let index = primitive;
+        let primitive = &self.primitives[primitive as usize];
+        match primitive.end.get() {
+            None => self.meet(index, ray, &primitive.geometry),
+            Some(_) => self.meet(index, ray, &geometry_at(self.world, primitive, ray.time)),
+        }
     }
 
     /// The last primitive in the order of the scene that the ray meets.
@@ -206,7 +272,7 @@ impl<'a, T: Tally> SceneProbe<'a, T> {
         let n_primitives = self.primitives.len() as u32;
         (0..n_primitives)
             .rev()
-            .find_map(|primitive| self.hit(primitive, ray).map(|t| PrimitiveHit { t, primitive }))
+            .find_map(|primitive| self.test(primitive, ray).map(|t| PrimitiveHit { t, primitive }))
     }
 }
 
@@ -228,13 +294,48 @@ impl<T: Tally> Probe for SceneProbe<'_, T> {
 
     #[inline(always)]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        self.tally.note(Event::PrimitiveTest);
-        let index = primitive;
-        let primitive = &self.primitives[primitive as usize];
-        match primitive.end.get() {
-            None => self.meet(index, ray, &primitive.geometry),
-            Some(_) => self.meet(index, ray, &geometry_at(self.world, primitive, ray.time)),
-        }
+        self.test(primitive, ray)
+    }
+}
+
+impl<T: Tally> Cells for SceneProbe<'_, T> {
+    #[inline]
+    fn visit(&mut self, _: u32) {
+        self.tally.note(Event::NodeVisit);
+    }
+
+    #[inline(always)]
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.test(primitive, ray)
+    }
+}
+
+/// The same for a packet, whose rays have directions of their own.
+struct PacketProbe<'a, T>(SceneProbe<'a, T>);
+
+impl<T: Tally> Probe for PacketProbe<'_, T> {
+    #[inline]
+    fn open(&mut self, node: u32) -> Contents {
+        self.0.open(node)
+    }
+
+    #[inline]
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        self.0.inverse_dir = ray.dir.recip();
+        self.0.enter(node, ray)
+    }
+
+    #[inline]
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.0.test(primitive, ray)
+    }
+}
+
+/// The corners of a triangle that stands still.
+fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
+    match (primitive.end.get(), &primitive.geometry) {
+        (None, Geometry::Triangle(triangle)) => Some(vec![triangle.a, triangle.b, triangle.c]),
+        _ => None,
     }
 }
 

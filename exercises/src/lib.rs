@@ -5,8 +5,10 @@ mod camera_rays; // nothing to do here
 mod finder; // nothing to do here
 mod glue; // nothing to do here
 mod glue_structures; // nothing to do here
+mod packets; // nothing to do here
 mod placed; // nothing to do here
 mod plan; // nothing to do here
+mod search; // nothing to do here
 pub mod stage10_stability;
 pub mod stage1_shapes;
 pub mod stage2_triangles;

@@ -1,36 +1,23 @@
 //! Nothing to do here: what a frame will compute, and what it leaves out while exercises are not written yet.
 
+use crate::search::Search;
 use crate::{
-    stage2_triangles, stage3_bvh, stage4_shading, stage5_recursion, stage6_distribution, stage7_effects,
+    search, stage2_triangles, stage4_shading, stage5_recursion, stage6_distribution, stage7_effects,
     stage8_scene_graph, stage8_solids, stage8_surfaces,
 };
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::camera::{Camera, Lens, Shutter};
 use raykata::effects::Effects;
-use raykata::graph::{Graph, Savings};
 use raykata::kit::{Bounce, Child, Limits, Mishap, RenderJob, Surface, View, mishap};
 use raykata::material::{Emitter, Light, Material, Texture};
 use raykata::mesh::Mesh;
 use raykata::random::Stratum;
 use raykata::ray::Ray;
-use raykata::scene::{Accelerator, Quality, Sampler, Scene};
+use raykata::scene::{Sampler, Scene};
 use raykata::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere};
 use raykata::world::Crafts;
 use std::sync::Arc;
-
-/// How the closest hit is sought.
-#[derive(Clone, Copy, PartialEq)]
-pub enum Search {
-    Hierarchy,
-    BruteForce,
-    /// The last primitive that the ray meets, near or far.
-    Painter,
-    /// The scene graph, with boxes or balls around its nodes.
-    GraphOfBoxes,
-    GraphOfBalls,
-}
 
 /// What a frame will compute.
 pub struct Plan {
@@ -58,7 +45,7 @@ impl Plan {
         let looks = written(|| stage7_effects::effects(&nothing()));
         let effects = if looks { stage7_effects::effects(scene) } else { Effects::everything(scene) };
         let mut plan = Plan {
-            search: choose_search(&scene.quality, &mut notes),
+            search: search::choose(&scene.quality, &mut notes),
             view: choose_view(job.view, &mut notes),
             crafts: crafts(),
             smooth: written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X)),
@@ -256,78 +243,19 @@ fn motion_is_written() -> bool {
         && written(|| stage6_distribution::sweep(&Aabb::EMPTY, &Aabb::EMPTY))
 }
 
-fn choose_search(quality: &Quality, notes: &mut Vec<String>) -> Search {
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let hierarchy = written(|| stage3_bvh::build(&[], quality.split, 1))
-        && written(|| stage3_bvh::closest_hit(&Bvh::default(), &mut Nothing, &ray))
-        && written(|| stage3_bvh::any_hit(&Bvh::default(), &mut Nothing, &ray))
-        && written(|| stage3_bvh::slab(&ray, Vec3::X, &Aabb::EMPTY));
-    let brute_force = written(|| stage2_triangles::brute_force(0, &mut Nothing, &ray));
-    match quality.accelerator {
-        Accelerator::BruteForce | Accelerator::Bvh => {}
-        Accelerator::BoundingBoxes if hierarchy && graph_is_written(&ray) => return Search::GraphOfBoxes,
-        Accelerator::BoundingSpheres
-            if hierarchy
-                && graph_is_written(&ray)
-                && written(|| stage8_scene_graph::bounding_ball(&[Vec3::ZERO]))
-                && written(|| {
-                    stage8_scene_graph::enter_ball(&ray, &Sphere { center: Vec3::ZERO, radius: 1.0 })
-                }) =>
-        {
-            return Search::GraphOfBalls;
-        }
-        Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
-            notes.push("a hierarchy stands in for the scene graph: stage 8 is not written yet".into());
-        }
-        other => notes.push(format!("a hierarchy stands in for {other:?}: stage 9, not built yet")),
-    }
-    if quality.accelerator != Accelerator::BruteForce && hierarchy {
-        return Search::Hierarchy;
-    }
-    if quality.accelerator != Accelerator::BruteForce {
-        notes.push("every ray tests every primitive: stage 3 is not written yet".into());
-    }
-    if brute_force {
-        return Search::BruteForce;
-    }
-    notes.push(
-        "later shapes are painted over earlier ones, near or far: `brute_force` of stage 2 is not written yet".into(),
-    );
-    Search::Painter
-}
-
-fn graph_is_written(ray: &Ray) -> bool {
-    let (graph, savings) = (Graph::default(), Savings::default());
-    written(|| stage8_scene_graph::closest_hit_in_graph(&graph, &mut Nothing, ray, savings))
-}
-
 fn choose_view(wanted: View, notes: &mut Vec<String>) -> View {
     let material = Material::default();
     let shades =
         written(|| stage4_shading::shade(&nowhere(), Vec3::Z, &material, Vec3::ONE, &[], |_, _| false));
-    if wanted == View::Shaded && !shades {
+    if wanted != View::Normals && !shades {
         notes.push("normals are shown as colours: stage 4 is not written yet".into());
         return View::Normals;
     }
-    wanted
+    // What a pixel costs is the same whatever is shown of it.
+    if wanted == View::Work { View::Shaded } else { wanted }
 }
 
 /// Whether a function does more than say `todo!`.
-fn written<T>(call: impl FnOnce() -> T) -> bool {
+pub fn written<T>(call: impl FnOnce() -> T) -> bool {
     !matches!(mishap::catch(call), Err(Mishap::NotWritten { .. }))
-}
-
-/// A world without anything in it.
-struct Nothing;
-
-impl Probe for Nothing {
-    fn open(&mut self, _: u32) -> Contents {
-        Contents::Leaf { first: 0, count: 0 }
-    }
-    fn enter(&mut self, _: u32, _: &Ray) -> Option<f32> {
-        None
-    }
-    fn hit(&mut self, _: u32, _: &Ray) -> Option<f32> {
-        None
-    }
 }

@@ -4,10 +4,12 @@
 
 use crate::camera_rays::{Eye, blurred, from_area, outline};
 use crate::finder::Finder;
+use crate::packets::Packets;
 use crate::plan::Plan;
 use crate::surfaces::{self, Hit, Looks, Place, texture_coordinates};
 use crate::{stage4_shading, stage5_recursion, stage7_effects};
 use glam::{Vec3, uvec2};
+use raykata::aabb::Aabb;
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, CameraSample, FrameSettings, Watch};
@@ -33,7 +35,8 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         film,
         counts,
         primitives: (tracer.finder.world.primitives.len() + tracer.finder.world.planes.len()) as u64,
-        hierarchy: tracer.finder.structure.size(),
+        structure: tracer.finder.structure.size(),
+        bytes_of_parts: tracer.finder.bytes_of_parts(),
         build_seconds,
         render_seconds: started.elapsed().as_secs_f64(),
         notes: [tracer.plan.notes, tracer.finder.world.notes].concat(),
@@ -45,13 +48,18 @@ pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
     let sample = CameraSample::draw(&tracer.settings(), x, y, 0);
     let ray = tracer.eye.ray(&sample);
     let mut rays = Vec::new();
-    tracer.radiance(ray, sample.points, &mut Desk::<Uncounted>::default(), &mut |mut ray, material| {
+    let mut desk = Desk::<Uncounted>::default();
+    tracer.radiance(ray, sample.points, None, &mut desk, &mut |mut ray, material| {
         if let (Some(hit), Some(material)) = (&mut ray.hit, material) {
             hit.1 = job.scene.material_names.get(material).cloned().unwrap_or_default();
         }
         rays.push(ray);
     });
     rays
+}
+
+pub fn cells(job: &RenderJob, depth: u32) -> Vec<Aabb> {
+    Tracer::new(job).finder.structure.cells(depth as usize)
 }
 
 struct Tracer<'a> {
@@ -71,6 +79,9 @@ struct Desk<T> {
     /// For each of `lights`, whether it casts shadows.
     shadows: Vec<bool>,
     waiting: Vec<Path>,
+    /// What the ray before met.
+    last: Option<u32>,
+    packets: Packets,
 }
 
 impl<T: Tally> Tally for Desk<T> {
@@ -123,21 +134,32 @@ impl<'a> Tracer<'a> {
     }
 
     fn frame<T: Tally>(&self, watch: &dyn Watch) -> Option<(Film, Counts)> {
+        let (settings, packets) = (self.settings(), self.finder.likes_packets());
         let radiance = |sample: &CameraSample, desk: &mut Desk<T>| {
             desk.note(Event::Primary);
-            let color = self.radiance(self.eye.ray(sample), sample.points, desk, &mut |_, _| {});
+            let before = (self.job.view == View::Work).then(|| desk.counts());
+            let first = packets.then(|| {
+                let Desk { packets, tally, .. } = desk;
+                packets.first_hit(sample, &settings, &self.eye, &self.finder, tally)
+            });
+            let mut color = self.radiance(self.eye.ray(sample), sample.points, first, desk, &mut |_, _| {});
+            if let Some(before) = before {
+                color = work(&before, &desk.counts());
+            }
             WeightedColor { color, weight: self.eye.weight(sample) }
         };
-        frame::render(&self.settings(), watch, radiance, |samples| self.eye.develop(samples))
+        frame::render(&settings, watch, radiance, |samples| self.eye.develop(samples))
     }
 
     /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
-    /// times its weight. `record` is told of each ray, and of the material that it hit.
+    /// times its weight. `first` is what `ray` hits, if that is known. `record` is told of each ray, and of the material
+    /// that it hit.
     #[inline(always)]
     fn radiance<T: Tally>(
         &self,
         ray: Ray,
         points: Points,
+        mut first: Option<Option<Hit>>,
         desk: &mut Desk<T>,
         record: &mut impl FnMut(TracedRay, Option<usize>),
     ) -> Vec3 {
@@ -148,7 +170,10 @@ impl<'a> Tracer<'a> {
         loop {
             let this = n_rays;
             n_rays += 1;
-            let hit = self.finder.closest_hit(&path.ray, &mut desk.tally);
+            let hit = match first.take() {
+                Some(known) => known,
+                None => self.finder.closest_hit(&path.ray, &mut desk.tally, &mut desk.last),
+            };
             match hit {
                 None => {
                     record(path.told(None), None);
@@ -196,7 +221,7 @@ impl<'a> Tracer<'a> {
     #[inline(always)]
     fn go_on<T: Tally>(&self, path: &Path, this: usize, at: &Place, material: &Material, desk: &mut Desk<T>) {
         let takes = &self.plan.effects.materials[at.material];
-        if !(takes.mirror || takes.transmission) || self.plan.view != View::Shaded {
+        if !(takes.mirror || takes.transmission) || self.plan.view == View::Normals {
             return;
         }
         let dir = path.ray.dir.normalize();
@@ -286,6 +311,14 @@ impl<'a> Tracer<'a> {
             desk.shadows.resize(desk.lights.len(), takes.shadows);
         }
     }
+}
+
+/// What was done between two counts, as a colour.
+fn work(before: &Counts, after: &Counts) -> Vec3 {
+    let nodes = after.node_visits - before.node_visits;
+    let boxes = after.box_tests - before.box_tests;
+    let primitives = after.primitive_tests - before.primitive_tests;
+    Vec3::new(nodes as f32, boxes as f32, primitives as f32)
 }
 
 /// A ray that is to be followed.

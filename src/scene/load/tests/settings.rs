@@ -3,6 +3,7 @@
 use super::{check_refused, check_refused_with, scene, scene_with};
 use crate::camera::{Lens, Shutter};
 use crate::graph::Savings;
+use crate::partition::KdHeuristics;
 use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
 
@@ -29,7 +30,7 @@ fn every_setting_arrives() {
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\ngloss_samples = 7\nmax_depth = 0\n\
-         min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\n\
+         min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'gram'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
@@ -55,6 +56,7 @@ fn every_setting_arrives() {
         triangle_method: TriangleMethod::Gram,
         precision: Precision::Double,
         grid_resolution: 3,
+        kd_heuristics: KdHeuristics { stop_at_overlap: false, ..KdHeuristics::default() },
     };
     assert_eq!(scene.quality, expected);
 }
@@ -172,7 +174,7 @@ fn qualities_have_limits() {
     check_refused_with(
         "[quality]\naccelerator = 'magic'",
         "s.toml:3:15: unknown value of `accelerator`: `magic`\n\
-         help: known are `brute_force`, `bounding_boxes`, `bounding_spheres`, `bvh`, `grid`, `octree`, `kd_tree`, `bsp`",
+         help: known are `brute_force`, `bounding_boxes`, `bounding_spheres`, `bvh`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, `octree_by_cells`, `kd_tree`, `bsp`",
     );
     check_refused_with(
         "[quality]\nmax_deph = 3",

@@ -18,7 +18,7 @@ pub struct HardScene {
     pub middle: Vec3,
 }
 
-/// All of them: empty, of one, of copies, flat, in a line, on a lattice, small in large, far away, and broken.
+/// All of them: empty, of one, of copies, hair, hills, flat, in a line, on a lattice, small in large, far away, and broken.
 pub fn hard_scenes() -> Vec<HardScene> {
     let mut random = Random::new(11, 0);
     let ball: Vec<Triangle> = closed().get(1).map(|mesh| mesh.all()).unwrap_or_default();
@@ -55,6 +55,8 @@ pub fn hard_scenes() -> Vec<HardScene> {
         scene("one", vec![unit], 2.0, Vec3::ZERO),
         scene("soup", soup(300, 1.0, Vec3::ZERO), 6.0, Vec3::ZERO),
         scene("each four times", [&copies[..]; 4].concat(), 6.0, Vec3::ZERO),
+        scene("hair", hair(), 6.0, Vec3::ZERO),
+        scene("terrain", terrain(), 6.0, vec3(0.0, 3.0, 0.0)),
         scene("room of flat walls", room(), 0.9, Vec3::ZERO),
         scene("lattice", (0..200).map(lattice).collect(), 3.0, Vec3::ZERO),
         scene("in a line, without area", (0..50).map(line).collect(), 30.0, Vec3::ZERO),
@@ -64,6 +66,28 @@ pub fn hard_scenes() -> Vec<HardScene> {
         scene("huge", soup(200, 1e14, Vec3::ZERO), 6e14, Vec3::ZERO),
         scene("with numbers that are none", broken, 6.0, Vec3::ZERO),
     ]
+}
+
+/// Strands a thousand times as long as wide.
+fn hair() -> Vec<Triangle> {
+    let mut random = Random::new(11, 1);
+    let mut strand = || {
+        let (root, along) = (4.0 * random.in_cube(), 3.0 * random.direction());
+        Triangle { a: root, b: root + 3e-3 * random.direction(), c: root + along }
+    };
+    (0..300).map(|_| strand()).collect()
+}
+
+/// Hills of 18 by 18 squares, with whole eighths as heights.
+fn terrain() -> Vec<Triangle> {
+    let at = |x: i32, z: i32| {
+        vec3(0.5 * x as f32 - 4.5, ((7 * x * x + 3 * x * z + 5 * z) % 9) as f32 / 8.0, 0.5 * z as f32 - 4.5)
+    };
+    let square = |x: i32, z: i32| {
+        let [a, b, c, d] = [at(x, z), at(x + 1, z), at(x + 1, z + 1), at(x, z + 1)];
+        [Triangle { a, b, c }, Triangle { a, b: c, c: d }]
+    };
+    (0..18).flat_map(|x| (0..18).flat_map(move |z| square(x, z))).collect()
 }
 
 fn map(triangle: &Triangle, change: impl Fn(Vec3) -> Vec3) -> Triangle {

@@ -1,15 +1,20 @@
 //! Searches against brute force over exact predicates: a search is right if what it finds is among the triangles that the
 //! ray exactly meets first.
 
-use super::traversal::{Triangles, hierarchy};
+use super::traversal::{Packet, Triangles, hierarchy};
 use checks::exact::{Body, meet, triangle};
 use checks::gauntlet::scenes::{HardScene, hard_scenes};
 use checks::splitmix::Random;
+use glam::{UVec3, Vec3};
+use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
+use raykata::partition::{KdHeuristics, KdTree};
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
-use solutions::{stage2_triangles, stage3_bvh};
+use solutions::{
+    stage2_triangles, stage3_bvh, stage9_bsp, stage9_coherence, stage9_grid, stage9_kd_tree, stage9_octree,
+};
 
 /// What came of one way to search one scene.
 #[derive(Clone, Debug)]
@@ -134,15 +139,78 @@ pub fn all(seed: u64, rays: u64) -> Vec<Agreement> {
                 one.judge_any(stage3_bvh::any_hit(&bvh, &mut probe, &one.ray))
             }));
         }
+        for (told, found) in partitions(&scene, &asked) {
+            let mut found = found.into_iter();
+            agreements.push(agreement(&scene, told, &asked, |one| {
+                one.judge(&scene.triangles, found.next().flatten())
+            }));
+        }
     }
     agreements
+}
+
+/// What the structures of stage 9 find, ray by ray.
+fn partitions(scene: &HardScene, asked: &[Asked]) -> Vec<(String, Vec<Option<PrimitiveHit>>)> {
+    let triangles = &scene.triangles;
+    let bounds: Vec<Aabb> = triangles.iter().map(stage3_bvh::triangle_bounds).collect();
+    let around =
+        bounds.iter().filter(|one| !one.is_empty()).fold(Aabb::EMPTY, |p, q| stage3_bvh::union(&p, q));
+    let hulls: Vec<Vec<Vec3>> = triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
+    let no_tree = Bvh::default();
+    let each = |search: &dyn Fn(&mut Triangles<'_>, &Ray) -> Option<PrimitiveHit>| {
+        let find = |one: &Asked| search(&mut Triangles::new(&no_tree, triangles, &one.ray), &one.ray);
+        asked.iter().map(find).collect::<Vec<_>>()
+    };
+    let mut found = Vec::new();
+    let formula = stage9_grid::resolution(&around, triangles.len(), 4.0);
+    for (name, resolution) in [("of 3³ cells", UVec3::splat(3)), ("by the formula", formula)] {
+        let grid = stage9_grid::build(&bounds, resolution);
+        found.push((format!("grid {name}"), each(&|probe, ray| stage9_grid::closest_hit(&grid, probe, ray))));
+    }
+    for leaf_size in [1, 8] {
+        let tree = stage9_octree::build(&bounds, leaf_size, 12);
+        let named = |how: &str| format!("octree, leaves of {leaf_size}, {how}");
+        let by_cells = each(&|probe, ray| stage9_octree::closest_hit_by_cells(&tree, probe, ray));
+        found.push((named("by cells"), by_cells));
+        found.push((
+            named("from the root"),
+            each(&|probe, ray| stage9_octree::closest_hit(&tree, probe, ray)),
+        ));
+    }
+    for (name, heuristics) in
+        [("all heuristics", KdHeuristics::default()), ("no heuristic", KdHeuristics::NONE)]
+    {
+        let tree = stage9_kd_tree::build(&bounds, &heuristics, 2);
+        found.push((
+            format!("kd-tree, {name}"),
+            each(&|probe, ray| stage9_kd_tree::closest_hit(&tree, probe, ray)),
+        ));
+    }
+    let tree = stage9_bsp::build(&hulls, 2, KdTree::most_depth(hulls.len()));
+    found.push(("BSP tree".into(), each(&|probe, ray| stage9_bsp::closest_hit(&tree, probe, ray))));
+
+    let bvh = hierarchy(triangles, Split::SurfaceArea, 2);
+    let mut last = None;
+    let cached = |one: &Asked| {
+        let search = |probe: &mut Triangles<'_>, ray: &Ray| stage3_bvh::closest_hit(&bvh, probe, ray);
+        let mut probe = Triangles::new(&bvh, triangles, &one.ray);
+        let hit = stage9_coherence::closest_hit_cached(last, &mut probe, &one.ray, search);
+        last = hit.map_or(last, |hit| Some(hit.primitive));
+        hit
+    };
+    found.push(("hierarchy, last hit first".into(), asked.iter().map(cached).collect()));
+    let rays: Vec<Ray> = asked.iter().map(|one| one.ray).collect();
+    let first = rays.first().copied().unwrap_or_else(|| Ray::new(Vec3::ZERO, Vec3::X));
+    let mut packet = Packet(Triangles::new(&bvh, triangles, &first));
+    found.push(("hierarchy, packets".into(), stage9_coherence::closest_hit_packet(&bvh, &mut packet, &rays)));
+    found
 }
 
 fn agreement(
     scene: &HardScene,
     search: String,
     asked: &[Asked],
-    judge: impl Fn(&Asked) -> Judgement,
+    mut judge: impl FnMut(&Asked) -> Judgement,
 ) -> Agreement {
     let mut agreement = Agreement {
         scene: scene.name,

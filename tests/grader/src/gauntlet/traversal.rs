@@ -3,6 +3,7 @@
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
+use raykata::partition::Cells;
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
@@ -26,6 +27,11 @@ impl<'a> Triangles<'a> {
     pub fn new(bvh: &'a Bvh, triangles: &'a [Triangle], ray: &Ray) -> Self {
         Triangles { bvh, triangles, inverse_dir: ray.dir.recip() }
     }
+
+    #[inline]
+    fn test(&self, primitive: u32, ray: &Ray) -> Option<f32> {
+        stage2_triangles::triangle_choice(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
+    }
 }
 
 impl Probe for Triangles<'_> {
@@ -42,6 +48,32 @@ impl Probe for Triangles<'_> {
 
     #[inline]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        stage2_triangles::triangle_choice(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
+        self.test(primitive, ray)
+    }
+}
+
+impl Cells for Triangles<'_> {
+    fn visit(&mut self, _: u32) {}
+
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.test(primitive, ray)
+    }
+}
+
+/// The same for rays that come in packets, with directions of their own.
+pub struct Packet<'a>(pub Triangles<'a>);
+
+impl Probe for Packet<'_> {
+    fn open(&mut self, node: u32) -> Contents {
+        self.0.open(node)
+    }
+
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        self.0.inverse_dir = ray.dir.recip();
+        self.0.enter(node, ray)
+    }
+
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.0.test(primitive, ray)
     }
 }
