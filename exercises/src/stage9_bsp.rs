@@ -11,9 +11,9 @@ use raykata::partition::{Bsp, BspNode, Cells, CutPlane};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree over hulls: the corners of a polygon, or the eight of a box. Candidates for a cut are the planes of
-/// the polygons, and one across each axis in the middle of things, for those of a convex body divide nothing. The plane is
-/// taken that leaves the fewest primitives on its fuller side. A leaf is made if there are no more than `leaf_size`, at
-/// `max_depth`, or if no plane leaves fewer on either side and less than 60 % on both.
+/// the polygons, and one across the longest extent in the middle of things, for those of a convex body divide nothing. The
+/// plane is taken that leaves few primitives on its fuller side, and fewer still on both. A leaf is made if there are no
+/// more than `leaf_size`, at `max_depth`, or if no plane leaves fewer on either side and less than 60 % on both.
 ///
 /// A primitive is listed on each side that it reaches into; one that touches the plane, on both. What is not a number is
 /// left out.

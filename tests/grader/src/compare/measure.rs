@@ -2,16 +2,19 @@
 
 use super::rows::Row;
 use anyhow::{Context, Result};
+use glam::Vec3;
 use indicatif::{ProgressBar, ProgressStyle};
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, StructureSize, View, mishap};
-use raykata::scene::{Accelerator, Scene};
+use raykata::scene::{Accelerator, Scene, Split};
 use serde::Serialize;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
-/// More tests than this are not made for one picture; a smaller one has to tell.
-const MOST_TESTS: u64 = 400_000_000;
+/// More questions than this are not asked for one picture; a smaller one has to tell.
+const MOST_QUESTIONS: u64 = 200_000_000;
 
 /// Who is measured, and how often.
 pub struct Bench<'a> {
@@ -40,8 +43,8 @@ pub struct Measured {
     pub spread: f64,
     /// The picture was made at this many times fewer columns and rows, because it would take too long.
     pub slice: u32,
-    /// Pixels that differ from those of the first picture of full size; nothing for a slice.
-    pub different_pixels: Option<u64>,
+    /// Pixels that differ from those that the hierarchy by surface area makes at this size.
+    pub different_pixels: u64,
     /// What the picture lacks.
     pub notes: Vec<String>,
     #[serde(skip)]
@@ -56,10 +59,10 @@ impl Bench<'_> {
             bar.set_style(style);
         }
         let mut measured: Vec<Measured> = Vec::new();
+        let mut references = BTreeMap::new();
         for row in rows {
             bar.set_message(row.name.clone());
-            let one = self.counted(scene, row, &measured)?;
-            measured.push(one);
+            measured.push(self.counted(scene, row, &mut references)?);
             bar.inc(1);
         }
         let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
@@ -82,21 +85,22 @@ impl Bench<'_> {
         Ok(measured)
     }
 
-    fn counted(&self, scene: &Scene, row: &Row, before: &[Measured]) -> Result<Measured> {
-        let slice = match row.quality.accelerator {
-            Accelerator::BruteForce => self.affordable_slice(scene, row)?,
-            _ => 1,
-        };
+    /// `references` are pictures by the hierarchy, by slice.
+    fn counted(&self, scene: &Scene, row: &Row, references: &mut BTreeMap<u32, Film>) -> Result<Measured> {
+        let slice = self.affordable_slice(scene, row)?;
         let frame = self.frame(scene, row, slice, true)?;
-        let reference = before.iter().find(|other| other.slice == 1);
-        let different = |other: &Measured| {
-            let same = |(p, q): &(&glam::Vec3, &glam::Vec3)| {
-                p.to_array().map(f32::to_bits) == q.to_array().map(f32::to_bits)
-            };
-            let pairs = frame.film.pixels.iter().zip(&other.film.pixels);
-            pairs.filter(|pair| !same(pair)).count() as u64
+        let reference = match references.entry(slice) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(place) => {
+                let mut quality = scene.quality;
+                (quality.accelerator, quality.split) = (Accelerator::Bvh, Split::SurfaceArea);
+                let row = Row { name: String::new(), quality };
+                place.insert(self.frame(scene, &row, slice, false)?.film)
+            }
         };
-        let different_pixels = (slice == 1).then(|| reference.map_or(0, different));
+        let bits = |pixel: &Vec3| pixel.to_array().map(f32::to_bits);
+        let pairs = frame.film.pixels.iter().zip(&reference.pixels);
+        let different = pairs.filter(|(yours, right)| bits(yours) != bits(right)).count();
         Ok(Measured {
             row: row.clone(),
             name: row.name.clone(),
@@ -108,19 +112,20 @@ impl Bench<'_> {
             nanoseconds: 0.0,
             spread: 0.0,
             slice,
-            different_pixels,
+            different_pixels: different as u64,
             notes: frame.notes,
             film: frame.film,
         })
     }
 
-    /// By how much columns and rows are to be divided so that brute force ends today: asked of a tiny picture.
+    /// By how much columns and rows are to be divided so that the picture is done soon: asked of a tiny one.
     fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<u32> {
         let film = scene.film;
         let tiny = (film.width.max(film.height) / 24).max(1);
-        let frame = self.frame(scene, row, tiny, true)?;
-        let tests = frame.counts.primitive_tests * u64::from(tiny) * u64::from(tiny);
-        let slice = (tests as f64 / MOST_TESTS as f64).sqrt().ceil() as u32;
+        let Counts { node_visits, box_tests, primitive_tests, .. } =
+            self.frame(scene, row, tiny, true)?.counts;
+        let questions = (node_visits + box_tests + primitive_tests) * u64::from(tiny) * u64::from(tiny);
+        let slice = (questions as f64 / MOST_QUESTIONS as f64).sqrt().ceil() as u32;
         Ok(slice.clamp(1, tiny))
     }
 

@@ -77,17 +77,16 @@ pub fn print(title: &str, rows: &[Measured]) {
     println!("{:<width$}{heads}{:>10}", "", "pixels off");
     for row in rows {
         let cells: String = COLUMNS.iter().map(|column| cell(column, row, rows)).collect();
-        let off =
-            row.different_pixels.map_or_else(|| format!("1/{} ", row.slice), |n| Thousands(n).to_string());
-        println!("{:<width$}{cells}{off:>10}", row.name);
+        let off = Thousands(row.different_pixels);
+        let slice = if row.slice > 1 { format!("  1/{}", row.slice) } else { String::new() };
+        println!("{:<width$}{cells}{off:>10}{slice}", row.name);
     }
     println!(
-        "* least of its column; visits: nodes or cells looked into; ns: on all threads together, the median of rounds"
+        "* least of its column; visits: nodes or cells looked into; ns: on all threads together, the median of rounds;\n\
+         pixels off: not as the hierarchy by surface area has them"
     );
     if rows.iter().any(|row| row.slice > 1) {
-        println!(
-            "1/n: made at an n-th of the columns and rows, because the whole picture would take too long"
-        );
+        println!("1/n: at an n-th of the columns and rows, because the whole picture would take too long");
     }
     let mut notes: Vec<&String> = rows.iter().flat_map(|row| &row.notes).collect();
     notes.sort();
