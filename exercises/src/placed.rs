@@ -2,7 +2,7 @@
 
 use crate::stage8_scene_graph::{bounds_to_world, normal_to_world, ray_to_object};
 use crate::stage8_solids::{cone, cuboid, cylinder, disk, polygon};
-use crate::surfaces::Found;
+use crate::surfaces::{Found, point_on_sphere};
 use crate::{stage1_shapes, stage3_bvh};
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
 use raykata::aabb::Aabb;
@@ -35,10 +35,14 @@ fn meet(ray: &Ray, shape: &SolidShape) -> Option<SolidHit> {
 pub fn point_on_solid(ray: &Ray, t: f32, solid: &Solid) -> Found {
     let placement = &solid.placement;
     let ray = ray_to_object(ray, &placement.to_object);
+    if let SolidShape::Ball(ball) = &solid.shape {
+        return to_world(point_on_sphere(&ray, t, ball), placement);
+    }
     let normal = meet(&ray, &solid.shape).map_or(-ray.dir.normalize_or(Vec3::Z), |hit| hit.normal);
     let point = ray.at(t);
-    // The rounding of t moves the point along the ray, and the sum and the product are rounded as well.
-    let error = 2.0 * HALF_STEP * (t * ray.dir).abs() + HALF_STEP * point.abs();
+    // The rounding of t moves the point along the ray, and the sum and the product are rounded as well; twice that for
+    // tests that are not in double.
+    let error = 4.0 * HALF_STEP * (t * ray.dir).abs() + 2.0 * HALF_STEP * point.abs();
     to_world(Found { point, error, normal, smooth: None }, placement)
 }
 

@@ -115,7 +115,7 @@ fn in_instance(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive,
     (instance, primitive, if inherits { outer.material } else { primitive.material })
 }
 
-fn point_on_sphere(ray: &Ray, t: f32, sphere: &Sphere) -> Found {
+pub fn point_on_sphere(ray: &Ray, t: f32, sphere: &Sphere) -> Found {
     // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
     let normal = stage1_shapes::sphere_normal(sphere.center, ray.at(t));
     let point = sphere.center + sphere.radius * normal;

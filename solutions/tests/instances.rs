@@ -1,0 +1,167 @@
+//! Shapes in spaces of their own, in whole frames: one mesh in many places looks like its copies, no shape shadows itself,
+//! mirrors keep the outside outside, and every accelerator makes the same picture.
+
+use glam::Vec3;
+use raykata::count::Counts;
+use raykata::film::Film;
+use raykata::frame::Unwatched;
+use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::scene::{Accelerator, Scene, load};
+use std::path::Path;
+
+fn scene(text: &str) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
+    load::parse(&file, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn file(name: &str, width: u32, height: u32) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+    let mut scene = load::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    (scene.film.width, scene.film.height) = (width, height);
+    scene.quality.samples_per_pixel = 1;
+    scene
+}
+
+fn render(scene: &Scene) -> Rendering {
+    let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count: true };
+    solutions::Kit.render(&job, &Unwatched).expect("nobody cancels")
+}
+
+fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
+    let mut scene = scene.clone();
+    scene.quality.accelerator = accelerator;
+    render(&scene)
+}
+
+#[test]
+fn every_accelerator_makes_the_same_picture() {
+    for (name, width, height) in [("stage8.toml", 64, 36), ("effects.toml", 32, 20), ("graph.toml", 48, 32)] {
+        let scene = file(name, width, height);
+        let expected = by(&scene, Accelerator::BruteForce);
+        for accelerator in Accelerator::ALL {
+            let frame = by(&scene, accelerator);
+            assert_eq!(frame.film, expected.film, "{name}, {accelerator:?}");
+            assert_eq!(rays(&frame.counts), rays(&expected.counts), "{name}, {accelerator:?}");
+            assert!(frame.notes.is_empty(), "{name}, {accelerator:?}: {:?}", frame.notes);
+        }
+    }
+}
+
+fn rays(counts: &Counts) -> [u64; 5] {
+    [counts.primary, counts.shadow, counts.reflection, counts.transmission, counts.hits]
+}
+
+#[test]
+fn any_number_of_threads_asks_the_same_questions() {
+    let scene = file("stage8.toml", 64, 36);
+    for accelerator in [Accelerator::CachedBvh, Accelerator::PacketBvh, Accelerator::Grid] {
+        let with = |threads: usize| {
+            let mut scene = scene.clone();
+            scene.quality.accelerator = accelerator;
+            let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true };
+            let frame = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+            (frame.film, frame.counts)
+        };
+        assert_eq!(with(1), with(3), "{accelerator:?}");
+    }
+}
+
+/// The share of pixels that differ by more than a hundredth: silhouettes, to a rounding of the ray.
+fn difference(p: &Film, q: &Film) -> f64 {
+    let far = |(p, q): &(&Vec3, &Vec3)| (**p - **q).abs().max_element() > 0.01;
+    p.pixels.iter().zip(&q.pixels).filter(far).count() as f64 / p.pixels.len() as f64
+}
+
+#[test]
+fn instances_look_like_copies_and_take_less() {
+    let mut scene = file("stage3.toml", 120, 75);
+    scene.quality.copies = true;
+    let copies = render(&scene);
+    scene.quality.copies = false;
+    let instances = render(&scene);
+    assert_eq!(instances.primitives, 226); // 225 vases and the floor
+    assert_eq!(copies.primitives, 225 * 1568 + 1);
+    let off = difference(&instances.film, &copies.film);
+    assert!(off < 0.002, "{off}");
+    let bytes = |frame: &Rendering| frame.bytes_of_parts + frame.structure.map_or(0, |size| size.bytes);
+    assert!(50 * bytes(&instances) < bytes(&copies), "{} {}", bytes(&instances), bytes(&copies));
+}
+
+#[test]
+fn a_hundred_thousand_trees_take_the_memory_of_one_and_their_places() {
+    let scene = file("forest.toml", 48, 27);
+    let frame = render(&scene);
+    assert_eq!(frame.primitives, 100_001); // the trees and the ground
+    let bytes = frame.bytes_of_parts + frame.structure.map_or(0, |size| size.bytes);
+    // A node has 40 bytes, and there are at most two for each place; a tree takes half a megabyte.
+    assert!(bytes < 9_000_000, "{bytes}");
+}
+
+/// One shape, lit from above the camera, in front of nothing: where it is lit at all it must be lit everywhere.
+fn lone(shape: &str, steps: &str, size: f32) -> Scene {
+    let at = 4.0 * size;
+    scene(&format!(
+        "[film]\nwidth = 60\nheight = 60\n[camera]\nposition = [{at}, {at}, {at}]\nlook_at = [0, 0, 0]\n\
+         vertical_fov = 30\n[[lights]]\ndirectional = {{ direction = [-1, -1.1, -0.9] }}\n\
+         [[nodes]]\nshape = {{ {shape} }}\ntransform = [{steps}]\n"
+    ))
+}
+
+#[test]
+fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
+    let shapes = [
+        "sphere = { center = [0, 0, 0], radius = 1 }",
+        "box = { min = [-1, -0.8, -0.6], max = [0.7, 0.9, 1] }",
+        "cylinder = { base = [0, -1, 0], top = [0.2, 1, 0.1], radius = 0.7 }",
+        "cone = { base = [0, -1, 0], apex = [0.1, 1.2, 0], radius = 0.9 }",
+        "disk = { center = [0, 0, 0], normal = [1, 1, 1], radius = 1 }",
+        "polygon = { corners = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }",
+    ];
+    for size in [1e-3f32, 1.0, 1e5] {
+        for shape in shapes {
+            let steps = format!(
+                "{{ scale = [1.2, 0.7, 0.9] }}, {{ rotate = {{ axis = [1, 2, 3], degrees = 40 }} }}, {{ scale = {size} }}"
+            );
+            let scene = lone(shape, &steps, size);
+            let frame = render(&scene);
+            let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
+            let normals = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels").film;
+            let light = Vec3::new(1.0, 1.1, 0.9).normalize();
+            let mut lit = 0;
+            for (pixel, normal) in frame.film.pixels.iter().zip(&normals.pixels) {
+                let facing = (2.0 * *normal - 1.0).dot(light);
+                // Convex shapes: what faces the light is lit. A tenth keeps away from the edge of the shadow.
+                if *normal != Vec3::ZERO && facing > 0.1 {
+                    assert!(pixel.max_element() > 0.0, "{shape} of size {size} shadows itself");
+                    lit += 1;
+                }
+            }
+            assert!(lit > 50, "{shape} of size {size}: {lit} pixels");
+        }
+    }
+}
+
+#[test]
+fn a_mirrored_glass_vase_is_glass_inside() {
+    let glass = |mirror: &str| {
+        let mut scene = scene(&format!(
+            "[film]\nwidth = 48\nheight = 48\n[camera]\nposition = [0, 1.2, 5]\nlook_at = [0, 0.9, 0]\nvertical_fov = 30\n\
+             [environment]\nbackground = [0.3, 0.6, 0.9]\n[materials.glass]\ndiffuse = 0\ntransmission = 1\n\
+             index_of_refraction = 1.5\n[meshes.cube]\nfile = \"meshes/cube.obj\"\nsmooth = false\n\
+             [[nodes]]\nname = \"cube\"\nmaterial = \"glass\"\nshape = {{ mesh = \"cube\" }}\n\
+             [[nodes]]\nchildren = [\"cube\"]\ntransform = [{{ scale = [{mirror}1, 1.6, 1] }}, {{ translate = [0, 0.9, 0] }}]\n"
+        ));
+        scene.quality.max_depth = 6;
+        scene
+    };
+    // A cube is its own mirror image, so both pictures must be the same, copied or placed.
+    for copies in [false, true] {
+        let [plain, mirrored] = ["", "-"].map(|mirror| {
+            let mut scene = glass(mirror);
+            scene.quality.copies = copies;
+            render(&scene)
+        });
+        assert!(difference(&plain.film, &mirrored.film) < 0.01, "copies {copies}");
+        assert!(plain.counts.transmission > 500, "{}", plain.counts.transmission);
+    }
+}
