@@ -171,7 +171,9 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
         let diagnosis = match () {
             () if asked.len() > expected.len() => "the content of a volume that the ray misses is asked for",
             () if n_boxes > boxes => "a volume is asked for more than once, or below one that is missed",
-            () if n_boxes < boxes => "not all volumes are asked for: the root has one, too",
+            () if n_boxes < boxes => {
+                "not all volumes are asked for: the root has one, too, and so has each leaf"
+            }
             () => "something was left out that the ray may meet",
         };
         Err(Broken::told(
