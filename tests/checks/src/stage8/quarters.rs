@@ -41,8 +41,7 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     };
     let mut expected: Vec<_> = mesh.triangles.iter().enumerate().flat_map(quarters).collect();
     expected.sort_unstable();
-    let wiring =
-        "each corner keeps its old vertex with the new ones of its two edges; these three are the middle";
+    let wiring = "each corner keeps its old vertex with the new ones of its two edges; the three new ones are the middle";
     let unlike =
         |diagnosis| ("other triangles".to_owned(), "the four quarters of each".to_owned(), diagnosis);
     let Some(labels) = labels(mesh, yours) else { return Err(unlike(wiring)) };
