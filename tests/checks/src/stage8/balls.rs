@@ -4,7 +4,7 @@ use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::exact::{Body, meet};
 use crate::generate::{direction, point, sphere};
-use crate::judge::{compare, known};
+use crate::judge::compare;
 use crate::paste::{call, list};
 use glam::Vec3;
 use proptest::prelude::*;
@@ -26,7 +26,7 @@ pub(super) fn ball_holds_all_points(trial: &Trial<'_>) -> Outcome {
         let diagnosis = if beyond < 1e-5 {
             "rounded to nearest, the radius is too small in half of all cases"
         } else {
-            ""
+            "the radius is the largest distance of a point from the centre: no other measure holds all of them"
         };
         Err(Broken::told(
             format!("bounding_ball(&{})", list(points)),
@@ -34,7 +34,7 @@ pub(super) fn ball_holds_all_points(trial: &Trial<'_>) -> Outcome {
             "a ball with all points in it",
             "double precision",
         )
-        .looks_like(known(diagnosis)))
+        .looks_like(Some(diagnosis)))
     };
     trial.forall(1000, clouds(), |queries| compare(queries, trial.kit.bounding_ball(queries), judge))?;
     let far = clouds().prop_map(|points| {
@@ -77,7 +77,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BallEntryQuery]) -> Vec<Outcome> 
         let broken = |expected: String, diagnosis: &'static str| {
             let input = call("enter_ball", &[&ray, &ball]);
             Err(Broken::told(input, format!("{yours:?}"), expected, "exact arithmetic")
-                .looks_like(known(diagnosis)))
+                .looks_like(Some(diagnosis)))
         };
         if starts_inside(smaller) {
             return match yours {
@@ -95,21 +95,26 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BallEntryQuery]) -> Vec<Outcome> 
             }
             (Some(late), Some(early), Some(t)) => {
                 let exact = first(ball.radius).unwrap_or(late);
+                let length = ray.dir.length();
+                let other_units = near(t / length, exact) || near(t, exact * length);
                 if t > exact {
-                    return broken(
-                        format!("Some({exact:?}), or a little less"),
-                        "late by roundings: a hit at this very t would be skipped",
-                    );
+                    let diagnosis = match () {
+                        () if near(t, exact) => "late by roundings: a hit at this very t would be skipped",
+                        () if other_units => "t counts lengths of dir",
+                        () => {
+                            "the way out, or something else that is too late: the way in is the nearer root"
+                        }
+                    };
+                    return broken(format!("Some({exact:?}), or a little less"), diagnosis);
                 }
                 // A ray whose range ends between the two shells may be told anything.
                 if t >= ray.t_min && (t >= early || near(t, early) || starts_inside(larger)) {
                     return Ok(());
                 }
-                let length = ray.dir.length();
-                let diagnosis = if near(t / length, exact) || near(t, exact * length) {
-                    "t counts lengths of dir"
-                } else {
-                    ""
+                let diagnosis = match () {
+                    () if t < ray.t_min => "before the range of the ray",
+                    () if other_units => "t counts lengths of dir",
+                    () => "much too early: the ray is told to look where there is nothing yet",
                 };
                 broken(format!("Some({exact:?})"), diagnosis)
             }
@@ -137,6 +142,12 @@ fn entries(aimed: bool) -> impl Strategy<Value = BallEntryQuery> + Clone {
 }
 
 pub(super) fn enter_ball_finds_what_is_met(trial: &Trial<'_>) -> Outcome {
+    // S3: inside, with the centre behind.
+    let facing_away = BallEntryQuery {
+        ray: Ray::new(Vec3::new(0.5, 0.0, 0.0), Vec3::X),
+        ball: Sphere { center: Vec3::ZERO, radius: 1.0 },
+    };
+    judge_entries(trial, &[facing_away]).into_iter().collect::<Outcome>()?;
     trial.forall(3000, entries(true), |queries| judge_entries(trial, queries))
 }
 

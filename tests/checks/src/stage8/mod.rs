@@ -2,15 +2,17 @@
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `balls` (around points) · `graph` (searches) ·
 //! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard` (where their formulas lie) · `surfaces`
-//! (patches, subdivision)
+//! (patches) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod balls;
 mod boxes;
 mod graph;
 mod hard;
+mod quarters;
 mod solid;
 mod solids;
 mod spaces;
+mod subdivision;
 mod surfaces;
 
 use crate::checks;
@@ -25,24 +27,23 @@ use graph::{
 use hard::{
     cone_at_its_tip_and_rim, cone_is_not_its_mirror_image, cone_seen_along_its_side,
     cuboid_seen_along_its_faces, cylinder_at_its_rim, cylinder_seen_along_its_axis,
-    polygon_at_edges_and_corners,
+    disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners,
 };
 use solids::{
     cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
     cuboid_agrees_with_exact_arithmetic, cuboid_keeps_to_the_rules, cuboid_normals_point_outwards,
     cylinder_agrees_with_exact_arithmetic, cylinder_keeps_to_the_rules, cylinder_normals_point_outwards,
-    disk_agrees_with_exact_arithmetic, disk_keeps_to_the_rules, polygon_agrees_with_exact_arithmetic,
-    polygon_keeps_to_the_rules,
+    disk_keeps_to_the_rules, polygon_agrees_with_exact_arithmetic, polygon_keeps_to_the_rules,
 };
 use spaces::{
     normals_are_at_right_angles_to_the_surface, normals_stay_outside_in_a_mirror,
     placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone,
     rays_keep_their_t_in_every_space, rays_pass_the_same_points_in_every_space,
 };
-use surfaces::{
-    bezier_point_is_the_mean_of_its_net, bezier_starts_and_ends_at_its_corners,
+use subdivision::{
     loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
 };
+use surfaces::{bezier_point_is_the_mean_of_its_net, bezier_starts_and_ends_at_its_corners};
 
 checks! { ($) 8 stage8 [
     rays_pass_the_same_points_in_every_space

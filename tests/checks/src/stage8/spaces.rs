@@ -26,9 +26,10 @@ fn transform() -> impl Strategy<Value = Affine3A> + Clone {
 }
 
 pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Outcome {
-    // X1: first a quarter turn, where the inverse and its transpose differ; scales along the axes cannot tell.
-    let quarter = Affine3A::from_mat3(Mat3::from_cols(Vec3::Y, Vec3::NEG_X, Vec3::Z));
-    let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::X), to_object: quarter.inverse() };
+    // X1: first a quarter turn of a stretched object, where the matrix, its inverse and the transposes of both all differ;
+    // scales along the axes cannot tell.
+    let to_object = Affine3A::from_mat3(Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z));
+    let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)), to_object };
     judge_points(trial, &[turned]).into_iter().collect::<Outcome>()?;
     let inputs = (point(4), direction(), transform())
         .prop_map(|(origin, dir, to_object)| ObjectRayQuery { ray: Ray::new(origin, dir), to_object });
@@ -61,14 +62,13 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
         if right_origin && right_dir {
             return Ok(());
         }
-        let transposed = exact.matrix3.transpose().inverse();
         let with = |matrix: DMat3| is_along(yours.dir, matrix * ray.dir.as_dvec3());
         let diagnosis = match () {
-            () if !right_dir && with(exact.matrix3.inverse().transpose()) && with(transposed) => {
-                "the direction went through the inverse transpose, as the slide has it: that is for normals only"
-            }
             () if !right_dir && with(exact.matrix3.transpose()) => {
-                "the direction went through the transpose: that is for normals only"
+                "the direction went through the transpose of to_object, which is the inverse transpose of the way to the world, as the slide has it: that is for normals only"
+            }
+            () if !right_dir && with(exact.matrix3.inverse().transpose()) => {
+                "the direction went through the inverse transpose of to_object: that is for normals only"
             }
             () if !right_dir && with(exact.matrix3.inverse()) => {
                 "the direction went the other way, to the world"
@@ -107,7 +107,7 @@ fn is_along(yours: Vec3, right: DVec3) -> bool {
 pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
     // X2: an object ten times as large is met at the same t, which is counted in lengths of the direction.
     let grown = ObjectRayQuery {
-        ray: Ray::new(Vec3::new(0.0, 0.0, -5.0), Vec3::Z),
+        ray: Ray::new(Vec3::new(0.0, 0.0, -5.0), 2.0 * Vec3::Z),
         to_object: Affine3A::from_scale(Vec3::splat(0.125)),
     };
     let mut queries = vec![grown];
@@ -130,6 +130,9 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
         let diagnosis = match () {
             () if !same_length && unit => {
                 "the direction was made a unit vector: t counts other lengths than in the world, and cannot be compared"
+            }
+            () if !same_length && (yours.dir.length() / ray.dir.length() - 1.0).abs() < 1e-6 => {
+                "the direction was given the length that it has in the world: then the same t is another point"
             }
             () if !same_length => "the direction has another length than the object's space gives it",
             () if yours.time != ray.time => "the time of the ray was forgotten",
@@ -171,7 +174,12 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
             () if like(exact.inverse() * own) => {
                 "the normal went the way of points: it is then no longer at right angles to the surface"
             }
-            () if like(exact * own) => "the normal went the way back",
+            () if like(exact * own) => {
+                "the normal went the way back, as a point of the world would: the transpose is missing"
+            }
+            () if like(exact.inverse().transpose() * own) => {
+                "the transpose of the other matrix: to_object is the inverse already"
+            }
             () => "",
         };
         let input = call("normal_to_world", &[&query.normal, &query.to_object]);
@@ -180,11 +188,11 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
 }
 
 pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> Outcome {
-    let stretched = NormalQuery {
-        normal: Vec3::new(0.6, 0.8, 0.0),
-        to_object: Affine3A::from_scale(Vec3::new(0.5, 1.0, 1.0)),
-    };
-    judge_normals(trial, &[stretched]).into_iter().collect::<Outcome>()?;
+    // Stretched and sheared, so that the matrix, its inverse and the transposes of both all differ.
+    let to_object =
+        Affine3A::from_mat3(Mat3::from_cols(Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.0), Vec3::Z));
+    let leaning = NormalQuery { normal: Vec3::new(0.6, 0.8, 0.0), to_object };
+    judge_normals(trial, &[leaning]).into_iter().collect::<Outcome>()?;
     let inputs = (direction(), transform())
         .prop_filter("mirrors are another check's", |(_, transform)| transform.matrix3.determinant() > 0.0)
         .prop_map(|(normal, to_object)| NormalQuery { normal: normal.normalize(), to_object });
@@ -238,6 +246,12 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
                     "the inverses are in the order of the transforms: the one that was applied last is undone first"
                 }
                 () if near(&yours.to_object, &exact) => "the way back is the way up",
+                () if !up && path.last().is_some_and(|own| near(&yours.to_world, &in_double(own))) => {
+                    "its own transform alone: a node stands where all above it put it"
+                }
+                () if in_double(&yours.to_object).matrix3 == exact.matrix3.transpose() => {
+                    "the transpose is the inverse of a rotation, and of nothing else"
+                }
                 () => "",
             };
             let which = if up { "to_object" } else { "to_world" };

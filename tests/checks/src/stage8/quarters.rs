@@ -1,0 +1,88 @@
+//! Which triangles a step of subdivision makes: known by what they touch, not by where they lie.
+
+use super::subdivision::Unlike;
+use raykata::mesh::Mesh;
+use std::collections::BTreeSet;
+
+/// A vertex by the edge that it is of; an old one by its number twice.
+type Label = (u32, u32);
+
+/// The labels of all vertices: a new one is of the edge between the two old ones that it shares triangles with. `None` if
+/// there are not two.
+fn labels(mesh: &Mesh, yours: &Mesh) -> Option<Vec<Label>> {
+    let n_old = mesh.positions.len() as u32;
+    let mut old_ones = vec![BTreeSet::new(); yours.positions.len()];
+    for triangle in &yours.triangles {
+        for &vertex in triangle {
+            old_ones[vertex as usize].extend(triangle.iter().filter(|&&other| other < n_old));
+        }
+    }
+    let label = |(vertex, old_ones): (usize, &BTreeSet<u32>)| match vertex < n_old as usize {
+        true => Some((vertex as u32, vertex as u32)),
+        false if old_ones.len() == 2 => Some((*old_ones.first()?, *old_ones.last()?)),
+        false => None,
+    };
+    old_ones.iter().enumerate().map(label).collect()
+}
+
+/// The same triangle, begun at its smallest corner.
+fn begun_anew([a, b, c]: [Label; 3]) -> [Label; 3] {
+    [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
+}
+
+/// By labels, so that neither the order of edges and triangles nor the place of a vertex matters.
+pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
+    let material = |mesh: &Mesh, face: usize| mesh.face_materials.get(face).copied();
+    let quarters = |(face, &[a, b, c]): (usize, &[u32; 3])| {
+        let edge = |p: u32, q: u32| (p.min(q), p.max(q));
+        let ([ab, bc, ca], [a, b, c]) = ([edge(a, b), edge(b, c), edge(c, a)], [(a, a), (b, b), (c, c)]);
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            .map(|quarter| (begun_anew(quarter), material(mesh, face)))
+    };
+    let mut expected: Vec<_> = mesh.triangles.iter().enumerate().flat_map(quarters).collect();
+    expected.sort_unstable();
+    let wiring = "each corner keeps its old vertex with the new ones of its two edges; the three new ones are the middle";
+    let unlike =
+        |diagnosis| ("other triangles".to_owned(), "the four quarters of each".to_owned(), diagnosis);
+    let Some(labels) = labels(mesh, yours) else { return Err(unlike(wiring)) };
+    let faces = yours.triangles.iter().enumerate();
+    let mut got: Vec<_> = faces
+        .map(|(face, corners)| (begun_anew(corners.map(|v| labels[v as usize])), material(yours, face)))
+        .collect();
+    got.sort_unstable();
+
+    let corners = |faces: &[([Label; 3], Option<u32>)]| faces.iter().map(|face| face.0).collect::<Vec<_>>();
+    let unturned = |faces: &[([Label; 3], Option<u32>)]| {
+        let mut faces = corners(faces);
+        faces.iter_mut().for_each(|face| face.sort_unstable());
+        faces.sort_unstable();
+        faces
+    };
+    if corners(&got) != corners(&expected) {
+        let turned = unturned(&got) == unturned(&expected);
+        return Err(match turned {
+            true => (
+                "triangles that run clockwise".into(),
+                "corners in the order of the old triangle".into(),
+                "corners must stay anticlockwise in all four triangles",
+            ),
+            false => unlike(wiring),
+        });
+    }
+    if got != expected {
+        let told = "triangles with the material of another one";
+        return Err((told.into(), "its own for each".into(), "the four take the material of the one"));
+    }
+    for (vertex, &(p, q)) in labels.iter().enumerate().take(yours.uvs.len()) {
+        let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);
+        // Halves of numbers up to 1, rounded.
+        if (yours.uvs[vertex] - right).length() > 1e-6 {
+            return Err((
+                format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]),
+                format!("{right}"),
+                "texture coordinates of a new vertex are the mean of those at the ends of its edge",
+            ));
+        }
+    }
+    Ok(())
+}
