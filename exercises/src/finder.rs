@@ -126,7 +126,7 @@ impl Finder {
             }
             Structure::Octree(tree) => stage9_octree::closest_hit(tree, probe, ray),
             Structure::KdTree(tree) => stage9_kd_tree::closest_hit(tree, probe, ray),
-            Structure::Bsp(tree) => stage9_bsp::closest_hit(tree, probe, ray),
+            Structure::Bsp { tree, .. } => stage9_bsp::closest_hit(tree, probe, ray),
             Structure::None if self.search == Search::Painter => probe.last_hit(ray),
             Structure::None => stage2_triangles::brute_force(probe.primitives.len() as u32, probe, ray),
         }

@@ -301,7 +301,7 @@ impl Frames for Kit {
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
         tracer::trace(job, x, y)
     }
-    fn cells(&self, job: &RenderJob, depth: u32) -> Vec<Aabb> {
-        tracer::cells(job, depth)
+    fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
+        tracer::outlines(job, depth)
     }
 }

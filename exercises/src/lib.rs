@@ -5,6 +5,7 @@ mod camera_rays; // nothing to do here
 mod finder; // nothing to do here
 mod glue; // nothing to do here
 mod glue_structures; // nothing to do here
+mod outlines; // nothing to do here
 mod packets; // nothing to do here
 mod placed; // nothing to do here
 mod plan; // nothing to do here

@@ -5,7 +5,7 @@ use crate::stage8_scene_graph::{bounding_ball, enter_ball};
 use crate::{stage3_bvh, stage9_bsp, stage9_grid, stage9_kd_tree, stage9_octree};
 use glam::{UVec3, Vec3};
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, Node};
+use raykata::bvh::{Bvh, Node};
 use raykata::graph::Graph;
 use raykata::kit::StructureSize;
 use raykata::partition::{Bsp, Grid, KdTree, MOST_CELLS_ALONG, Octree, corners};
@@ -26,7 +26,11 @@ pub enum Structure {
     Grid(Grid),
     Octree(Octree),
     KdTree(KdTree),
-    Bsp(Bsp),
+    Bsp {
+        tree: Bsp,
+        /// The box around all.
+        around: Aabb,
+    },
 }
 
 /// One a node; nothing for a node that holds nothing.
@@ -75,7 +79,7 @@ impl Structure {
                 let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
                 let hulls: Vec<Vec<Vec3>> = bounds.iter().enumerate().map(hull).collect();
                 let depth = KdTree::most_depth(hulls.len());
-                Structure::Bsp(stage9_bsp::build(&hulls, leaf_size, depth))
+                Structure::Bsp { tree: stage9_bsp::build(&hulls, leaf_size, depth), around: around(bounds) }
             }
             _ => Structure::Hierarchy(stage3_bvh::build(bounds, quality.split, leaf_size)),
         }
@@ -118,34 +122,12 @@ impl Structure {
             Structure::KdTree(tree) => {
                 (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
             }
-            Structure::Bsp(tree) => {
+            Structure::Bsp { tree, .. } => {
                 (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
             }
         };
         let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
         Some(StructureSize { nodes, levels, references, bytes })
-    }
-
-    /// The boxes or cells at this depth, the root being at depth 0, and the leaves above it. A BSP tree has none that are
-    /// boxes.
-    pub fn cells(&self, depth: usize) -> Vec<Aabb> {
-        match self {
-            Structure::None | Structure::Bsp(_) => Vec::new(),
-            Structure::Hierarchy(bvh) => boxes_at(bvh, depth),
-            Structure::Graph { graph, volumes: Volumes::Boxes(boxes) } => {
-                nodes_at(graph, depth).into_iter().map(|node| boxes[node as usize]).collect()
-            }
-            Structure::Graph { graph, volumes: Volumes::Balls(balls) } => {
-                let around = |ball: Sphere| Aabb::new(ball.center - ball.radius, ball.center + ball.radius);
-                nodes_at(graph, depth)
-                    .into_iter()
-                    .filter_map(|node| balls[node as usize].map(around))
-                    .collect()
-            }
-            Structure::Grid(grid) => grid.cells(depth),
-            Structure::Octree(tree) => tree.cells(depth),
-            Structure::KdTree(tree) => tree.cells(depth),
-        }
     }
 
     /// Where a ray enters the volume around a node of the graph.
@@ -165,10 +147,7 @@ impl Structure {
 
 /// As many cells along the longest side as the scene says, and cubes; or what the formula gives.
 fn resolution(bounds: &[Aabb], quality: &Quality) -> UVec3 {
-    let around = bounds
-        .iter()
-        .filter(|one| !one.is_empty())
-        .fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
+    let around = around(bounds);
     let longest = (around.max - around.min).max_element();
     match quality.grid_resolution {
         0 => stage9_grid::resolution(&around, bounds.len(), DENSITY),
@@ -178,6 +157,12 @@ fn resolution(bounds: &[Aabb], quality: &Quality) -> UVec3 {
         }
         _ => UVec3::ONE,
     }
+}
+
+/// The box around all boxes that are any.
+fn around(bounds: &[Aabb]) -> Aabb {
+    let boxes = bounds.iter().filter(|one| !one.is_empty());
+    boxes.fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
 /// A box around each node of a graph and all below it.
@@ -194,33 +179,4 @@ fn boxes(graph: &Graph, bounds: &[Aabb]) -> Vec<Aabb> {
 
 fn ball_around(bounds: &Aabb) -> Option<Sphere> {
     (!bounds.is_empty()).then(|| bounding_ball(&corners(bounds)))
-}
-
-fn boxes_at(bvh: &Bvh, depth: usize) -> Vec<Aabb> {
-    let mut boxes = Vec::new();
-    let mut waiting: Vec<(u32, usize)> = bvh.root().map(|root| (root, 0)).into_iter().collect();
-    while let Some((node, level)) = waiting.pop() {
-        let node = &bvh.nodes[node as usize];
-        match node.contents {
-            Contents::Inner { left, right } if level < depth => {
-                waiting.extend([(left, level + 1), (right, level + 1)]);
-            }
-            _ => boxes.push(node.bounds),
-        }
-    }
-    boxes
-}
-
-fn nodes_at(graph: &Graph, depth: usize) -> Vec<u32> {
-    let mut nodes = Vec::new();
-    let mut waiting: Vec<(u32, usize)> = if graph.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
-    while let Some((node, level)) = waiting.pop() {
-        let children = &graph.nodes[node as usize].children;
-        if level == depth || children.is_empty() {
-            nodes.push(node);
-        } else {
-            waiting.extend(children.iter().map(|&child| (child, level + 1)));
-        }
-    }
-    nodes
 }

@@ -4,12 +4,12 @@
 
 use crate::camera_rays::{Eye, blurred, from_area, outline};
 use crate::finder::Finder;
+use crate::outlines;
 use crate::packets::Packets;
 use crate::plan::Plan;
 use crate::surfaces::{self, Hit, Looks, Place, texture_coordinates};
 use crate::{stage4_shading, stage5_recursion, stage7_effects};
 use glam::{Vec3, uvec2};
-use raykata::aabb::Aabb;
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
 use raykata::frame::{self, CameraSample, FrameSettings, Watch};
@@ -58,8 +58,8 @@ pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
     rays
 }
 
-pub fn cells(job: &RenderJob, depth: u32) -> Vec<Aabb> {
-    Tracer::new(job).finder.structure.cells(depth as usize)
+pub fn outlines(job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
+    outlines::outlines(&Tracer::new(job).finder.structure, depth as usize)
 }
 
 struct Tracer<'a> {

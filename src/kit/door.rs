@@ -67,9 +67,9 @@ pub trait Frames {
     /// traces, parents before children.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 
-    /// The boxes or cells of the structure over the scene at this depth, the root being at depth 0, and the leaves above
-    /// it.
-    fn cells(&self, job: &RenderJob, depth: u32) -> Vec<Aabb>;
+    /// The edges of the boxes or cells of the structure over the scene at this depth, the root being at depth 0, and of
+    /// the leaves above it.
+    fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]>;
 }
 
 macro_rules! door {
@@ -88,8 +88,8 @@ macro_rules! door {
             Render(Box<RenderJob>),
             /// The rays behind a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
-            /// The cells of the structure at a depth.
-            CellsAt(Box<RenderJob>, u32),
+            /// Edges of the structure at a depth.
+            Outlines(Box<RenderJob>, u32),
         }
 
         /// An answer as a message.
@@ -100,8 +100,8 @@ macro_rules! door {
             Render(Option<Box<Rendering>>),
             /// The rays behind a pixel.
             Trace(Vec<TracedRay>),
-            /// The cells of the structure at a depth.
-            CellsAt(Vec<Aabb>),
+            /// Edges of the structure at a depth.
+            Outlines(Vec<[Vec3; 2]>),
         }
 
         impl Request {
@@ -111,7 +111,7 @@ macro_rules! door {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
                     Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
-                    Request::CellsAt(job, depth) => Answer::CellsAt(kit.cells(job, *depth)),
+                    Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
                 }
             }
         }
@@ -142,9 +142,9 @@ impl<T: Transport> Frames for Door<T> {
         }
     }
 
-    fn cells(&self, job: &RenderJob, depth: u32) -> Vec<Aabb> {
-        match self.0.call(Request::CellsAt(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
-            Answer::CellsAt(cells) => cells,
+    fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
+        match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
+            Answer::Outlines(edges) => edges,
             answer => mishap::wrong_answer(&format!("{answer:?}")),
         }
     }

@@ -1,6 +1,7 @@
 //! The BSP tree as data: planes in any direction.
 
 use super::check_depth;
+use crate::aabb::Aabb;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,26 @@ impl CutPlane {
     /// The plane across `axis` at `at`.
     pub fn across(axis: usize, at: f64) -> Self {
         CutPlane { normal: DVec3::AXES[axis], offset: at }
+    }
+
+    /// A square in the plane, with corners this far from the foot of `point`.
+    fn square(&self, point: DVec3, reach: f64) -> Vec<DVec3> {
+        let foot = point - (self.normal.dot(point) - self.offset) * self.normal;
+        let (u, v) = self.normal.any_orthonormal_pair();
+        [u, v, -u, -v].map(|way| foot + 2.0 * reach * way).to_vec()
+    }
+
+    /// What of a convex polygon is in front of the plane for `side` 1, or behind it for -1.
+    fn keep(&self, polygon: &[DVec3], side: f64) -> Vec<DVec3> {
+        let height = |point: DVec3| side * (self.normal.dot(point) - self.offset);
+        let next = polygon.iter().cycle().skip(1);
+        let edges = polygon.iter().zip(next).flat_map(|(&p, &q)| {
+            let (from, to) = (height(p), height(q));
+            let crosses = (from < 0.0) != (to < 0.0);
+            let crossing = crosses.then(|| p.lerp(q, from / (from - to)));
+            [(from >= 0.0).then_some(p), crossing]
+        });
+        edges.flatten().collect()
     }
 
     /// How far in front of the plane `point` lies; negative behind it.
@@ -103,17 +124,27 @@ impl Bsp {
         deepest
     }
 
-    /// The planes at `depth`; the root is at depth 0.
-    pub fn planes(&self, depth: usize) -> Vec<CutPlane> {
-        let mut planes = Vec::new();
-        self.walk(|node, _, at| {
+    /// The planes above `depth`, the root being at depth 0, each as the polygon that the planes above it and the box
+    /// `bounds` leave of it.
+    pub fn polygons(&self, bounds: &Aabb, depth: usize) -> Vec<Vec<DVec3>> {
+        let mut polygons = Vec::new();
+        self.walk(|node, above, at| {
             if let BspNode::Inner { plane, .. } = self.nodes[node as usize]
-                && at == depth
+                && at < depth
             {
-                planes.push(plane);
+                let faces = (0..3).flat_map(|axis| {
+                    let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
+                    [(CutPlane::across(axis, low), 1.0), (CutPlane::across(axis, high), -1.0)]
+                });
+                let size = (bounds.max - bounds.min).as_dvec3().length();
+                let square = plane.square(0.5 * (bounds.min + bounds.max).as_dvec3(), size);
+                let cut = faces
+                    .chain(above.iter().copied())
+                    .fold(square, |polygon, (plane, side)| plane.keep(&polygon, side));
+                polygons.extend((cut.len() > 2).then_some(cut));
             }
         });
-        planes
+        polygons
     }
 
     /// Tells `each` about all nodes: number, the planes above with the side on which the node lies (1 in front, -1

@@ -4,7 +4,6 @@ use super::measure::Measured;
 use crate::report::Thousands;
 use anyhow::{Context, Result};
 use glam::{Vec2, Vec3};
-use raykata::aabb::Aabb;
 use raykata::camera::Camera;
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Unwatched;
@@ -13,20 +12,21 @@ use raykata::scene::Scene;
 use raykata::world::camera_for;
 use std::path::Path;
 
-/// More boxes than this are a blot and no picture.
-const MOST_BOXES: usize = 20_000;
+/// More edges than this are a blot and no picture.
+const MOST_EDGES: usize = 200_000;
 
 /// Writes `cells-ROW.png` for rows that have cells, and `tests-ROW.png` for all, in the same colours.
 pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth: u32) -> Result<()> {
     let mut works = Vec::new();
-    for row in rows.iter().filter(|row| row.slice == 1) {
+    for row in rows {
         let mut scene = scene.clone();
         scene.quality = row.row.quality;
+        (scene.film.width, scene.film.height) = (row.film.width, row.film.height);
         let file = |what: &str| out.join(format!("{what}-{}.png", file_name(&row.name)));
         let job = RenderJob { scene, view: View::Work, seed: 0, threads: 0, count: true };
-        let cells = mishap::catch(|| kit.cells(&job, depth))?;
-        if !cells.is_empty() {
-            save(&with_boxes(&row.film, &camera_for(&job.scene), &cells), &file("cells"))?;
+        let edges = mishap::catch(|| kit.outlines(&job, depth))?;
+        if !edges.is_empty() {
+            save(&with_edges(&row.film, &camera_for(&job.scene), &edges), &file("cells"))?;
         }
         let work = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         works.push((file("tests"), work.film));
@@ -40,7 +40,7 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
     }
     println!(
         "\ntests-*.png: visits, box and primitive tests of all rays of a pixel; black is 1, white {}, and each step of \
-         brightness a factor",
+         brightness a factor; what a packet asks is counted at one of its pixels",
         Thousands(most as u64)
     );
     Ok(())
@@ -70,22 +70,13 @@ fn heat_color(tests: f32, most: f32) -> Vec3 {
     COLORS[step].lerp(COLORS[step + 1], share - step as f32)
 }
 
-/// The picture, darker, with the edges of boxes drawn over it: the smaller the box, the brighter.
-fn with_boxes(film: &Film, camera: &Camera, boxes: &[Aabb]) -> Film {
+/// The picture, darker, with edges drawn over it.
+fn with_edges(film: &Film, camera: &Camera, edges: &[[Vec3; 2]]) -> Film {
     let mut drawn = Film::new(film.width, film.height);
     drawn.pixels = film.pixels.iter().map(|pixel| 0.25 * pixel.clamp(Vec3::ZERO, Vec3::ONE)).collect();
-    for bounds in boxes.iter().filter(|bounds| !bounds.is_empty()).take(MOST_BOXES) {
-        let corner = |i: usize| {
-            let pick = |axis: usize| if i >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-            Vec3::new(pick(0), pick(1), pick(2))
-        };
-        for from in 0..8usize {
-            for axis in (0..3).filter(|axis| from >> axis & 1 == 0) {
-                let ends = [corner(from), corner(from | 1 << axis)];
-                if let Some([p, q]) = projected(camera, &drawn, ends) {
-                    line(&mut drawn, p, q);
-                }
-            }
+    for edge in edges.iter().take(MOST_EDGES) {
+        if let Some([p, q]) = projected(camera, &drawn, *edge) {
+            line(&mut drawn, p, q);
         }
     }
     drawn

@@ -77,12 +77,11 @@ impl Panel {
         // Whole powers of ten, one of them to spare at least, so that no bar has length 0.
         let (low, high) =
             ((0.5 * least).log10().floor(), most.log10().ceil().max((0.5 * least).log10().floor() + 1.0));
-        let x = |value: f64| left + BARS * ((value.max(least).log10() - low) / (high - low));
+        let x = |value: f64| left + BARS * ((value.log10() - low) / (high - low)).max(0.0);
         let bottom = TOP + ROW * rows.len() as f64;
         let _ = writeln!(out, "<text x=\"{left:.1}\" y=\"44\">{}, logarithmic</text>", self.title);
         for power in low as i32..=high as i32 {
             let at = x(10f64.powi(power));
-            let at = if f64::from(power) <= low { left } else { at };
             let _ = writeln!(
                 out,
                 "<line x1=\"{at:.1}\" y1=\"{TOP}\" x2=\"{at:.1}\" y2=\"{bottom:.1}\" stroke=\"#ccc\"/>\
