@@ -9,6 +9,8 @@ mod outlines; // nothing to do here
 mod packets; // nothing to do here
 mod placed; // nothing to do here
 mod plan; // nothing to do here
+mod probe; // nothing to do here
+mod radiance; // nothing to do here
 mod search; // nothing to do here
 pub mod stage10_stability;
 pub mod stage1_shapes;

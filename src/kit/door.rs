@@ -1,4 +1,5 @@
-//! The traits themselves, and the same calls as messages. One list makes both, so they cannot drift apart.
+//! The traits themselves, and the same calls as messages. One list makes both, so they cannot drift apart; it is as long as
+//! the kit has functions.
 
 use super::*;
 use crate::aabb::Aabb;

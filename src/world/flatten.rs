@@ -3,6 +3,7 @@
 
 use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
+use super::transforms::{normal_matrix, plane_axes, uniform_scale};
 use super::{
     Crafts, EndlessPlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World,
     what_is_not_simulated,
@@ -11,7 +12,7 @@ use crate::effects::Effects;
 use crate::graph::{GraphNode, Placement};
 use crate::scene::{Node, Scene, blend};
 use crate::shape::{Plane, Shape, Sphere, Triangle};
-use glam::{Affine3A, Mat3, Mat3A, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec2};
 
 pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
     let mut meshes = Meshes::new(scene, effects, crafts);
@@ -37,6 +38,9 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> Worl
     }
     flattener.world
 }
+
+/// The most primitives in a world, about a gigabyte of them.
+const MOST_PRIMITIVES: usize = 1 << 24;
 
 /// Where something is: to the world at time 0, and at time 1 if it moves.
 struct Way {
@@ -217,12 +221,26 @@ impl Flattener<'_> {
             let geometry = Geometry::Instance(self.world.instances.len() as u32 - 1);
             return self.push(geometry, material);
         }
+        if self.world.primitives.len() + ready.mesh.triangles.len() > MOST_PRIMITIVES {
+            return self.leave_out_copies();
+        }
         for face in 0..ready.mesh.triangles.len() {
             let material = ready.material_of(face).unwrap_or(material);
             let triangle = self.triangle(&ready.facet(face), way, material);
             self.world.primitives.push(triangle);
         }
     }
+    /// A mesh in a hundred thousand places is more than a computer holds as copies.
+    fn leave_out_copies(&mut self) {
+        let note = format!(
+            "meshes are left out: copied for each of their places they come to more than {MOST_PRIMITIVES} triangles, \
+             and only stage 8 keeps one for all"
+        );
+        if !self.world.notes.contains(&note) {
+            self.world.notes.push(note);
+        }
+    }
+
     /// Keeps the triangles of a mesh in its own space; says where.
     fn part(&mut self, ready: &Ready) -> u32 {
         let here = Way::still(Affine3A::IDENTITY);
@@ -266,52 +284,5 @@ impl Flattener<'_> {
     fn reads_image(&self, material: u32) -> bool {
         let all = &self.effects.materials;
         all.get(material as usize).map_or_else(|| all.iter().any(|one| one.texture), |one| one.texture)
-    }
-}
-
-/// Two unit vectors at right angles to `normal` and each other, `u × v` along it. On the floor they are x and -z, so that
-/// an image lies upright for who looks along -z.
-fn plane_axes(normal: Vec3) -> (Vec3, Vec3) {
-    let normal = normal.normalize();
-    // Any axis far from the normal will do; x for floors and ceilings, y for walls.
-    let u = if normal.y.abs() > 0.5 { Vec3::X } else { Vec3::Y.cross(normal).normalize() };
-    let u = (u - u.dot(normal) * normal).normalize();
-    (u, normal.cross(u))
-}
-
-/// Carries normals to the world: the inverse transpose, up to a positive factor, so that a mirrored transform keeps
-/// the outside outside.
-fn normal_matrix(to_world: &Affine3A) -> Mat3A {
-    to_world.matrix3.inverse().transpose()
-}
-
-/// The factor by which a transform scales, if it scales all directions alike to a few roundings.
-fn uniform_scale(to_world: &Affine3A) -> Option<f32> {
-    let gram = to_world.matrix3.transpose() * to_world.matrix3;
-    let squared = gram.x_axis.x;
-    // Each entry of the product sums three rounded products: 1e-5 leaves room for rotations and for nothing visible.
-    let alike = (gram - Mat3A::from_diagonal(Vec3::splat(squared))).to_cols_array();
-    alike.iter().all(|entry| entry.abs() <= 1e-5 * squared).then(|| squared.sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_axes_of_a_plane_stand_at_right_angles() {
-        for normal in [Vec3::Y, Vec3::NEG_Y, Vec3::X, Vec3::Z, Vec3::new(1.0, 2.0, -3.0)] {
-            let (u, v) = plane_axes(normal);
-            assert!((u.cross(v) - normal.normalize()).length() < 1e-6, "{normal}");
-        }
-        assert_eq!(plane_axes(Vec3::Y), (Vec3::X, Vec3::NEG_Z));
-    }
-
-    #[test]
-    fn a_turning_sphere_is_no_sphere_halfway() {
-        let blended = Affine3A::from_rotation_y(2.0);
-        assert!(uniform_scale(&blended).is_some());
-        let half = uniform_scale(&blend(&Affine3A::IDENTITY, &blended, 0.5));
-        assert!(half.is_none_or(|scale| scale < 0.9), "{half:?}");
     }
 }

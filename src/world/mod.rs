@@ -10,6 +10,7 @@ mod flatten;
 mod lamps;
 mod meshes;
 mod solids;
+mod transforms;
 
 pub use solids::{Solid, SolidShape, around_ball};
 

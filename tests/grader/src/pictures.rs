@@ -5,11 +5,9 @@ use anyhow::{Context, Result, anyhow};
 use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
+use raykata::kit::{Frames, Kit, RenderJob, Rendering, TracedRay, View, mishap};
 use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TriangleMethod, load};
-use raykata::world::{Crafts, World};
 use sha2::{Digest, Sha256};
-use solutions::stage7_effects;
 use std::fmt;
 use std::path::Path;
 
@@ -58,8 +56,7 @@ impl Scenes {
             let mut scene = load::load(&file).map_err(|error| anyhow!("{error}"))?;
             (scene.film.width, scene.film.height) = SIZE;
             scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.min(4);
-            let primitives =
-                World::new(&scene, &stage7_effects::effects(&scene), &Crafts::default()).primitives.len();
+            let primitives = primitives_of(&scene)? as usize;
             if primitives <= MOST_PRIMITIVES {
                 scenes.push((primitives, name, scene));
             }
@@ -101,6 +98,15 @@ impl Scenes {
     }
 }
 
+/// How many primitives the reference makes of a scene.
+fn primitives_of(scene: &Scene) -> Result<u64> {
+    let mut scene = scene.clone();
+    (scene.film.width, scene.film.height) = (1, 1);
+    let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
+    let frame = mishap::catch(|| solutions::Kit.render(&job, &Unwatched))?;
+    Ok(frame.context("nobody cancels")?.primitives)
+}
+
 /// The scene with one setting changed at a time.
 fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
     let with = |name: &str, change: &dyn Fn(&mut Quality)| {
@@ -109,7 +115,6 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
         (format!("{TURNED}, {name}"), scene)
     };
     let mut turned = vec![
-        with("brute force", &|quality| quality.accelerator = Accelerator::BruteForce),
         with("leaves of 1", &|quality| quality.leaf_size = 1),
         with("depth 0", &|quality| quality.max_depth = 0),
         with("depth 1", &|quality| quality.max_depth = 1),
@@ -121,6 +126,13 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),
     ];
+    let others = Accelerator::ALL.into_iter().filter(|one| *one != Accelerator::Bvh);
+    turned.extend(others.map(|accelerator| {
+        with(&accelerator.name().replace('_', " "), &|quality| quality.accelerator = accelerator)
+    }));
+    turned.push(with("a grid of 9", &|quality| {
+        (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, 9);
+    }));
     turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
     let methods = [TriangleMethod::Cramer, TriangleMethod::Gram];
     turned.extend(

@@ -1,11 +1,12 @@
 //! Stage 8: scene graph and solids.
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `balls` (around points) · `graph` (searches) ·
-//! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard` (where their formulas lie) · `surfaces`
+//! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard`, `flat` (where their formulas lie) · `surfaces`
 //! (patches) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod balls;
 mod boxes;
+mod flat;
 mod graph;
 mod hard;
 mod quarters;
@@ -20,6 +21,7 @@ use balls::{
     ball_holds_all_points, ball_is_small, enter_ball_finds_what_is_met, enter_ball_passes_what_is_missed,
 };
 use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
+use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};
 use graph::{
     graph_asks_for_everything_without_savings, graph_asks_for_volumes_first, graph_finds_the_closest_hit,
     graph_looks_into_the_nearest_first, graph_skips_what_begins_beyond_the_hit,
@@ -27,7 +29,6 @@ use graph::{
 use hard::{
     cone_at_its_tip_and_rim, cone_is_not_its_mirror_image, cone_seen_along_its_side,
     cuboid_seen_along_its_faces, cylinder_at_its_rim, cylinder_seen_along_its_axis,
-    disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners,
 };
 use solids::{
     cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
