@@ -167,7 +167,7 @@ pub fn closest_hit_in_graph(
 // <solution>
 struct GraphSearch<'a> {
     graph: &'a Graph,
-    savings: Savings,
+    savings: Savings, // which questions not to ask
     /// With `skip`, its range ends at the closest hit.
     ray: Ray,
     closest: Option<PrimitiveHit>,
