@@ -2,14 +2,14 @@
 
 use crate::plan::written;
 use crate::{
-    stage2_triangles, stage3_bvh, stage8_scene_graph, stage9_bsp, stage9_coherence, stage9_grid,
-    stage9_kd_tree, stage9_octree,
+    stage2_triangles, stage3_bvh, stage8_scene_graph, stage9_bsp, stage9_cells, stage9_coherence,
+    stage9_grid, stage9_kd_tree, stage9_octree,
 };
 use glam::{UVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::graph::{Graph, Savings};
-use raykata::partition::{Bsp, Cells, Grid, KdHeuristics, KdTree, Octree};
+use raykata::partition::{Bsp, Cell, Cells, Grid, KdHeuristics, KdTree, Octree};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality};
 use raykata::shape::Sphere;
@@ -76,7 +76,7 @@ fn special(accelerator: Accelerator, ray: &Ray) -> (Search, bool) {
         let (graph, savings) = (Graph::default(), Savings::default());
         written(|| stage8_scene_graph::closest_hit_in_graph(&graph, probe, ray, savings))
     };
-    let octree = || written(|| stage9_octree::build(&[], 1, 1));
+    let octree = || cells_are_written(ray) && written(|| stage9_octree::build(&[], 1, 1));
     match accelerator {
         Accelerator::BruteForce | Accelerator::Bvh => (Search::Hierarchy, true),
         Accelerator::BoundingBoxes => (Search::GraphOfBoxes, graph(probe)),
@@ -98,7 +98,8 @@ fn special(accelerator: Accelerator, ray: &Ray) -> (Search, bool) {
         Accelerator::Grid => {
             let grid =
                 Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };
-            let grids = written(|| stage9_grid::resolution(&Aabb::EMPTY, 0, 1.0))
+            let grids = cells_are_written(ray)
+                && written(|| stage9_grid::resolution(&Aabb::EMPTY, 0, 1.0))
                 && written(|| stage9_grid::build(&[], UVec3::ONE))
                 && written(|| stage9_grid::closest_hit(&grid, probe, ray));
             (Search::Grid, grids)
@@ -113,16 +114,28 @@ fn special(accelerator: Accelerator, ray: &Ray) -> (Search, bool) {
         }
         Accelerator::KdTree => {
             let tree = KdTree::new(Aabb::EMPTY);
-            let trees = written(|| stage9_kd_tree::build(&[], &KdHeuristics::default(), 1))
+            let trees = cells_are_written(ray)
+                && written(|| stage9_kd_tree::build(&[], &KdHeuristics::default(), 1))
                 && written(|| stage9_kd_tree::closest_hit(&tree, probe, ray));
             (Search::KdTree, trees)
         }
         Accelerator::Bsp => {
-            let trees = written(|| stage9_bsp::build(&[], 1, 1))
+            let trees = cells_are_written(ray)
+                && written(|| stage9_bsp::build(&[], 1, 1))
                 && written(|| stage9_bsp::closest_hit(&Bsp::default(), probe, ray));
             (Search::Bsp, trees)
         }
     }
+}
+
+/// What all searches of cells share.
+fn cells_are_written(ray: &Ray) -> bool {
+    let cell = Cell::new(&Aabb::new(Vec3::ZERO, Vec3::ONE));
+    written(|| stage9_cells::widened(&[]))
+        && written(|| stage9_cells::part_above(0.0, 1.0, 0.0, (0.0, 1.0)))
+        && written(|| stage9_cells::span(ray, &cell))
+        && written(|| stage9_cells::look_into(&[], &mut Nothing, &mut ray.clone(), &mut None))
+        && written(|| stage9_cells::settled(&None, 0.0))
 }
 
 /// A world without anything in it.

@@ -20,6 +20,9 @@ const MOST_PRIMITIVES: usize = 4_000;
 /// A scene that uses most of what there is, in which every knob is turned once.
 const TURNED: &str = "effects";
 
+/// A scene of a few shapes, which every accelerator finds soon.
+const SEARCHED: &str = "stage5";
+
 /// The scenes, each with its name.
 pub struct Scenes(Vec<(String, Scene)>);
 
@@ -68,6 +71,8 @@ impl Scenes {
             scenes.into_iter().map(|(_, name, scene)| (name, scene)).collect();
         let turned = scenes.iter().find(|(name, _)| name == TURNED).map(|(_, scene)| scene.clone());
         scenes.extend(turned.iter().flat_map(turn_each_knob));
+        let searched = scenes.iter().find(|(name, _)| name == SEARCHED).map(|(_, scene)| scene.clone());
+        scenes.extend(searched.iter().flat_map(|scene| with_each_accelerator(SEARCHED, scene)));
         scenes.first().context("the kit has no scenes")?;
         Ok(Scenes(scenes))
     }
@@ -81,8 +86,10 @@ impl Scenes {
             "effects, Random",
             "effects, lamps from the middle",
             "effects, no lens, all smooth",
+            "stage8",
         ];
-        Scenes(self.0.iter().filter(|(name, _)| asked.contains(&name.as_str())).cloned().collect())
+        let is_asked = |name: &str| asked.contains(&name) || name.starts_with(&format!("{SEARCHED}, "));
+        Scenes(self.0.iter().filter(|(name, _)| is_asked(name)).cloned().collect())
     }
 
     /// What a kit shows of them all.
@@ -107,6 +114,17 @@ fn primitives_of(scene: &Scene) -> Result<u64> {
     Ok(frame.context("nobody cancels")?.primitives)
 }
 
+/// The scene with each other accelerator.
+fn with_each_accelerator(name: &str, scene: &Scene) -> Vec<(String, Scene)> {
+    let others = Accelerator::ALL.into_iter().filter(|one| *one != Accelerator::Bvh);
+    let by = |accelerator: Accelerator| {
+        let mut scene = scene.clone();
+        scene.quality.accelerator = accelerator;
+        (format!("{name}, {}", accelerator.name().replace('_', " ")), scene)
+    };
+    others.map(by).collect()
+}
+
 /// The scene with one setting changed at a time.
 fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
     let with = |name: &str, change: &dyn Fn(&mut Quality)| {
@@ -126,10 +144,7 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),
     ];
-    let others = Accelerator::ALL.into_iter().filter(|one| *one != Accelerator::Bvh);
-    turned.extend(others.map(|accelerator| {
-        with(&accelerator.name().replace('_', " "), &|quality| quality.accelerator = accelerator)
-    }));
+    turned.extend(with_each_accelerator(TURNED, scene));
     turned.push(with("a grid of 9", &|quality| {
         (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, 9);
     }));
