@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 /// More questions than this are not asked for one picture; a smaller one has to tell.
-const MOST_QUESTIONS: u64 = 200_000_000;
+const MOST_QUESTIONS: u64 = 60_000_000;
 
 /// Who is measured, and how often.
 pub struct Bench<'a> {
@@ -62,10 +62,15 @@ impl Bench<'_> {
         let mut references = BTreeMap::new();
         for row in rows {
             bar.set_message(row.name.clone());
-            measured.push(self.counted(scene, row, &mut references)?);
+            match self.affordable_slice(scene, row)? {
+                Some(slice) => measured.push(self.counted(scene, row, slice, &mut references)?),
+                None => bar.suspend(|| {
+                    println!("left out: {}, which would take minutes for a single pixel", row.name)
+                }),
+            }
             bar.inc(1);
         }
-        let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
+        let mut times = vec![(Vec::new(), Vec::new()); measured.len()];
         for _ in 0..self.rounds {
             for (one, (builds, renders)) in measured.iter().zip(&mut times) {
                 bar.set_message(one.name.clone());
@@ -86,8 +91,13 @@ impl Bench<'_> {
     }
 
     /// `references` are pictures by the hierarchy, by slice.
-    fn counted(&self, scene: &Scene, row: &Row, references: &mut BTreeMap<u32, Film>) -> Result<Measured> {
-        let slice = self.affordable_slice(scene, row)?;
+    fn counted(
+        &self,
+        scene: &Scene,
+        row: &Row,
+        slice: u32,
+        references: &mut BTreeMap<u32, Film>,
+    ) -> Result<Measured> {
         let frame = self.frame(scene, row, slice, true)?;
         let reference = match references.entry(slice) {
             Entry::Occupied(known) => known.into_mut(),
@@ -118,15 +128,25 @@ impl Bench<'_> {
         })
     }
 
-    /// By how much columns and rows are to be divided so that the picture is done soon: asked of a tiny one.
-    fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<u32> {
-        let film = scene.film;
-        let tiny = (film.width.max(film.height) / 24).max(1);
-        let Counts { node_visits, box_tests, primitive_tests, .. } =
-            self.frame(scene, row, tiny, true)?.counts;
-        let questions = (node_visits + box_tests + primitive_tests) * u64::from(tiny) * u64::from(tiny);
-        let slice = (questions as f64 / MOST_QUESTIONS as f64).sqrt().ceil() as u32;
-        Ok(slice.clamp(1, tiny))
+    /// By how much columns and rows are to be divided so that the picture is done soon: asked of a single pixel first,
+    /// and if that goes well of a tiny picture. `None` if not even that is affordable.
+    fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<Option<u32>> {
+        let longer = scene.film.width.max(scene.film.height);
+        for slice in [longer, (longer / 10).max(1)] {
+            let frame = self.frame(scene, row, slice, true)?;
+            let Counts { node_visits, box_tests, primitive_tests, .. } = frame.counts;
+            let questions = (node_visits + box_tests + primitive_tests) as f64;
+            if questions > MOST_QUESTIONS as f64 {
+                return Ok((slice < longer).then_some(slice));
+            }
+            if slice < longer || longer < 2 {
+                let pixels = f64::from(scene.film.width) * f64::from(scene.film.height);
+                let share = pixels / frame.film.pixels.len() as f64;
+                let least = (questions * share / MOST_QUESTIONS as f64).sqrt().ceil() as u32;
+                return Ok(Some(least.clamp(1, slice)));
+            }
+        }
+        Ok(Some(1))
     }
 
     fn frame(&self, scene: &Scene, row: &Row, slice: u32, count: bool) -> Result<Rendering> {
