@@ -3,7 +3,7 @@
 use crate::camera_rays::plane_at;
 use crate::placed::{bounds_of_shape, placed_bounds};
 use crate::plan::Plan;
-use crate::probe::{PacketProbe, SceneProbe};
+use crate::probe::{GraphProbe, Inside, PacketProbe, SceneProbe};
 use crate::search::Search;
 use crate::stage8_scene_graph::closest_hit_in_graph;
 use crate::stage9_coherence::{closest_hit_cached, closest_hit_packet};
@@ -71,7 +71,9 @@ impl Finder {
             _ => self.closest_plane(ray, tally),
         };
         let ray = shorter.as_ref().unwrap_or(ray);
-        let mut probe = SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally);
+        let mut inside = Inside::default();
+        let mut probe =
+            SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally, &mut inside);
         let hit = if self.search == Search::Cached {
             let search = |probe: &mut SceneProbe<'_, T>, ray: &Ray| self.closest(&self.structure, probe, ray);
             let hit = closest_hit_cached(*last, &mut probe, ray, search);
@@ -98,15 +100,12 @@ impl Finder {
         let rays: Vec<Ray> =
             rays.iter().zip(&shortened).map(|(ray, (shorter, _))| shorter.unwrap_or(*ray)).collect();
         let Some(first) = rays.first() else { return Vec::new() };
-        let probe = SceneProbe::new(self, &self.structure, &self.world.primitives, first, tally);
+        let mut inside = Inside::default();
+        let probe = SceneProbe::new(self, &self.structure, &self.world.primitives, first, tally, &mut inside);
         let mut probe = PacketProbe(probe);
         let hits = closest_hit_packet(bvh, &mut probe, &rays);
-        let told = hits.into_iter().zip(&rays).zip(shortened).map(|((hit, ray), (_, plane))| {
-            // What is inside an instance was written down for whichever ray came last.
-            probe.0.inside = None;
-            hit.map(|hit| probe.0.told(hit, ray)).or(plane)
-        });
-        told.collect()
+        let told = hits.into_iter().zip(&rays).zip(shortened);
+        told.map(|((hit, ray), (_, plane))| hit.map(|hit| probe.told(hit, ray)).or(plane)).collect()
     }
 
     /// The closest hit in the scene or in a part.
@@ -119,7 +118,9 @@ impl Finder {
     ) -> Option<PrimitiveHit> {
         match structure {
             Structure::Hierarchy(bvh) => stage3_bvh::closest_hit(bvh, probe, ray),
-            Structure::Graph { graph, .. } => closest_hit_in_graph(graph, probe, ray, self.savings),
+            Structure::Graph { graph, volumes } => {
+                closest_hit_in_graph(graph, &mut GraphProbe { probe, volumes }, ray, self.savings)
+            }
             Structure::Grid(grid) => stage9_grid::closest_hit(grid, probe, ray),
             Structure::Octree(tree) if self.search == Search::OctreeByCells => {
                 stage9_octree::closest_hit_by_cells(tree, probe, ray)
@@ -156,8 +157,9 @@ impl Finder {
             let plane = plane_at(plane, ray.time).0;
             stage1_shapes::plane(ray, plane.point, plane.normal).is_some()
         });
-        let mut probe = SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally);
-        probe.any_will_do = true;
+        let mut inside = Inside::any_will_do();
+        let mut probe =
+            SceneProbe::new(self, &self.structure, &self.world.primitives, ray, tally, &mut inside);
         in_plane || self.any(&self.structure, &mut probe, ray)
     }
 

@@ -129,18 +129,16 @@ impl Structure {
         let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
         Some(StructureSize { nodes, levels, references, bytes })
     }
+}
 
-    /// Where a ray enters the volume around a node of the graph.
-    #[inline(never)]
-    pub fn enter_volume(&self, node: u32, ray: &Ray, inverse_dir: Vec3) -> Option<f32> {
+impl Volumes {
+    /// Where a ray enters the volume around a node.
+    pub fn enter(&self, node: u32, ray: &Ray, inverse_dir: Vec3) -> Option<f32> {
         match self {
-            Structure::Graph { volumes: Volumes::Boxes(boxes), .. } => {
+            Volumes::Boxes(boxes) => {
                 stage3_bvh::slab(ray, inverse_dir, &boxes[node as usize]).map(|(enter, _)| enter)
             }
-            Structure::Graph { volumes: Volumes::Balls(balls), .. } => {
-                enter_ball(ray, balls[node as usize].as_ref()?)
-            }
-            _ => None,
+            Volumes::Balls(balls) => enter_ball(ray, balls[node as usize].as_ref()?),
         }
     }
 }

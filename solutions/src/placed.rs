@@ -32,6 +32,7 @@ fn meet(ray: &Ray, shape: &SolidShape) -> Option<SolidHit> {
 }
 
 /// The point at `t` of a solid, with its normal in the world.
+#[cold]
 pub fn point_on_solid(ray: &Ray, t: f32, solid: &Solid) -> Found {
     let placement = &solid.placement;
     let ray = ray_to_object(ray, &placement.to_object);

@@ -37,14 +37,13 @@ impl<T: Tally> Tally for Desk<T> {
 
 impl Tracer<'_> {
     /// The light that comes back along `ray` from the camera: follows the tree of rays and adds up what each finds,
-    /// times its weight. `first` is what `ray` hits, if that is known. `record` is told of each ray, and of the material
-    /// that it hit.
+    /// times its weight. `hit` is what `ray` hits. `record` is told of each ray, and of the material that it hit.
     #[inline(always)]
     pub fn radiance<T: Tally>(
         &self,
         ray: Ray,
         points: Points,
-        mut first: Option<Option<Hit>>,
+        mut hit: Option<Hit>,
         desk: &mut Desk<T>,
         record: &mut impl FnMut(TracedRay, Option<usize>),
     ) -> Vec3 {
@@ -55,10 +54,6 @@ impl Tracer<'_> {
         loop {
             let this = n_rays;
             n_rays += 1;
-            let hit = match first.take() {
-                Some(known) => known,
-                None => self.finder.closest_hit(&path.ray, &mut desk.tally, &mut desk.last),
-            };
             match hit {
                 None => {
                     record(path.told(None), None);
@@ -79,10 +74,18 @@ impl Tracer<'_> {
                 }
             }
             match desk.waiting.pop() {
-                Some(next) => path = next,
+                Some(next) => {
+                    path = next;
+                    hit = self.closest_hit(&path.ray, desk);
+                }
                 None => return color,
             }
         }
+    }
+
+    #[inline(always)]
+    pub fn closest_hit<T: Tally>(&self, ray: &Ray, desk: &mut Desk<T>) -> Option<Hit> {
+        self.finder.closest_hit(ray, &mut desk.tally, &mut desk.last)
     }
 
     /// What the surface is made of, with its image.

@@ -42,7 +42,8 @@ pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
     let ray = tracer.eye.ray(&sample);
     let mut rays = Vec::new();
     let mut desk = Desk::<Uncounted>::default();
-    tracer.radiance(ray, sample.points, None, &mut desk, &mut |mut ray, material| {
+    let hit = tracer.closest_hit(&ray, &mut desk);
+    tracer.radiance(ray, sample.points, hit, &mut desk, &mut |mut ray, material| {
         if let (Some(hit), Some(material)) = (&mut ray.hit, material) {
             hit.1 = job.scene.material_names.get(material).cloned().unwrap_or_default();
         }
@@ -109,11 +110,14 @@ impl<'a> Tracer<'a> {
         let radiance = |sample: &CameraSample, desk: &mut Desk<T>| {
             desk.note(Event::Primary);
             let before = (self.job.view == View::Work).then(|| desk.counts());
-            let first = packets.then(|| {
+            let ray = self.eye.ray(sample);
+            let hit = if packets {
                 let Desk { packets, tally, .. } = desk;
                 packets.first_hit(sample, &settings, &self.eye, &self.finder, tally)
-            });
-            let mut color = self.radiance(self.eye.ray(sample), sample.points, first, desk, &mut |_, _| {});
+            } else {
+                self.closest_hit(&ray, desk)
+            };
+            let mut color = self.radiance(ray, sample.points, hit, desk, &mut |_, _| {});
             if let Some(before) = before {
                 color = work(&before, &desk.counts());
             }
