@@ -8,6 +8,7 @@ pub mod explain;
 pub mod gaps;
 pub mod gauntlet;
 pub mod generate;
+pub mod grade;
 pub mod kits;
 pub mod knobs;
 pub mod mutants;

@@ -1,0 +1,3 @@
+//! `raykata grade`: a verdict on each submission of a class, reached outside the students' processes.
+
+pub mod result;
