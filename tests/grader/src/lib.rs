@@ -9,6 +9,7 @@ pub mod gaps;
 pub mod gauntlet;
 pub mod generate;
 pub mod grade;
+pub mod jail;
 pub mod kits;
 pub mod knobs;
 pub mod mutants;

@@ -83,6 +83,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    grader::jail::launch_if_asked();
     let cli = Cli::parse();
     match run(cli) {
         Ok(true) => ExitCode::SUCCESS,
