@@ -24,7 +24,7 @@ mod run;
 
 pub use ended::{Ended, How};
 pub use probes::{Level, got_through, self_test};
-pub use run::{run, spawn};
+pub use run::{run, spawn_guarded};
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

@@ -52,9 +52,16 @@ pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -
     })
 }
 
-/// Starts a command. From a thread that lasts as long as the program: a jailed process ends with the thread that has
+/// Starts a jailed command whose end is its owner's business.
+pub fn spawn_guarded(mut command: Command) -> io::Result<Child> {
+    guard_this_process()?;
+    command.process_group(0);
+    spawn(command)
+}
+
+/// From a thread that lasts as long as the program: a jailed process ends with the thread that has
 /// started it.
-pub fn spawn(command: Command) -> io::Result<Child> {
+fn spawn(command: Command) -> io::Result<Child> {
     type Order = (Command, Sender<io::Result<Child>>);
     static SPAWNER: OnceLock<io::Result<Mutex<Sender<Order>>>> = OnceLock::new();
     let spawner = SPAWNER.get_or_init(|| {
@@ -77,7 +84,7 @@ pub fn spawn(command: Command) -> io::Result<Child> {
 }
 
 /// Orphans of what we start come to us, and nobody reads our memory.
-pub(crate) fn guard_this_process() -> io::Result<()> {
+fn guard_this_process() -> io::Result<()> {
     static GUARDED: OnceLock<nix::Result<()>> = OnceLock::new();
     let guarded =
         GUARDED.get_or_init(|| prctl::set_child_subreaper(true).and_then(|()| prctl::set_dumpable(false)));
