@@ -82,13 +82,13 @@ impl Worker {
                 *slot = Some(process);
                 Err(shortened(mishap))
             }
+            // That is for frames that are no longer wanted: from here it could be out of step.
+            Ok(Some(Reply::Answer(answer))) if matches!(*answer, Answer::Render(None)) => {
+                Err(Mishap::Nonsense { what: "no picture".into() })
+            }
             Ok(Some(Reply::Answer(answer))) => {
                 *slot = Some(process);
-                match *answer {
-                    // That is for frames that are no longer wanted.
-                    Answer::Render(None) => Err(Mishap::Nonsense { what: "no picture".into() }),
-                    answer => Ok(answer),
-                }
+                Ok(*answer)
             }
             Ok(_) => Ok(Answer::Render(None)),
             Err(error) => {
