@@ -205,3 +205,22 @@ fn a_recursion_as_deep_as_a_worker_may_go_returns() {
     let command = Jail::new(Purpose::Worker).command(&scratch.path().join("deep"));
     assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 100000\n");
 }
+
+/// With native code, as a hole in the compiler would allow it.
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn code_beyond_the_rules_of_rust_gets_no_further() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let source = include_str!("hostile/native.rs");
+    let ended = compile(Purpose::Linker, scratch.path(), source, &["-O", "-o", "native"]);
+    assert_eq!(said(&ended), "Exited(0): ");
+    for purpose in [Purpose::Worker, Purpose::Reader] {
+        let jail = Jail::new(purpose);
+        let command = jail.command(&scratch.path().join("native"));
+        assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): tried\n");
+        let mut command = jail.command(&scratch.path().join("native"));
+        command.arg("other-architecture");
+        // SIGSYS.
+        assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Signalled(31): ");
+    }
+}
