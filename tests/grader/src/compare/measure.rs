@@ -128,11 +128,25 @@ impl Bench<'_> {
         })
     }
 
-    /// By how much columns and rows are to be divided so that the picture is done soon: asked of a single pixel first,
-    /// and if that goes well of a tiny picture. `None` if not even that is affordable.
+    /// By how much columns and rows are to be divided so that the picture is done soon. Asked of a tiny picture, and
+    /// before that of a single pixel where even the tiny one may take minutes; `None` if the pixel does.
     fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<Option<u32>> {
         let longer = scene.film.width.max(scene.film.height);
-        for slice in [longer, (longer / 10).max(1)] {
+        let tiny = (longer / 10).max(1);
+        let tried = match row.quality.accelerator {
+            // Some ten primitives a ray on every scene of the kit: the whole picture is worth its wait.
+            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
+            // A ray may ask all there are, or all in a node or a cell.
+            Accelerator::BruteForce
+            | Accelerator::BoundingBoxes
+            | Accelerator::BoundingSpheres
+            | Accelerator::Grid => &[longer, tiny][..],
+            // Each has a scene on which it does badly; at worst a ray asks some ten thousand (a BSP tree in the forest).
+            Accelerator::Octree | Accelerator::OctreeByCells | Accelerator::KdTree | Accelerator::Bsp => {
+                &[tiny][..]
+            }
+        };
+        for &slice in tried {
             let frame = self.frame(scene, row, slice, true)?;
             let Counts { node_visits, box_tests, primitive_tests, .. } = frame.counts;
             let questions = (node_visits + box_tests + primitive_tests) as f64;
