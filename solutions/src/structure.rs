@@ -97,11 +97,12 @@ impl Structure {
         fn bytes<T>(list: &[T]) -> usize {
             std::mem::size_of_val(list)
         }
+        fn tree<Node>(nodes: &[Node], levels: usize, items: &[u32]) -> (usize, usize, usize, usize) {
+            (nodes.len(), levels, items.len(), bytes(nodes) + bytes(items))
+        }
         let (nodes, levels, references, bytes) = match self {
             Structure::None => return None,
-            Structure::Hierarchy(bvh) => {
-                (bvh.nodes.len(), bvh.depth(), bvh.order.len(), bytes(&bvh.nodes) + bytes(&bvh.order))
-            }
+            Structure::Hierarchy(bvh) => tree(&bvh.nodes, bvh.depth(), &bvh.order),
             Structure::Graph { graph, volumes } => {
                 let lists: usize =
                     graph.nodes.iter().map(|n| bytes(&n.children) + bytes(&n.primitives)).sum();
@@ -113,17 +114,11 @@ impl Structure {
                 (graph.nodes.len(), graph.depth(), references, bytes(&graph.nodes) + lists + volumes)
             }
             Structure::Grid(grid) => {
-                (grid.n_nodes(), grid.depth(), grid.n_references(), bytes(&grid.starts) + bytes(&grid.items))
+                (grid.n_nodes(), grid.depth(), grid.items.len(), bytes(&grid.starts) + bytes(&grid.items))
             }
-            Structure::Octree(tree) => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
-            Structure::KdTree(tree) => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
-            Structure::Bsp { tree, .. } => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
+            Structure::Octree(octree) => tree(&octree.nodes, octree.depth(), &octree.items),
+            Structure::KdTree(kd_tree) => tree(&kd_tree.nodes, kd_tree.depth(), &kd_tree.items),
+            Structure::Bsp { tree: bsp, .. } => tree(&bsp.nodes, bsp.depth(), &bsp.items),
         };
         let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
         Some(StructureSize { nodes, levels, references, bytes })

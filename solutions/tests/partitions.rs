@@ -188,11 +188,11 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
         a_ray(3),
         a_ray(4),
         a_ray(5),
-        grid.n_references(),
-        octree.n_references(),
-        trees[0].n_references(),
-        trees[1].n_references(),
-        bsp.n_references(),
+        grid.items.len(),
+        octree.items.len(),
+        trees[0].items.len(),
+        trees[1].items.len(),
+        bsp.items.len(),
     );
 }
 

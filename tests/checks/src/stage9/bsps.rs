@@ -139,10 +139,10 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         };
         judge_tree(&query, &yours)?;
         let most = 1024 + 64 * n;
-        if yours.n_references() > most {
+        if yours.items.len() > most {
             let told = |n: usize| format!("{n} references");
             let broken =
-                Broken::told(input, told(yours.n_references()), format!("at most {}", told(most)), "counted");
+                Broken::told(input, told(yours.items.len()), format!("at most {}", told(most)), "counted");
             return Err(broken.looks_like(Some("all are on both sides of each plane: make a leaf of them")));
         }
     }
@@ -162,7 +162,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     judge_tree(&query, &yours)?;
     let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
     // A cut along a sheet lists it on both sides, so there is one reference more for each cut.
-    let (references, depth) = (yours.n_references(), yours.depth());
+    let (references, depth) = (yours.items.len(), yours.depth());
     if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
         return Ok(());
     }

@@ -94,12 +94,12 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
             };
             judge_tree(&query, &yours)?;
             let most = 1 << 17;
-            if yours.n_references() > most {
+            if yours.items.len() > most {
                 let told = |n: usize| format!("{n} references");
                 let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
                 let broken = Broken::told(
                     input,
-                    told(yours.n_references()),
+                    told(yours.items.len()),
                     format!("at most {}", told(most)),
                     "counted",
                 );

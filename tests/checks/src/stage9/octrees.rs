@@ -73,7 +73,7 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
         OctreeNode::Inner { .. } => 0,
     });
     let most = most.max().unwrap_or(0);
-    let (depth, n) = (yours.depth(), yours.n_nodes());
+    let (depth, n) = (yours.depth(), yours.nodes.len());
     let needless = (0..n as u32).find(|&node| is_inner(&yours, node) && below(&yours, node).len() <= 2);
     if most <= 2 && depth > 3 && needless.is_none() {
         return Ok(());
@@ -128,11 +128,11 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
         judge_octree(&query, &yours)?;
         // Eight times as many at each of five levels are not worth it, whatever the boxes.
         let most = 4096 + 64 * n;
-        if yours.n_references() > most {
+        if yours.items.len() > most {
             let told = |n: usize| format!("{n} references");
             let broken = Broken::told(
                 format!("build of {name}, leaf_size 1, max_depth 12"),
-                told(yours.n_references()),
+                told(yours.items.len()),
                 format!("at most {}", told(most)),
                 "counted",
             );
