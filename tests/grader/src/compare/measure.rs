@@ -1,9 +1,9 @@
 //! Measuring: counts once, times by turns.
 
 use super::rows::Row;
+use crate::report::{bar_of_steps, quartiles};
 use anyhow::{Context, Result};
 use glam::Vec3;
-use indicatif::{ProgressBar, ProgressStyle};
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
@@ -54,10 +54,7 @@ pub struct Measured {
 impl Bench<'_> {
     /// Makes every picture once with counts, then all of them by turns without.
     pub fn measure(&self, scene: &Scene, rows: &[Row]) -> Result<Vec<Measured>> {
-        let bar = ProgressBar::new(rows.len() as u64 * u64::from(1 + self.rounds));
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
-            bar.set_style(style);
-        }
+        let bar = bar_of_steps(rows.len() * (1 + self.rounds as usize));
         let mut measured: Vec<Measured> = Vec::new();
         let mut references = BTreeMap::new();
         for row in rows {
@@ -81,9 +78,9 @@ impl Bench<'_> {
             }
         }
         bar.finish_and_clear();
-        for (one, (mut builds, mut renders)) in measured.iter_mut().zip(times) {
-            one.build_seconds = quartiles(&mut builds)[1];
-            let [low, median, high] = quartiles(&mut renders);
+        for (one, (builds, renders)) in measured.iter_mut().zip(times) {
+            one.build_seconds = quartiles(builds)[1];
+            let [low, median, high] = quartiles(renders);
             one.nanoseconds = 1e9 * median / one.rays.max(1) as f64;
             one.spread = (high - low) / (2.0 * median);
         }
@@ -171,11 +168,4 @@ impl Bench<'_> {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count };
         mishap::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
     }
-}
-
-/// The lower quartile, the median and the upper quartile.
-fn quartiles(times: &mut [f64]) -> [f64; 3] {
-    times.sort_by(f64::total_cmp);
-    let last = times.len().saturating_sub(1);
-    [last / 4, last / 2, last - last / 4].map(|index| times.get(index).copied().unwrap_or_default())
 }
