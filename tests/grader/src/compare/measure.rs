@@ -131,7 +131,7 @@ impl Bench<'_> {
         let longer = scene.film.width.max(scene.film.height);
         let tiny = (longer / 10).max(1);
         let tried = match row.quality.accelerator {
-            // Some ten primitives a ray on every scene of the kit: the whole picture is worth its wait.
+            // Each primitive is in one leaf, and a ray asks some tens even in the forest: whole pictures are soon done.
             Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
             // A ray may ask all there are, or all in a node or a cell.
             Accelerator::BruteForce
