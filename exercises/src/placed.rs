@@ -4,7 +4,7 @@ use crate::stage8_scene_graph::{bounds_to_world, normal_to_world, ray_to_object}
 use crate::stage8_solids::{cone, cuboid, cylinder, disk, polygon};
 use crate::surfaces::{Found, point_on_sphere};
 use crate::{stage1_shapes, stage3_bvh};
-use glam::{Affine3A, DAffine3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::graph::Placement;
 use raykata::kit::SolidHit;
@@ -52,7 +52,7 @@ const HALF_STEP: f32 = f32::EPSILON / 2.0;
 
 /// What was found in the space of an object, in the world.
 pub fn to_world(found: Found, placement: &Placement) -> Found {
-    let (up, down) = (in_double(&placement.to_world), in_double(&placement.to_object));
+    let (up, down) = (placement.to_world.as_daffine3(), placement.to_object.as_daffine3());
     let point = up.transform_point3(found.point.as_dvec3()).as_vec3();
     // How far from the found point a ray would start that is carried back: what both transforms and the rounding of the
     // point add up to, measured and not estimated.
@@ -72,10 +72,6 @@ pub fn to_world(found: Found, placement: &Placement) -> Found {
         normal: normal_to_world(found.normal, &placement.to_object),
         smooth: found.smooth.map(|normal| normal_to_world(normal, &placement.to_object)),
     }
-}
-
-fn in_double(transform: &Affine3A) -> DAffine3 {
-    DAffine3::from_cols_array(&transform.to_cols_array().map(f64::from))
 }
 
 /// The box in the world around what has the box `bounds` in its own space.

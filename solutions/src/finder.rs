@@ -35,7 +35,8 @@ pub struct Finder {
 }
 
 impl Finder {
-    pub fn new(world: World, plan: &Plan, quality: &Quality) -> Finder {
+    pub fn new(mut world: World, plan: &Plan, quality: &Quality) -> Finder {
+        let graph = world.graph.take();
         // Parts first: an instance is as large as its part. Without a structure nobody asks how large anything is.
         let bounded = !matches!(plan.search, Search::BruteForce | Search::Painter);
         let bounds = |primitives: &[Primitive], parts: &[Aabb]| -> Vec<Aabb> {
@@ -47,10 +48,10 @@ impl Finder {
             |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| stage3_bvh::union(&all, one));
         let around: Vec<Aabb> = of_parts.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
-        let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<&Graph>| {
+        let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
             Structure::new(bounds, graph, |index| hull(&primitives[index]), plan.search, quality)
         };
-        let structure = over(&of_scene, &world.primitives, Some(&world.graph));
+        let structure = over(&of_scene, &world.primitives, graph);
         let parts = world.parts.iter().zip(&of_parts);
         let parts = parts.map(|(part, bounds)| over(bounds, &part.primitives, None)).collect();
         let (search, savings, method) = (plan.search, quality.savings, quality.triangle_method);

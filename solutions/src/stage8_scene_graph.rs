@@ -13,16 +13,6 @@ use raykata::graph::{Graph, Placement, Savings};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-// <solution>
-fn in_double(transform: &Affine3A) -> DAffine3 {
-    DAffine3::from_cols_array(&transform.to_cols_array().map(f64::from))
-}
-
-fn in_single(transform: &DAffine3) -> Affine3A {
-    Affine3A::from_cols_array(&transform.to_cols_array().map(|entry| entry as f32))
-}
-// </solution>
-
 /// The same ray in the space of an object: a hit has the same `t` in both.
 ///
 /// Where the formula lies: the slide sends the direction through the inverse *transpose*, which is for normals only (and
@@ -33,7 +23,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     // <solution>
     Ray {
         // Far from the origin large terms cancel here: in double nothing of the small rest is lost.
-        origin: in_double(to_object).transform_point3(ray.origin.as_dvec3()).as_vec3(),
+        origin: to_object.as_daffine3().transform_point3(ray.origin.as_dvec3()).as_vec3(),
         dir: to_object.transform_vector3(ray.dir),
         ..*ray
     }
@@ -45,7 +35,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
 /// `to_object`, the inverse transpose of the way to the world. Outside stays outside, in a mirror, too.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
     // <solution>
-    let rows = in_double(to_object).matrix3.transpose();
+    let rows = to_object.as_daffine3().matrix3.transpose();
     (rows * normal.as_dvec3()).normalize_or_zero().as_vec3()
     // <stub> todo!("multiply by the transpose of to_object, then make it a unit vector")
     // </solution>
@@ -57,7 +47,7 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     // <solution>
     let (mut to_world, mut to_object) = (DAffine3::IDENTITY, DAffine3::IDENTITY);
     for to_parent in path {
-        let to_parent = in_double(to_parent);
+        let to_parent = to_parent.as_daffine3();
         let from_parent = to_parent.inverse();
         if to_parent.matrix3.determinant() == 0.0 || !from_parent.is_finite() {
             return None;
@@ -65,7 +55,7 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
         to_world *= to_parent;
         to_object = from_parent * to_object;
     }
-    Some(Placement { to_world: in_single(&to_world), to_object: in_single(&to_object) })
+    Some(Placement { to_world: to_world.as_affine3a(), to_object: to_object.as_affine3a() })
     // <stub> todo!("multiply the transforms from the root down, and the inverses the other way round")
     // </solution>
 }

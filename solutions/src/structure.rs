@@ -47,20 +47,19 @@ const DENSITY: f32 = 4.0;
 const DEEPEST_OCTANT: usize = 20;
 
 impl Structure {
-    /// Over primitives in these boxes. A part is no graph, and gets a hierarchy in its place. `hull` gives the corners of
+    /// Over primitives in these boxes. A part has no graph, and gets a hierarchy in its place. `hull` gives the corners of
     /// a primitive that is flat.
     pub fn new(
         bounds: &[Aabb],
-        graph: Option<&Graph>,
+        graph: Option<Graph>,
         hull: impl Fn(usize) -> Option<Vec<Vec3>>,
         search: Search,
         quality: &Quality,
     ) -> Structure {
         let leaf_size = quality.leaf_size as usize;
-        match search {
-            Search::BruteForce | Search::Painter => Structure::None,
-            Search::GraphOfBoxes | Search::GraphOfBalls if graph.is_some() => {
-                let graph = graph.cloned().unwrap_or_default();
+        match (search, graph) {
+            (Search::BruteForce | Search::Painter, _) => Structure::None,
+            (Search::GraphOfBoxes | Search::GraphOfBalls, Some(graph)) => {
                 let boxes = boxes(&graph, bounds);
                 let volumes = match search {
                     Search::GraphOfBoxes => Volumes::Boxes(boxes),
@@ -68,14 +67,14 @@ impl Structure {
                 };
                 Structure::Graph { graph, volumes }
             }
-            Search::Grid => Structure::Grid(stage9_grid::build(bounds, resolution(bounds, quality))),
-            Search::Octree | Search::OctreeByCells => {
+            (Search::Grid, _) => Structure::Grid(stage9_grid::build(bounds, resolution(bounds, quality))),
+            (Search::Octree | Search::OctreeByCells, _) => {
                 Structure::Octree(stage9_octree::build(bounds, leaf_size, DEEPEST_OCTANT))
             }
-            Search::KdTree => {
+            (Search::KdTree, _) => {
                 Structure::KdTree(stage9_kd_tree::build(bounds, &quality.kd_heuristics, leaf_size))
             }
-            Search::Bsp => {
+            (Search::Bsp, _) => {
                 let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
                 let hulls: Vec<Vec<Vec3>> = bounds.iter().enumerate().map(hull).collect();
                 let depth = KdTree::most_depth(hulls.len());
@@ -98,11 +97,12 @@ impl Structure {
         fn bytes<T>(list: &[T]) -> usize {
             std::mem::size_of_val(list)
         }
+        fn tree<Node>(nodes: &[Node], levels: usize, items: &[u32]) -> (usize, usize, usize, usize) {
+            (nodes.len(), levels, items.len(), bytes(nodes) + bytes(items))
+        }
         let (nodes, levels, references, bytes) = match self {
             Structure::None => return None,
-            Structure::Hierarchy(bvh) => {
-                (bvh.nodes.len(), bvh.depth(), bvh.order.len(), bytes(&bvh.nodes) + bytes(&bvh.order))
-            }
+            Structure::Hierarchy(bvh) => tree(&bvh.nodes, bvh.depth(), &bvh.order),
             Structure::Graph { graph, volumes } => {
                 let lists: usize =
                     graph.nodes.iter().map(|n| bytes(&n.children) + bytes(&n.primitives)).sum();
@@ -114,17 +114,11 @@ impl Structure {
                 (graph.nodes.len(), graph.depth(), references, bytes(&graph.nodes) + lists + volumes)
             }
             Structure::Grid(grid) => {
-                (grid.n_nodes(), grid.depth(), grid.n_references(), bytes(&grid.starts) + bytes(&grid.items))
+                (grid.n_nodes(), grid.depth(), grid.items.len(), bytes(&grid.starts) + bytes(&grid.items))
             }
-            Structure::Octree(tree) => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
-            Structure::KdTree(tree) => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
-            Structure::Bsp { tree, .. } => {
-                (tree.n_nodes(), tree.depth(), tree.n_references(), bytes(&tree.nodes) + bytes(&tree.items))
-            }
+            Structure::Octree(octree) => tree(&octree.nodes, octree.depth(), &octree.items),
+            Structure::KdTree(kd_tree) => tree(&kd_tree.nodes, kd_tree.depth(), &kd_tree.items),
+            Structure::Bsp { tree: bsp, .. } => tree(&bsp.nodes, bsp.depth(), &bsp.items),
         };
         let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
         Some(StructureSize { nodes, levels, references, bytes })

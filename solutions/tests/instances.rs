@@ -66,7 +66,7 @@ fn any_number_of_threads_asks_the_same_questions() {
     }
 }
 
-/// The share of pixels that differ by more than a hundredth: silhouettes, to a rounding of the ray.
+/// The share of pixels that differ by more than a hundredth, which no rounding of a shade does: another surface is seen.
 fn difference(p: &Film, q: &Film) -> f64 {
     let far = |(p, q): &(&Vec3, &Vec3)| (**p - **q).abs().max_element() > 0.01;
     p.pixels.iter().zip(&q.pixels).filter(far).count() as f64 / p.pixels.len() as f64
@@ -82,9 +82,12 @@ fn instances_look_like_copies_and_take_less() {
     assert_eq!(instances.primitives, 226); // 225 vases and the floor
     assert_eq!(copies.primitives, 225 * 1568 + 1);
     let off = difference(&instances.film, &copies.film);
-    assert!(off < 0.002, "{off}");
+    // A ray that is carried is rounded and lands on the other side of an edge: in one of 9,000 pixels. A vase out of its
+    // place would change dozens.
+    assert!(off < 0.001, "{off}");
     let bytes = |frame: &Rendering| frame.bytes_of_parts + frame.structure.map_or(0, |size| size.bytes);
-    assert!(50 * bytes(&instances) < bytes(&copies), "{} {}", bytes(&instances), bytes(&copies));
+    // Of 225 copies one is left, and the places: 196 times less.
+    assert!(150 * bytes(&instances) < bytes(&copies), "{} {}", bytes(&instances), bytes(&copies));
 }
 
 #[test]
@@ -136,7 +139,8 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
                     lit += 1;
                 }
             }
-            assert!(lit > 50, "{shape} of size {size}: {lit} pixels");
+            // The polygon has the fewest, 210 at every size; with none this would say nothing.
+            assert!(lit > 200, "{shape} of size {size}: {lit} pixels");
         }
     }
 }
@@ -161,7 +165,9 @@ fn a_mirrored_glass_vase_is_glass_inside() {
             scene.quality.copies = copies;
             render(&scene)
         });
-        assert!(difference(&plain.film, &mirrored.film) < 0.01, "copies {copies}");
-        assert!(plain.counts.transmission > 500, "{}", plain.counts.transmission);
+        // A change of sign is exact, so no silhouette moves.
+        assert_eq!(difference(&plain.film, &mirrored.film), 0.0, "copies {copies}");
+        // Two ways through the glass for each pixel of the cube, 1,124: without them both pictures would be empty alike.
+        assert!(plain.counts.transmission > 1000, "{}", plain.counts.transmission);
     }
 }

@@ -201,15 +201,12 @@ impl Probe for PacketProbe<'_> {
     #[track_caller]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.answer.counts.note(Event::BoxTest);
-        let (near, far) = self.table(ray).boxes[node as usize];
-        let enter = near.max(ray.t_min);
-        (enter <= far && enter < ray.t_max).then_some(enter)
+        self.table(ray).enter(node, ray)
     }
 
     #[track_caller]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.answer.counts.note(Event::PrimitiveTest);
-        let t = self.table(ray).primitives[primitive as usize];
-        ray.contains(t).then_some(t)
+        self.table(ray).hit(primitive, ray)
     }
 }

@@ -55,6 +55,21 @@ pub struct Table {
     pub primitives: Vec<f32>,
 }
 
+impl Table {
+    /// Where `ray` enters the box of `node`, if it does within its range.
+    pub fn enter(&self, node: u32, ray: &Ray) -> Option<f32> {
+        let (near, far) = self.boxes[node as usize];
+        let enter = near.max(ray.t_min);
+        (enter <= far && enter < ray.t_max).then_some(enter)
+    }
+
+    /// Where `ray` hits `primitive`, if it does within its range.
+    pub fn hit(&self, primitive: u32, ray: &Ray) -> Option<f32> {
+        let t = self.primitives[primitive as usize];
+        ray.contains(t).then_some(t)
+    }
+}
+
 /// Find a hit in `bvh`, given the answers to every question that the search may ask.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SearchQuery {
@@ -117,20 +132,15 @@ impl Probe for TableProbe<'_> {
 
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.counts.note(Event::BoxTest);
-        let (near, far) = self.table.boxes[node as usize];
-        let enter = near.max(ray.t_min);
-        (enter <= far && enter < ray.t_max).then_some(enter)
+        self.table.enter(node, ray)
     }
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.counts.note(Event::PrimitiveTest);
         self.asked.push(primitive);
         self.tests_after_hit += u64::from(self.last_hit.is_some());
-        let t = self.table.primitives[primitive as usize];
-        let hit = ray.contains(t).then_some(t);
-        if hit.is_some() {
-            self.last_hit = Some(PrimitiveHit { t, primitive });
-        }
-        hit
+        let t = self.table.hit(primitive, ray)?;
+        self.last_hit = Some(PrimitiveHit { t, primitive });
+        Some(t)
     }
 }

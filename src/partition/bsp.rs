@@ -1,6 +1,6 @@
 //! The BSP tree as data: planes in any direction.
 
-use super::check_depth;
+use super::{check_depth, walk};
 use crate::aabb::Aabb;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -107,21 +107,9 @@ impl Bsp {
         &self.items[first as usize..(first + count) as usize]
     }
 
-    /// How many nodes there are.
-    pub fn n_nodes(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// How many primitives stand in leaves, each counted once a leaf.
-    pub fn n_references(&self) -> usize {
-        self.items.len()
-    }
-
     /// Nodes on the longest way down, the root counted; 0 when there is nothing.
     pub fn depth(&self) -> usize {
-        let mut deepest = 0;
-        self.walk(|_, _, depth| deepest = deepest.max(depth + 1));
-        deepest
+        self.walk(|_, _, _| {})
     }
 
     /// The planes above `depth`, the root being at depth 0, each as the polygon that the planes above it and the box
@@ -148,18 +136,16 @@ impl Bsp {
     }
 
     /// Tells `each` about all nodes: number, the planes above with the side on which the node lies (1 in front, -1
-    /// behind), and depth.
-    pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) {
-        let mut waiting: Vec<(u32, Vec<(CutPlane, f64)>)> = Vec::new();
-        if !self.nodes.is_empty() {
-            waiting.push((0, Vec::new()));
-        }
-        while let Some((node, above)) = waiting.pop() {
-            each(node, &above, above.len());
-            if let BspNode::Inner { plane, back, front } = self.nodes[node as usize] {
+    /// behind), and depth. How many levels it came to.
+    pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
+        let root = (!self.nodes.is_empty()).then(Vec::new);
+        let below = |node: u32, above: &Vec<(CutPlane, f64)>| match self.nodes[node as usize] {
+            BspNode::Inner { plane, back, front } => {
                 let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect();
-                waiting.extend([(front, with(1.0)), (back, with(-1.0))]);
+                vec![(back, with(-1.0)), (front, with(1.0))]
             }
-        }
+            BspNode::Leaf { .. } => Vec::new(),
+        };
+        walk(root, usize::MAX, below, |node, above, depth| each(node, above, depth))
     }
 }

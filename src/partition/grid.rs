@@ -52,11 +52,6 @@ impl Grid {
         self.starts.len().saturating_sub(1)
     }
 
-    /// How many primitives stand in cells, each counted once a cell.
-    pub fn n_references(&self) -> usize {
-        self.items.len()
-    }
-
     /// A grid has one level.
     pub fn depth(&self) -> usize {
         usize::from(self.n_nodes() > 0)

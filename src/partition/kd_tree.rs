@@ -1,6 +1,6 @@
 //! The kd-tree as data.
 
-use super::{Cell, check_depth};
+use super::{Cell, check_depth, walk};
 use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 
@@ -119,48 +119,31 @@ impl KdTree {
         &self.items[first as usize..(first + count) as usize]
     }
 
-    /// How many nodes there are.
-    pub fn n_nodes(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// How many primitives stand in leaves, each counted once a leaf.
-    pub fn n_references(&self) -> usize {
-        self.items.len()
-    }
-
     /// Nodes on the longest way down, the root counted; 0 when there is nothing.
     pub fn depth(&self) -> usize {
-        let mut deepest = 0;
-        self.walk(usize::MAX, |_, _, depth| deepest = deepest.max(depth + 1));
-        deepest
+        self.walk(usize::MAX, |_, _, _| {})
     }
 
     /// The cells at `depth`, and the leaves above it, as boxes to be drawn. The root is at depth 0.
     pub fn cells(&self, depth: usize) -> Vec<Aabb> {
+        let is_leaf = |node: u32| matches!(self.nodes[node as usize], KdNode::Leaf { .. });
         let mut cells = Vec::new();
         self.walk(depth, |node, cell, at| {
-            if at == depth || matches!(self.nodes[node as usize], KdNode::Leaf { .. }) {
-                cells.push(cell.to_box());
-            }
+            cells.extend((at == depth || is_leaf(node)).then(|| cell.to_box()));
         });
         cells
     }
 
-    /// Tells `each` about all nodes down to `most`: number, cell and depth.
-    pub fn walk(&self, most: usize, mut each: impl FnMut(u32, Cell, usize)) {
-        let mut waiting: Vec<(u32, Cell, usize)> = Vec::new();
-        if !self.nodes.is_empty() {
-            waiting.push((0, Cell::new(&self.bounds), 0));
-        }
-        while let Some((node, cell, depth)) = waiting.pop() {
-            each(node, cell, depth);
-            if let KdNode::Inner { axis, at, left, right } = self.nodes[node as usize]
-                && depth < most
-            {
+    /// Tells `each` about all nodes down to `most`: number, cell and depth. How many levels it came to.
+    pub fn walk(&self, most: usize, mut each: impl FnMut(u32, Cell, usize)) -> usize {
+        let root = (!self.nodes.is_empty()).then(|| Cell::new(&self.bounds));
+        let below = |node: u32, cell: &Cell| match self.nodes[node as usize] {
+            KdNode::Inner { axis, at, left, right } => {
                 let [below, above] = cell.cut(usize::from(axis), f64::from(at));
-                waiting.extend([(right, above, depth + 1), (left, below, depth + 1)]);
+                vec![(left, below), (right, above)]
             }
-        }
+            KdNode::Leaf { .. } => Vec::new(),
+        };
+        walk(root, most, below, |node, cell, depth| each(node, *cell, depth))
     }
 }

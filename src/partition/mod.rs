@@ -97,3 +97,25 @@ fn check_depth(depth: usize, most: usize) {
         "a node at depth {depth} of a tree that may be {most} deep: does every division divide?"
     );
 }
+
+/// Goes down a tree to depth `most`, tells `each` about every node, its place and its depth, and returns how many levels
+/// it came to. `root` is the place of node 0, if there is one; `below` gives the children of a node with their places.
+fn walk<P>(
+    root: Option<P>,
+    most: usize,
+    below: impl Fn(u32, &P) -> Vec<(u32, P)>,
+    mut each: impl FnMut(u32, &P, usize),
+) -> usize {
+    let mut waiting: Vec<(u32, P, usize)> = root.into_iter().map(|place| (0, place, 0)).collect();
+    let mut levels = 0;
+    while let Some((node, place, depth)) = waiting.pop() {
+        each(node, &place, depth);
+        levels = levels.max(depth + 1);
+        if depth < most {
+            // The last one that waits is the first to be gone to.
+            let children = below(node, &place).into_iter().rev();
+            waiting.extend(children.map(|(child, place)| (child, place, depth + 1)));
+        }
+    }
+    levels
+}

@@ -9,13 +9,16 @@ use super::{
     what_is_not_simulated,
 };
 use crate::effects::Effects;
-use crate::graph::{GraphNode, Placement};
-use crate::scene::{Node, Scene, blend};
+use crate::graph::{Graph, GraphNode, Placement};
+use crate::scene::{Accelerator, Node, Scene, blend};
 use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2};
+use std::ops::Range;
 
 pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
     let mut meshes = Meshes::new(scene, effects, crafts);
+    let searched =
+        matches!(scene.quality.accelerator, Accelerator::BoundingBoxes | Accelerator::BoundingSpheres);
     let mut flattener = Flattener {
         scene,
         effects,
@@ -28,11 +31,11 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> Worl
             lights: scene.lights.clone(),
             textures: scene.textures.clone(),
             notes: what_is_not_simulated(scene),
+            // The root of the graph holds the roots of the scene, which may be several.
+            graph: searched.then(|| Graph { nodes: vec![GraphNode::default()] }),
             ..World::default()
         },
     };
-    // The root of the graph holds the roots of the scene, which may be several.
-    flattener.world.graph.nodes.push(GraphNode::default());
     for &root in &scene.roots {
         flattener.node(root, &Way::still(Affine3A::IDENTITY), 0, 0, &mut meshes);
     }
@@ -93,15 +96,20 @@ impl Flattener<'_> {
             };
             self.shape(shape, ready, &way, material as u32);
         }
-        let primitives: Vec<u32> = (first..self.world.primitives.len() as u32).collect();
-        let nodes = &mut self.world.graph.nodes;
-        let here = nodes.len() as u32;
-        nodes.push(GraphNode { children: Vec::new(), primitives });
-        nodes[above as usize].children.push(here);
+        let here = self.in_graph(first..self.world.primitives.len() as u32, above);
         for &child in &node.children {
             self.node(child, &way, material, here, meshes);
         }
         self.path.pop();
+    }
+
+    /// Adds a node that holds `primitives` to the graph, below the node `above`; gives its number, if there is a graph.
+    fn in_graph(&mut self, primitives: Range<u32>, above: u32) -> u32 {
+        let Some(Graph { nodes }) = &mut self.world.graph else { return 0 };
+        let here = nodes.len() as u32;
+        nodes.push(GraphNode { children: Vec::new(), primitives: primitives.collect() });
+        nodes[above as usize].children.push(here);
+        here
     }
 
     fn shape(&mut self, shape: &Shape, ready: Option<&mut Ready>, way: &Way, material: u32) {

@@ -119,8 +119,8 @@ pub struct World {
     pub parts: Vec<Part>,
     /// Their places.
     pub instances: Vec<Instance>,
-    /// The scene graph over `primitives`.
-    pub graph: Graph,
+    /// The scene graph over `primitives`, if that is what rays will search.
+    pub graph: Option<Graph>,
     /// Unit normals at the corners of smooth triangles.
     pub normals: Vec<[Vec3; 3]>,
     /// Texture coordinates at the corners of triangles.

@@ -29,7 +29,7 @@ pub mod tree;
 pub mod trial;
 
 pub use broken::{Broken, Outcome};
-pub use trial::{Check, Trial, Verdict, grade, run};
+pub use trial::{Check, Trial, Verdict, examine, grade, run, verdict};
 
 /// All checks of all stages that are built, in order.
 pub const STAGES: &[(u8, &[Check])] = &[

@@ -132,6 +132,11 @@ fn fingerprint(name: &str) -> u64 {
 
 /// Runs one check.
 pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdict {
+    verdict(check, examine(check, kit, seed))
+}
+
+/// Whether the law holds, or why nobody can say.
+pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, Mishap> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
     // The thread is left behind if it hangs: it ends with the process.
@@ -143,12 +148,15 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
             let _ = send.send(mishap::catch(|| (check.law)(&trial)));
         });
     if let Err(error) = spawned {
-        return Verdict::Failed(format!("the check could not be started: {error}\n"));
+        return Err(Mishap::Crashed { how: format!("the check could not be started: {error}") });
     }
-    let outcome =
-        outcome.recv_timeout(PATIENCE).unwrap_or(Err(Mishap::TimedOut { seconds: PATIENCE.as_secs() }));
+    outcome.recv_timeout(PATIENCE).unwrap_or(Err(Mishap::TimedOut { seconds: PATIENCE.as_secs() }))
+}
+
+/// The same in the words that a student reads.
+pub fn verdict(check: &Check, examined: Result<Outcome, Mishap>) -> Verdict {
     let entry = rubric::entry(check.stage, check.name);
-    match outcome {
+    match examined {
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
         Err(Mishap::NotWritten { task, place }) => Verdict::NotWritten { task, place },

@@ -5,6 +5,7 @@
 mod images;
 mod tree;
 
+use crate::report::make_folder;
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
 use std::f32::consts::TAU;
@@ -17,10 +18,8 @@ const AROUND: usize = 30;
 
 /// Writes the knot as a binary PLY file with normals, and the images, into folders of `scenes`.
 pub fn write(scenes: &Path) -> Result<()> {
-    for folder in ["meshes", "images"].map(|name| scenes.join(name)) {
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
+    make_folder(&scenes.join("meshes"))?;
+    make_folder(&scenes.join("images"))?;
     let knot = scenes.join("meshes/knot.ply");
     let bytes = ply();
     raykata::film::write_atomically(&knot, |file| file.write_all(&bytes))

@@ -2,7 +2,7 @@
 
 use crate::kits::{Source, Which};
 use crate::knobs::Knobs;
-use crate::report::{Bytes, Thousands, load_scene};
+use crate::report::{Bytes, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -71,10 +71,7 @@ pub fn run(options: &Options) -> Result<()> {
             .with_extension("png"),
     };
     let format = format_of(&out)?;
-    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
+    make_folder_of(&out)?;
 
     let source = Source::here(options.kit)?;
     let kit = source.fresh();
@@ -127,10 +124,10 @@ fn write_exr(film: &Film, out: &Path) -> Result<()> {
 }
 
 /// A progress bar; draws nothing when nobody sees it.
-pub(crate) struct Bar(pub(crate) ProgressBar);
+struct Bar(ProgressBar);
 
 impl Bar {
-    pub(crate) fn new() -> Self {
+    fn new() -> Self {
         let bar = ProgressBar::new(0);
         let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));

@@ -1,7 +1,8 @@
-//! How things are told: numbers that can be read, and errors in files with the line drawn.
+//! How things are told: numbers that can be read, errors in files with the line drawn, and how far a long work is.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Result, anyhow};
+use indicatif::{ProgressBar, ProgressStyle};
 use raykata::scene::error::LoadError;
 use raykata::scene::{Scene, load};
 use std::fmt;
@@ -66,6 +67,29 @@ pub fn draw(error: &LoadError) -> String {
     drawn.strip_prefix("error: ").map_or_else(|| drawn.clone(), str::to_owned)
 }
 
+/// Makes a folder, and those above it.
+pub fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))
+}
+
+/// Makes the folder in which `file` is to be written.
+pub fn make_folder_of(file: &Path) -> Result<()> {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).map_or(Ok(()), make_folder)
+}
+
+/// A bar for so many steps, each of which can be named; draws nothing when nobody sees it.
+pub fn bar_of_steps(n: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}");
+    ProgressBar::new(n as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// The lower quartile, the median and the upper quartile; of an even number the median is the lower of the middle two.
+pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    [last / 4, last / 2, last - last / 4].map(|index| values.get(index).copied().unwrap_or_default())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,5 +100,12 @@ mod tests {
         assert_eq!(Thousands(999).to_string(), "999");
         assert_eq!(Thousands(1_000).to_string(), "1,000");
         assert_eq!(Thousands(99_532_800_000_000).to_string(), "99,532,800,000,000");
+    }
+    #[test]
+    fn quartiles_are_measured_values() {
+        assert_eq!(quartiles(vec![]), [0.0; 3]);
+        assert_eq!(quartiles(vec![7.0]), [7.0; 3]);
+        assert_eq!(quartiles(vec![4.0, 1.0, 3.0, 2.0]), [1.0, 2.0, 4.0]);
+        assert_eq!(quartiles(vec![5.0, 4.0, 3.0, 2.0, 1.0]), [2.0, 3.0, 4.0]);
     }
 }

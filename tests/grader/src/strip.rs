@@ -4,7 +4,7 @@
 use crate::kits::{Source, Which};
 use crate::knobs::{Knobs, SamplerName};
 use crate::render::write_png;
-use crate::report::{Thousands, load_scene};
+use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use raykata::film::Film;
@@ -43,10 +43,7 @@ pub fn run(options: &Options) -> Result<()> {
     options.knobs.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
-    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
+    make_folder_of(&out)?;
     let source = Source::here(options.kit)?;
     let kit = source.fresh();
     let pictures = pictures(options, &scene);

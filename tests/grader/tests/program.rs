@@ -1,21 +1,10 @@
 //! The program as its users run it.
 
+mod program_runs;
+
+use program_runs::{raykata, root, told};
 use raykata::scene::load;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
-
-fn raykata(arguments: &[&str]) -> Output {
-    let program = Command::new(env!("CARGO_BIN_EXE_raykata")).current_dir(root()).args(arguments).output();
-    program.expect("the program starts")
-}
-
-fn told(output: &Output) -> (String, String) {
-    (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
-}
+use std::path::PathBuf;
 
 fn scene_files() -> Vec<PathBuf> {
     let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
@@ -183,96 +172,6 @@ fn a_strip_shows_one_picture_a_depth() {
     let number =
         |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
     assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32));
-}
-
-#[test]
-fn structures_are_compared_side_by_side() {
-    let out = tempfile::tempdir().expect("a folder");
-    let folder = out.path().to_string_lossy();
-    let output = raykata(&[
-        "compare",
-        "scenes/graph.toml",
-        "--size",
-        "32x20",
-        "--rounds",
-        "1",
-        "--level",
-        "2",
-        "--out",
-        &folder,
-    ]);
-    let (said, complained) = told(&output);
-    assert!(output.status.success(), "{said}{complained}");
-    let rows = [
-        "brute force",
-        "bounding boxes",
-        "bounding spheres",
-        "bvh, object median",
-        "bvh, spatial median",
-        "bvh, surface area",
-        "cached bvh",
-        "packet bvh",
-        "grid",
-        "octree",
-        "octree by cells",
-        "kd tree",
-        "bsp",
-    ];
-    for row in rows {
-        let line = said.lines().find(|line| line.starts_with(&format!("{row}  ")));
-        let line = line.unwrap_or_else(|| panic!("no line for {row}:\n{said}"));
-        assert!(line.trim_end().ends_with(" 0"), "pixels are off: {line}");
-        let picture = out.path().join(format!("tests-{}.png", row.replace(", ", "-").replace(' ', "-")));
-        assert!(
-            std::fs::read(&picture).is_ok_and(|png| png.starts_with(b"\x89PNG")),
-            "{}",
-            picture.display()
-        );
-    }
-    // Each column in which less is better has a winner.
-    assert!(said.matches('*').count() > 4, "{said}");
-    // What has cells or boxes is drawn; brute force has none.
-    let drawn = |row: &str| out.path().join(format!("cells-{row}.png")).exists();
-    assert!(
-        drawn("bsp")
-            && drawn("grid")
-            && drawn("kd-tree")
-            && drawn("bounding-spheres")
-            && !drawn("brute-force")
-    );
-
-    let numbers = std::fs::read_to_string(out.path().join("compare.json")).expect("numbers");
-    let numbers: serde_json::Value = serde_json::from_str(&numbers).expect("JSON");
-    assert_eq!(numbers.as_array().map(Vec::len), Some(rows.len()));
-    let asked = |row: usize| numbers[row]["counts"]["primitive_tests"].as_u64().expect("a count");
-    assert!(asked(0) > asked(5), "brute force asks more than a hierarchy");
-    let plot = std::fs::read_to_string(out.path().join("compare.svg")).expect("a plot");
-    assert!(rows.iter().all(|row| plot.contains(&format!(">{row}<"))), "{plot}");
-}
-
-#[test]
-fn savings_heuristics_grids_and_instances_have_tables() {
-    for (of, row) in [
-        ("savings", "graph, boxes, skip and sort"),
-        ("heuristics", "without stop at 60 %"),
-        ("grids", "grid, 256 along"),
-        ("instances", "copies"),
-    ] {
-        let output = raykata(&[
-            "compare",
-            "scenes/graph.toml",
-            "--size",
-            "16x10",
-            "--rounds",
-            "1",
-            "--of",
-            of,
-            "--table",
-        ]);
-        let (said, complained) = told(&output);
-        assert!(said.contains(row), "{of}: {said}{complained}");
-        assert!(output.status.success(), "{of}: {said}{complained}");
-    }
 }
 
 #[test]

@@ -64,12 +64,13 @@ fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
         (None, None, None) => Some(None),
         (Some(p), Some(q), Some(r)) => {
             let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-            // Coordinates go up to 16, so that a point is off by 1e-5 or so along the ray.
+            // A method in single precision is off by a hundred roundings, 1e-5 of the way; twice that, in lengths of dir.
             let slack = 2e-5 * (1.0 + ray.origin.length()) / ray.dir.length();
             if low - slack <= ray.t_min || ray.t_max <= high + slack {
                 return None;
             }
-            // A range that begins or ends between the shells gives different ends of the solid.
+            // A range that begins or ends between the shells gives different ends of the solid. Shells lie 1e-3 apart at
+            // most, slanting rays go farther; but the thinnest solid is 1/8 high, so that its ends are beyond a twentieth.
             (high - low < 0.05 / ray.dir.length()).then_some(Some((low - slack, high + slack)))
         }
         _ => None,
@@ -101,6 +102,7 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
 fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Option<f32>) -> &'static str {
     let SolidQuery { ray, solid } = query;
     let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+    // This and the rest only word what is wrong already: near enough to recognize a mistake, far from any other number.
     let near = |t: f32, right: f32| (t - right).abs() <= 1e-3 * right.abs().max(0.1);
     let first = solid.meet(&endless).and_then(|meeting| meeting.t);
     let inside = solid.meet(&ray.with_range(f32::NEG_INFINITY, 0.0)).is_some_and(|back| back.t.is_some())
@@ -155,9 +157,12 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
             let normal = hit.normal.as_dvec3();
             let at = query.ray.origin.as_dvec3() + f64::from(hit.t) * query.ray.dir.as_dvec3();
             let beyond = |normal: DVec3| query.solid.reach(normal) - normal.dot(at);
-            // The point is off by 1e-5 and the normal with it; a hundredth of a radius would be a wrong normal.
+            // The point is off by 1e-5, and the normal by as much of a radius, which is 0.5 or more: over a solid 16 across
+            // 3e-4, and some times that is let pass. A hundredth of a radius, 5e-3, would be a wrong normal.
             let outward = beyond(normal) <= 2e-3;
+            // A normalized vector is off by 2e-7; fifty times that is no forgotten root.
             let unit = (normal.length() - 1.0).abs() <= 1e-5;
+            // A flat shape reaches as far along its normal as against it: nothing but roundings of coordinates up to 8.
             let turned = query.solid.reach(normal) + query.solid.reach(-normal) < 1e-3
                 && own_normal(query).is_some_and(|own| own.dot(normal) < 0.0);
             if outward && unit && !turned {
@@ -211,6 +216,8 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let t = answer.map(|hit| hit.t / 1024.0);
+            // Scaling by a power of two is exact, so t should be, too; but a method may make dir a unit vector, which rounds.
+            // 1e-5 is eighty such roundings, of t or, near the origin, of coordinates.
             let same = match (t, scaled) {
                 (Some(t), Some(hit)) => (hit.t - t).abs() <= 1e-5 * t.max(0.01),
                 (None, None) => true,

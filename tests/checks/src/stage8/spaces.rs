@@ -10,10 +10,6 @@ use proptest::prelude::*;
 use raykata::kit::{NormalQuery, ObjectRayQuery};
 use raykata::ray::Ray;
 
-pub(super) fn in_double(transform: &Affine3A) -> DAffine3 {
-    DAffine3::from_cols_array(&transform.to_cols_array().map(f64::from))
-}
-
 /// Turns, shears, stretches and mirrors with small whole numbers: what can be undone well.
 fn transform() -> impl Strategy<Value = Affine3A> + Clone {
     let column = || (-2..=2i32, -2..=2i32, -2..=2i32);
@@ -45,7 +41,7 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Out
 fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.ray_to_object(queries), |query, yours| {
         let ObjectRayQuery { ray, to_object } = query;
-        let exact = in_double(to_object);
+        let exact = to_object.as_daffine3();
         let (origin, dir) =
             (exact.transform_point3(ray.origin.as_dvec3()), exact.transform_vector3(ray.dir.as_dvec3()));
         let sizes = |v: Vec3, and: DVec3| {
@@ -119,7 +115,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
     }
     let judge = |query: &ObjectRayQuery, yours: Ray| {
         let ObjectRayQuery { ray, to_object } = query;
-        let exact = in_double(to_object).transform_vector3(ray.dir.as_dvec3()).length();
+        let exact = to_object.as_daffine3().transform_vector3(ray.dir.as_dvec3()).length();
         // A length is off by a rounding of each of its terms.
         let same_length = (f64::from(yours.dir.length()) / exact - 1.0).abs() < 1e-6;
         let same_range = (yours.t_min, yours.t_max, yours.time) == (ray.t_min, ray.t_max, ray.time);
@@ -154,12 +150,12 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
 
 /// The normal in the world in double precision.
 fn normal(query: &NormalQuery) -> DVec3 {
-    (in_double(&query.to_object).matrix3.transpose() * query.normal.as_dvec3()).normalize()
+    (query.to_object.as_daffine3().matrix3.transpose() * query.normal.as_dvec3()).normalize()
 }
 
 fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.normal_to_world(queries), |query, yours| {
-        let (right, exact) = (normal(query), in_double(&query.to_object).matrix3);
+        let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
         // Sums of three products whose terms are at most ten times as large as the sum, made a unit vector.
         if (yours.as_dvec3() - right).length() <= 1e-5 {
             return Ok(());
@@ -223,14 +219,14 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
     }
     trial.forall(1000, prop::collection::vec(transform(), 1..5), |paths| {
         compare(paths, trial.kit.placement(paths), |path, yours| {
-            let exact = path.iter().map(in_double).fold(DAffine3::IDENTITY, |all, one| all * one);
+            let exact = path.iter().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
             let input = format!("placement(&{})", list(path));
             let Some(yours) = yours else {
                 let broken = Broken::told(input, "None", "Some", "each transform can be undone");
                 return Err(broken.looks_like(Some("a determinant below 0 is a mirror, and not singular")));
             };
             let near = |yours: &Affine3A, right: &DAffine3| {
-                let (yours, right) = (in_double(yours).to_cols_array(), right.to_cols_array());
+                let (yours, right) = (yours.as_daffine3().to_cols_array(), right.to_cols_array());
                 let size = right.iter().fold(1.0, |largest: f64, entry| largest.max(entry.abs()));
                 // Of products of five small matrices in single precision, up to some hundred roundings.
                 yours.iter().zip(right).all(|(yours, right)| (yours - right).abs() <= 1e-4 * size)
@@ -239,17 +235,17 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             if up && down {
                 return Ok(());
             }
-            let turned = path.iter().rev().map(in_double).fold(DAffine3::IDENTITY, |all, one| all * one);
+            let turned = path.iter().rev().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
             let diagnosis = match () {
                 () if !up && near(&yours.to_world, &turned) => "multiplied from the node up: the root's comes first",
                 () if !down && near(&yours.to_object, &turned.inverse()) => {
                     "the inverses are in the order of the transforms: the one that was applied last is undone first"
                 }
                 () if near(&yours.to_object, &exact) => "the way back is the way up",
-                () if !up && path.last().is_some_and(|own| near(&yours.to_world, &in_double(own))) => {
+                () if !up && path.last().is_some_and(|own| near(&yours.to_world, &own.as_daffine3())) => {
                     "its own transform alone: a node stands where all above it put it"
                 }
-                () if in_double(&yours.to_object).matrix3 == exact.matrix3.transpose() => {
+                () if yours.to_object.as_daffine3().matrix3 == exact.matrix3.transpose() => {
                     "the transpose is the inverse of a rotation, and of nothing else"
                 }
                 () => "",
@@ -260,7 +256,7 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             let told = |entries: Vec<f64>| format!("{which} {entries:.3?}");
             Err(Broken::told(
                 input,
-                told(in_double(&got).to_cols_array().to_vec()),
+                told(got.as_daffine3().to_cols_array().to_vec()),
                 told(right.to_cols_array().to_vec()),
                 "double precision",
             )

@@ -2,7 +2,7 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, ball, wall};
-use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
 use super::structures::bsp;
 use crate::Trial;
 use crate::broken::Outcome;
@@ -140,13 +140,9 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
-    let balls = (0..64).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
-    let scene = Scene::new(balls.collect());
+    let (scene, rays) = balls_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
     let cells = bsp(&scene.hulls(), 2, 8);
-    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(12.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
-    let looks = |eye: Vec3| (0..64).step_by(5).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
-    let query = |ray: Ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) };
-    let queries: Vec<CellsQuery<Bsp>> = eyes.into_iter().flat_map(looks).map(query).collect();
+    let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
         judge_visits("BSP tree over 64 balls", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
     }

@@ -1,13 +1,14 @@
 //! The BSP tree: what is where.
 
+use super::lists::{Fault, ended, judge_references};
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::generate::point;
-use crate::judge::{compare, known};
+use crate::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{BspQuery, mishap};
+use raykata::kit::BspQuery;
 use raykata::partition::{Bsp, BspNode, CutPlane, corners};
 
 fn told(query: &BspQuery) -> String {
@@ -28,23 +29,27 @@ fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     leaves
 }
 
+const WHAT_MAKES_IT: &str = "what makes a BSP tree";
+
+fn usable(hull: &[Vec3]) -> bool {
+    !hull.is_empty() && hull.iter().all(|corner| corner.is_finite())
+}
+
 fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
-    let fault = |yours: String, expected: String, diagnosis: &'static str| {
-        Err(Broken::told(told(query), yours, expected, "what makes a BSP tree").looks_like(known(diagnosis)))
-    };
-    let usable = |hull: &[Vec3]| !hull.is_empty() && hull.iter().all(|corner| corner.is_finite());
-    if !query.hulls.iter().any(|hull| usable(hull)) {
-        let n = yours.nodes.len();
-        return if n == 0 {
-            Ok(())
-        } else {
-            fault(format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")
-        };
-    }
+    let nothing = !query.hulls.iter().any(|hull| usable(hull));
+    super::lists::judge_tree(
+        || told(query),
+        WHAT_MAKES_IT,
+        (nothing, yours.nodes.len()),
+        || fault(query, yours),
+    )
+}
+
+fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
     if yours.depth() > query.max_depth + 1 {
         let (yours, expected) = (yours.depth() - 1, query.max_depth);
         let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
-        return fault(yours, expected, "max_depth is passed");
+        return Some((yours, expected, "max_depth is passed"));
     }
     let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
     // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
@@ -56,7 +61,7 @@ fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
             let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if !usable(hull) {
                 if times > 0 {
-                    return fault(count(times), count(0), "what is not a number is in no cell");
+                    return Some((count(times), count(0), "what is not a number is in no cell"));
                 }
                 continue;
             }
@@ -75,18 +80,18 @@ fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
                     0 => "a primitive that reaches over a plane belongs to both sides",
                     _ => "a primitive is listed twice in one leaf",
                 };
-                return fault(count(times), count(1), diagnosis);
+                return Some((count(times), count(1), diagnosis));
             }
             if outside && times > 0 {
-                return fault(
+                return Some((
                     count(times),
                     count(0),
                     "a primitive is listed in a leaf that it does not reach",
-                );
+                ));
             }
         }
     }
-    Ok(())
+    None
 }
 
 pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
@@ -129,22 +134,12 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");
-        let yours = match mishap::catch(|| trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0)) {
-            Ok(yours) => yours,
-            Err(mishap::Mishap::Panicked { message, .. }) => {
-                let broken = Broken::told(input, message, "a tree", "what makes a BSP tree");
-                return Err(broken.looks_like(Some("stop at max_depth, and where no plane divides")));
-            }
-            Err(mishap) => mishap::unwind(mishap),
-        };
+        let says = "stop at max_depth, and where no plane divides";
+        let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
         judge_tree(&query, &yours)?;
-        let most = 1024 + 64 * n;
-        if yours.n_references() > most {
-            let told = |n: usize| format!("{n} references");
-            let broken =
-                Broken::told(input, told(yours.n_references()), format!("at most {}", told(most)), "counted");
-            return Err(broken.looks_like(Some("all are on both sides of each plane: make a leaf of them")));
-        }
+        let says = "all are on both sides of each plane: make a leaf of them";
+        judge_references(&input, &yours.items, 1024 + 64 * n, says)?;
     }
     Ok(())
 }
@@ -162,7 +157,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     judge_tree(&query, &yours)?;
     let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
     // A cut along a sheet lists it on both sides, so there is one reference more for each cut.
-    let (references, depth) = (yours.n_references(), yours.depth());
+    let (references, depth) = (yours.items.len(), yours.depth());
     if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
         return Ok(());
     }

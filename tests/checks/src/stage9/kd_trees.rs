@@ -1,17 +1,17 @@
 //! The kd-tree: what is where, and the way of a ray through it.
 
-use super::lists::{endless, lists_fault, some_boxes};
+use super::lists::{Fault, ended, endless, judge_references, lists_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, ball, closest, wall};
-use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
 use super::structures::kd_tree;
 use crate::Trial;
-use crate::broken::{Broken, Outcome};
-use crate::judge::{compare, known};
+use crate::broken::Outcome;
+use crate::judge::compare;
 use glam::{Vec3, uvec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsQuery, KdQuery, mishap};
+use raykata::kit::{CellsQuery, KdQuery};
 use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -21,18 +21,19 @@ fn told(query: &KdQuery) -> String {
     format!("build(&{boxes},\n&{:?}, {})", query.heuristics, query.leaf_size)
 }
 
+const WHAT_MAKES_IT: &str = "what makes a kd-tree";
+
 fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
-    let fault = |(yours, expected, diagnosis): (String, String, &'static str)| {
-        Err(Broken::told(told(query), yours, expected, "what makes a kd-tree").looks_like(known(diagnosis)))
-    };
-    if query.bounds.iter().all(Aabb::is_empty) {
-        let n = yours.nodes.len();
-        return if n == 0 {
-            Ok(())
-        } else {
-            fault((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree"))
-        };
-    }
+    let nothing = query.bounds.iter().all(Aabb::is_empty);
+    super::lists::judge_tree(
+        || told(query),
+        WHAT_MAKES_IT,
+        (nothing, yours.nodes.len()),
+        || fault(query, yours),
+    )
+}
+
+fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
     let mut leaves = Vec::new();
     let mut outside = None;
     yours.walk(64, |node, cell, _| match yours.nodes[node as usize] {
@@ -48,15 +49,12 @@ fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
     let most = KdTree::most_depth(query.bounds.iter().filter(|one| !one.is_empty()).count());
     if yours.depth() > most + 1 {
         let yours = format!("a node at depth {}", yours.depth() - 1);
-        return fault((yours, format!("at most {most}"), "KdTree::most_depth is passed"));
+        return Some((yours, format!("at most {most}"), "KdTree::most_depth is passed"));
     }
     if let Some((yours, expected)) = outside {
-        return fault((yours, expected, "a plane outside of the cell divides nothing"));
+        return Some((yours, expected, "a plane outside of the cell divides nothing"));
     }
-    match lists_fault(&yours.bounds, &query.bounds, &leaves) {
-        Some(wrong) => fault(wrong),
-        None => Ok(()),
-    }
+    lists_fault(&yours.bounds, &query.bounds, &leaves)
 }
 
 /// Any of the 32 sets of heuristics.
@@ -82,31 +80,13 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
     for (name, bounds) in endless() {
         for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
             let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
-            let yours = match mishap::catch(|| trial.kit.kd_build(std::slice::from_ref(&query)).remove(0)) {
-                Ok(yours) => yours,
-                Err(mishap::Mishap::Panicked { message, .. }) => {
-                    let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
-                    let broken = Broken::told(input, message, "a tree", "what makes a kd-tree");
-                    return Err(broken
-                        .looks_like(Some("stop at KdTree::most_depth, and where all are on both sides")));
-                }
-                Err(mishap) => mishap::unwind(mishap),
-            };
+            let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
+            let says = "stop at KdTree::most_depth, and where all are on both sides";
+            let build = || trial.kit.kd_build(std::slice::from_ref(&query)).remove(0);
+            let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
             judge_tree(&query, &yours)?;
-            let most = 1 << 17;
-            if yours.n_references() > most {
-                let told = |n: usize| format!("{n} references");
-                let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
-                let broken = Broken::told(
-                    input,
-                    told(yours.n_references()),
-                    format!("at most {}", told(most)),
-                    "counted",
-                );
-                return Err(
-                    broken.looks_like(Some("all are on both sides, again and again: make a leaf of them"))
-                );
-            }
+            let says = "all are on both sides, again and again: make a leaf of them";
+            judge_references(&input, &yours.items, 1 << 17, says)?;
         }
     }
     Ok(())
@@ -270,13 +250,9 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
 
 pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
-    let balls = (0..128).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
-    let scene = Scene::new(balls.collect());
+    let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
     let cells = kd_tree(&scene.boxes(), 2, 10);
-    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(20.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
-    let looks = |eye: Vec3| (0..128).step_by(9).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
-    let query = |ray: Ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) };
-    let queries: Vec<CellsQuery<KdTree>> = eyes.into_iter().flat_map(looks).map(query).collect();
+    let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.kd_search(&queries)) {
         assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a ball");
         judge_visits(

@@ -1,9 +1,12 @@
 //! What stands in cells: the laws that all builders share.
 
+use crate::broken::{Broken, Outcome};
+use crate::judge::known;
 use crate::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
+use raykata::kit::mishap::{self, Mishap};
 use raykata::partition::Cell;
 
 /// Boxes on a coarse grid, so that many touch; some flat, some not numbers.
@@ -34,12 +37,53 @@ pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
     !(gap.max_element() <= room)
 }
 
-/// What is wrong with the lists of leaves, if anything is: `(yours, expected, diagnosis)`. Each leaf comes with its cell.
-pub(super) fn lists_fault(
-    bounds: &Aabb,
-    boxes: &[Aabb],
-    leaves: &[(u32, Cell, Vec<u32>)],
-) -> Option<(String, String, &'static str)> {
+/// What is wrong: `(yours, expected, diagnosis)`.
+pub(super) type Fault = (String, String, &'static str);
+
+/// Judges a tree of `n_nodes` nodes: over `nothing` it has none, and over anything `fault` looks for what is wrong.
+pub(super) fn judge_tree(
+    told: impl FnOnce() -> String,
+    source: &'static str,
+    (nothing, n_nodes): (bool, usize),
+    fault: impl FnOnce() -> Option<Fault>,
+) -> Outcome {
+    let fault = match (nothing, n_nodes) {
+        (true, 0) => None,
+        (true, n) => Some((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")),
+        (false, _) => fault(),
+    };
+    fault.map_or(Ok(()), |(yours, expected, diagnosis)| {
+        Err(Broken::told(told(), yours, expected, source).looks_like(known(diagnosis)))
+    })
+}
+
+/// The tree that `build` makes, if it comes to an end.
+pub(super) fn ended<T>(
+    input: &str,
+    source: &'static str,
+    says: &'static str,
+    build: impl FnOnce() -> T,
+) -> Result<T, Broken> {
+    mishap::catch(build).map_err(|mishap| match mishap {
+        Mishap::Panicked { message, .. } => {
+            Broken::told(input, message, "a tree", source).looks_like(Some(says))
+        }
+        mishap => mishap::unwind(mishap),
+    })
+}
+
+/// Whether no more than `most` primitives stand in leaves, each counted once a leaf.
+pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> Outcome {
+    let told = |n: usize| format!("{n} references");
+    if yours.len() <= most {
+        return Ok(());
+    }
+    let broken = Broken::told(input, told(yours.len()), format!("at most {}", told(most)), "counted");
+    Err(broken.looks_like(Some(says)))
+}
+
+/// What is wrong with the lists of leaves, if anything is. Each leaf comes with its cell.
+pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, Vec<u32>)]) -> Option<Fault> {
     if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
         return Some((yours, expected, "bounds must be around all boxes that are numbers"));
     }

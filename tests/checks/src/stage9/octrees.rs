@@ -1,13 +1,13 @@
 //! The octree: what is where, and two ways of a ray through it.
 
-use super::lists::{endless, lists_fault, some_boxes};
+use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, ball};
-use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
 use super::structures::octree;
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
-use crate::judge::{compare, known};
+use crate::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::Strategy;
 use raykata::aabb::Aabb;
@@ -21,18 +21,14 @@ fn told(query: &OctreeQuery) -> String {
     format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
 }
 
+const WHAT_MAKES_IT: &str = "what makes an octree";
+
 fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
-    let fault = |(yours, expected, diagnosis): (String, String, &'static str)| {
-        Err(Broken::told(told(query), yours, expected, "what makes an octree").looks_like(known(diagnosis)))
-    };
-    if query.bounds.iter().all(Aabb::is_empty) {
-        let n = yours.nodes.len();
-        return if n == 0 {
-            Ok(())
-        } else {
-            fault((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree"))
-        };
-    }
+    let nothing = query.bounds.iter().all(Aabb::is_empty);
+    judge_tree(|| told(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), || fault(query, yours))
+}
+
+fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     let mut leaves = Vec::new();
     let mut deepest = 0;
     yours.walk(64, |node, cell, depth| {
@@ -43,12 +39,9 @@ fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
     });
     if deepest > query.max_depth {
         let expected = format!("at most {}", query.max_depth);
-        return fault((format!("a node at depth {deepest}"), expected, "max_depth is passed"));
+        return Some((format!("a node at depth {deepest}"), expected, "max_depth is passed"));
     }
-    match lists_fault(&yours.bounds, &query.bounds, &leaves) {
-        Some(wrong) => fault(wrong),
-        None => Ok(()),
-    }
+    lists_fault(&yours.bounds, &query.bounds, &leaves)
 }
 
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
@@ -73,7 +66,7 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
         OctreeNode::Inner { .. } => 0,
     });
     let most = most.max().unwrap_or(0);
-    let (depth, n) = (yours.depth(), yours.n_nodes());
+    let (depth, n) = (yours.depth(), yours.nodes.len());
     let needless = (0..n as u32).find(|&node| is_inner(&yours, node) && below(&yours, node).len() <= 2);
     if most <= 2 && depth > 3 && needless.is_none() {
         return Ok(());
@@ -112,34 +105,14 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
     for (name, bounds) in endless() {
         let n = bounds.len();
         let query = OctreeQuery { bounds, leaf_size: 1, max_depth: 12 };
-        let yours = match mishap::catch(|| trial.kit.octree_build(std::slice::from_ref(&query)).remove(0)) {
-            Ok(yours) => yours,
-            Err(mishap::Mishap::Panicked { message, .. }) => {
-                let broken = Broken::told(
-                    format!("build of {name}, leaf_size 1, max_depth 12"),
-                    message,
-                    "a tree",
-                    "what makes an octree",
-                );
-                return Err(broken.looks_like(Some("stop at max_depth, and where dividing does not help")));
-            }
-            Err(mishap) => mishap::unwind(mishap),
-        };
+        let input = format!("build of {name}, leaf_size 1, max_depth 12");
+        let says = "stop at max_depth, and where dividing does not help";
+        let build = || trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
+        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
         judge_octree(&query, &yours)?;
         // Eight times as many at each of five levels are not worth it, whatever the boxes.
-        let most = 4096 + 64 * n;
-        if yours.n_references() > most {
-            let told = |n: usize| format!("{n} references");
-            let broken = Broken::told(
-                format!("build of {name}, leaf_size 1, max_depth 12"),
-                told(yours.n_references()),
-                format!("at most {}", told(most)),
-                "counted",
-            );
-            return Err(broken.looks_like(Some(
-                "all go to all octants, again and again: make a leaf if dividing does not help",
-            )));
-        }
+        let says = "all go to all octants, again and again: make a leaf if dividing does not help";
+        judge_references(&input, &yours.items, 4096 + 64 * n, says)?;
     }
     Ok(())
 }
@@ -218,16 +191,9 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
-    let balls = (0..128).map(|i| Thing::Ball(Sphere { center: place(i), radius: 0.3 }));
-    let scene = Scene::new(balls.collect());
+    let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
     let cells = octree(&scene.boxes(), 2, 5);
-    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(12.0, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
-    let looks = |eye: Vec3| (0..128).step_by(9).map(move |i| Ray::new(eye, (place(i) - eye).normalize()));
-    let queries: Vec<CellsQuery<Octree>> = eyes
-        .into_iter()
-        .flat_map(looks)
-        .map(|ray| CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) })
-        .collect();
+    let queries = queries(&cells, &scene, &rays);
     let by_cells = trial.kit.octree_by_cells(&queries);
     for (query, (down, along)) in
         queries.iter().zip(trial.kit.octree_search(&queries).into_iter().zip(by_cells))

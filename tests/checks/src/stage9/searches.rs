@@ -35,10 +35,6 @@ impl Searcher {
 
     /// Asks for all rays at once, in a structure over `scene` that the checks have built.
     pub(super) fn ask(self, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
-        fn queries<S: Clone>(cells: &S, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
-            let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
-            rays.iter().map(query).collect()
-        }
         let boxes = scene.boxes();
         match self {
             Searcher::Grid => {
@@ -53,6 +49,21 @@ impl Searcher {
             Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), 3, 6), scene, rays)),
         }
     }
+}
+
+/// One query a ray.
+pub(super) fn queries<S: Clone>(cells: &S, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
+    let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
+    rays.iter().map(query).collect()
+}
+
+/// Small balls at `places`, and rays at every `step`th of them from three eyes, of which one is at `x`.
+pub(super) fn balls_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
+    let balls = places.iter().map(|&center| Thing::Ball(Sphere { center, radius: 0.3 }));
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let at =
+        |eye: Vec3| places.iter().step_by(step).map(move |place| Ray::new(eye, (*place - eye).normalize()));
+    (Scene::new(balls.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
 /// Whether the answer is that of brute force.

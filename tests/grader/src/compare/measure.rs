@@ -1,9 +1,9 @@
 //! Measuring: counts once, times by turns.
 
 use super::rows::Row;
+use crate::report::{bar_of_steps, quartiles};
 use anyhow::{Context, Result};
 use glam::Vec3;
-use indicatif::{ProgressBar, ProgressStyle};
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
@@ -54,10 +54,7 @@ pub struct Measured {
 impl Bench<'_> {
     /// Makes every picture once with counts, then all of them by turns without.
     pub fn measure(&self, scene: &Scene, rows: &[Row]) -> Result<Vec<Measured>> {
-        let bar = ProgressBar::new(rows.len() as u64 * u64::from(1 + self.rounds));
-        if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
-            bar.set_style(style);
-        }
+        let bar = bar_of_steps(rows.len() * (1 + self.rounds as usize));
         let mut measured: Vec<Measured> = Vec::new();
         let mut references = BTreeMap::new();
         for row in rows {
@@ -81,9 +78,9 @@ impl Bench<'_> {
             }
         }
         bar.finish_and_clear();
-        for (one, (mut builds, mut renders)) in measured.iter_mut().zip(times) {
-            one.build_seconds = quartiles(&mut builds)[1];
-            let [low, median, high] = quartiles(&mut renders);
+        for (one, (builds, renders)) in measured.iter_mut().zip(times) {
+            one.build_seconds = quartiles(builds)[1];
+            let [low, median, high] = quartiles(renders);
             one.nanoseconds = 1e9 * median / one.rays.max(1) as f64;
             one.spread = (high - low) / (2.0 * median);
         }
@@ -128,11 +125,25 @@ impl Bench<'_> {
         })
     }
 
-    /// By how much columns and rows are to be divided so that the picture is done soon: asked of a single pixel first,
-    /// and if that goes well of a tiny picture. `None` if not even that is affordable.
+    /// By how much columns and rows are to be divided so that the picture is done soon. Asked of a tiny picture, and
+    /// before that of a single pixel where even the tiny one may take minutes; `None` if the pixel does.
     fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<Option<u32>> {
         let longer = scene.film.width.max(scene.film.height);
-        for slice in [longer, (longer / 10).max(1)] {
+        let tiny = (longer / 10).max(1);
+        let tried = match row.quality.accelerator {
+            // Each primitive is in one leaf, and a ray asks some tens even in the forest: whole pictures are soon done.
+            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
+            // A ray may ask all there are, or all in a node or a cell.
+            Accelerator::BruteForce
+            | Accelerator::BoundingBoxes
+            | Accelerator::BoundingSpheres
+            | Accelerator::Grid => &[longer, tiny][..],
+            // Each has a scene on which it does badly; at worst a ray asks some ten thousand (a BSP tree in the forest).
+            Accelerator::Octree | Accelerator::OctreeByCells | Accelerator::KdTree | Accelerator::Bsp => {
+                &[tiny][..]
+            }
+        };
+        for &slice in tried {
             let frame = self.frame(scene, row, slice, true)?;
             let Counts { node_visits, box_tests, primitive_tests, .. } = frame.counts;
             let questions = (node_visits + box_tests + primitive_tests) as f64;
@@ -157,11 +168,4 @@ impl Bench<'_> {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count };
         mishap::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
     }
-}
-
-/// The lower quartile, the median and the upper quartile.
-fn quartiles(times: &mut [f64]) -> [f64; 3] {
-    times.sort_by(f64::total_cmp);
-    let last = times.len().saturating_sub(1);
-    [last / 4, last / 2, last - last / 4].map(|index| times.get(index).copied().unwrap_or_default())
 }

@@ -11,7 +11,7 @@ mod table;
 
 use crate::kits::{Source, Which};
 use crate::knobs::Knobs;
-use crate::report::load_scene;
+use crate::report::{load_scene, make_folder};
 use anyhow::{Context, Result};
 use clap::Args;
 use measure::Bench;
@@ -68,7 +68,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
     table::print(&title, &measured);
     if !options.table {
-        std::fs::create_dir_all(&out).with_context(|| format!("cannot make the folder {}", out.display()))?;
+        make_folder(&out)?;
         drawing::write(&out, kit, &scene, &measured, options.level)?;
         plot::write(&out.join("compare.svg"), &title, &measured)?;
         table::write_json(&out.join("compare.json"), &measured)?;

@@ -18,55 +18,29 @@ fn a_ray(one: &Measured, n: u64) -> Option<f64> {
     Some(n as f64 / one.rays.max(1) as f64)
 }
 
+/// A column in which the least wins.
+const fn contest(
+    head: &'static str,
+    value: fn(&Measured) -> Option<f64>,
+    write: fn(f64) -> String,
+) -> Column {
+    Column { head, value, write, contest: true }
+}
+
+/// A column in which nobody wins.
+const fn plain(head: &'static str, value: fn(&Measured) -> Option<f64>, write: fn(f64) -> String) -> Column {
+    Column { head, value, write, contest: false }
+}
+
 const COLUMNS: [Column; 8] = [
-    Column {
-        head: "build s",
-        value: |one| one.size.map(|_| one.build_seconds),
-        write: |x| format!("{x:.3}"),
-        contest: true,
-    },
-    Column {
-        head: "memory",
-        value: |one| one.size.map(|_| one.bytes as f64),
-        write: |x| Bytes(x as u64).to_string(),
-        contest: true,
-    },
-    Column {
-        head: "nodes",
-        value: |one| one.size.map(|size| size.nodes as f64),
-        write: |x| Thousands(x as u64).to_string(),
-        contest: false,
-    },
-    Column {
-        head: "visits/ray",
-        value: |one| a_ray(one, one.counts.node_visits),
-        write: |x| format!("{x:.2}"),
-        contest: false,
-    },
-    Column {
-        head: "boxes/ray",
-        value: |one| a_ray(one, one.counts.box_tests),
-        write: |x| format!("{x:.2}"),
-        contest: false,
-    },
-    Column {
-        head: "prims/ray",
-        value: |one| a_ray(one, one.counts.primitive_tests),
-        write: |x| format!("{x:.2}"),
-        contest: true,
-    },
-    Column {
-        head: "ns/ray",
-        value: |one| Some(one.nanoseconds),
-        write: |x| format!("{x:.0}"),
-        contest: true,
-    },
-    Column {
-        head: "±",
-        value: |one| Some(100.0 * one.spread),
-        write: |x| format!("{x:.0} %"),
-        contest: false,
-    },
+    contest("build s", |one| one.size.map(|_| one.build_seconds), |x| format!("{x:.3}")),
+    contest("memory", |one| one.size.map(|_| one.bytes as f64), |x| Bytes(x as u64).to_string()),
+    plain("nodes", |one| one.size.map(|size| size.nodes as f64), |x| Thousands(x as u64).to_string()),
+    plain("visits/ray", |one| a_ray(one, one.counts.node_visits), |x| format!("{x:.2}")),
+    plain("boxes/ray", |one| a_ray(one, one.counts.box_tests), |x| format!("{x:.2}")),
+    contest("prims/ray", |one| a_ray(one, one.counts.primitive_tests), |x| format!("{x:.2}")),
+    contest("ns/ray", |one| Some(one.nanoseconds), |x| format!("{x:.0}")),
+    plain("±", |one| Some(100.0 * one.spread), |x| format!("{x:.0} %")),
 ];
 
 /// Prints the table.

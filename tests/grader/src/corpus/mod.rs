@@ -11,10 +11,10 @@ pub mod workshop;
 use crate::check::run_checks_on;
 use crate::kits::Source;
 use crate::queue;
+use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
 use clap::Args;
 use entry::{Claim, Entry};
-use indicatif::{ProgressBar, ProgressStyle};
 use records::Matrix;
 use std::path::Path;
 use verdict::{Fate, Tried};
@@ -102,10 +102,7 @@ fn slice(all: &[Entry]) -> Vec<String> {
 
 /// Tries entries in as many workshops as there are jobs.
 fn try_all(root: &Path, entries: &[Entry], jobs: usize) -> Result<Vec<Tried>> {
-    let bar = ProgressBar::new(entries.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}  {msg}") {
-        bar.set_style(style);
-    }
+    let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
     let workshops = Workshop::open_all(root, jobs)?;

@@ -5,8 +5,7 @@ mod why;
 
 use crate::kits::{Source, Which};
 use crate::knobs::Knobs;
-use crate::render::Bar;
-use crate::report::{Thousands, load_scene};
+use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
 use anyhow::{Context, Result};
 use clap::Args;
 use raykata::count::Counts;
@@ -112,17 +111,16 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
         .collect();
     let mut counts = vec![Counts::default(); scenes.len()];
     let mut seconds = vec![Vec::new(); scenes.len()];
-    let bar = Bar::new();
-    bar.0.set_length(u64::from(rounds) * scenes.len() as u64);
+    let bar = bar_of_steps(rounds as usize * scenes.len());
     for _ in 0..rounds {
         for (index, scene) in scenes.iter().enumerate() {
             let (counted, took) = render(explained.kit, scene.clone())?;
             counts[index] = counted;
             seconds[index].push(took);
-            bar.0.inc(1);
+            bar.inc(1);
         }
     }
-    bar.0.finish_and_clear();
+    bar.finish_and_clear();
 
     let with = &seconds[0];
     println!(
@@ -162,12 +160,9 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
 
 /// The median, and the median of how far values are from it.
 fn median_and_spread(values: Vec<f64>) -> (f64, f64) {
-    let median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    };
-    let middle = median(values.clone());
-    (middle, median(values.iter().map(|value| (value - middle).abs()).collect()))
+    let [_, middle, _] = quartiles(values.clone());
+    let [_, deviation, _] = quartiles(values.iter().map(|value| (value - middle).abs()).collect());
+    (middle, deviation)
 }
 
 /// `with - without`, with its sign.

@@ -1,8 +1,7 @@
 //! What each set of effects takes.
 
 use super::{Explained, render};
-use crate::render::Bar;
-use crate::report::Thousands;
+use crate::report::{Thousands, bar_of_steps};
 use anyhow::{Result, bail};
 use raykata::effects::Effect;
 
@@ -19,8 +18,7 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
         ["from camera", "to lamps", "mirrored", "refracted", "random numbers", "image reads", "box tests"];
     let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
     println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
-    let bar = Bar::new();
-    bar.0.set_length(1 << called.len());
+    let bar = bar_of_steps(1 << called.len());
     for set in 0..1usize << called.len() {
         let has = |bit: usize| set & (1 << bit) != 0;
         let absent = (0..called.len()).filter(|&bit| !has(bit)).map(|bit| called[bit]);
@@ -42,11 +40,11 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
         ];
         let numbers: Vec<String> =
             numbers.iter().map(|&n| format!("{:>14}", Thousands(n).to_string())).collect();
-        bar.0.suspend(|| {
+        bar.suspend(|| {
             println!("{letters:<width$}  {}", numbers.join("  "), width = called.len().max(7));
         });
-        bar.0.inc(1);
+        bar.inc(1);
     }
-    bar.0.finish_and_clear();
+    bar.finish_and_clear();
     Ok(())
 }

@@ -4,8 +4,7 @@
 use super::leaving;
 use super::traversal::{Triangles, hierarchy};
 use crate::queue;
-use crate::render::Bar;
-use crate::report::Thousands;
+use crate::report::{Thousands, bar_of_steps, make_folder_of};
 use anyhow::{Context, Result, bail};
 use checks::exact::aabb::overlap;
 use checks::gauntlet::boxes::at_a_corner;
@@ -178,12 +177,11 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
     let meshes: Vec<Prepared> = closed().into_iter().map(Prepared::new).collect();
-    let bar = Bar::new();
-    bar.0.set_length(work.len() as u64);
+    let bar = bar_of_steps(work.len());
     let state = Mutex::new((state, Instant::now()));
     queue::run(&queue::one_a_core(), &work, |(), &(trial, piece)| {
         let failures = trial.failures(&meshes, seed, piece)?;
-        bar.0.inc(1);
+        bar.inc(1);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
         let (state, kept) = &mut *guard;
         let done = state.done.entry(trial.name()).or_default();
@@ -196,7 +194,7 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
         }
         Ok(())
     })?;
-    bar.0.finish_and_clear();
+    bar.finish_and_clear();
     let (state, _) = state.into_inner().unwrap_or_else(|broken| broken.into_inner());
     write(&state, file)?;
     Ok(tell(&state, meshes.len()))
@@ -226,10 +224,7 @@ fn read(file: &Path) -> Result<State> {
 }
 
 fn write(state: &State, file: &Path) -> Result<()> {
-    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot make the folder {}", folder.display()))?;
-    }
+    make_folder_of(file)?;
     let bytes = serde_json::to_vec_pretty(state)?;
     raykata::film::write_atomically(file, |out| std::io::Write::write_all(out, &bytes))
         .with_context(|| format!("cannot write {}", file.display()))?;

@@ -8,8 +8,7 @@ mod long;
 pub mod traversal;
 
 use crate::kits::{Source, Which};
-use crate::render::Bar;
-use crate::report::Thousands;
+use crate::report::{Thousands, bar_of_steps};
 use agreement::Agreement;
 use anyhow::Result;
 use checks::gauntlet::distributions::DISTRIBUTIONS;
@@ -97,12 +96,11 @@ fn tables(options: &Options) -> Result<bool> {
     let source = Source::here(options.kit)?;
     let kit = &*source.fresh();
     let rows = rows(kit);
-    let bar = Bar::new();
-    bar.0.set_length((DISTRIBUTIONS.len() + rows.len()) as u64);
+    let bar = bar_of_steps(DISTRIBUTIONS.len() + rows.len());
     let judged: Vec<Judged> = DISTRIBUTIONS
         .iter()
         .map(|distribution| {
-            bar.0.inc(1);
+            bar.inc(1);
             judge(distribution, options.seed, options.inputs as usize)
         })
         .collect();
@@ -113,9 +111,9 @@ fn tables(options: &Options) -> Result<bool> {
         times.push(nanoseconds(&judged[0], |inputs| {
             black_box((row.answer)(black_box(inputs)));
         }));
-        bar.0.inc(1);
+        bar.inc(1);
     }
-    bar.0.finish_and_clear();
+    bar.finish_and_clear();
 
     let heads: Vec<&str> = DISTRIBUTIONS.iter().map(|distribution| distribution.name).collect();
     print_table("wrong %", &rows, &heads, |row, column| percent(cells[row][column].wrong), Some(&times));

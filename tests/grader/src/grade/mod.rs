@@ -1,3 +1,5 @@
 //! `raykata grade`: a verdict on each submission of a class, reached outside the students' processes.
 
+mod lint;
 pub mod result;
+mod submission;

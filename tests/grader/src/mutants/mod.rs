@@ -16,11 +16,11 @@ use crate::gaps::{self, Gap};
 use crate::kits::Source;
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
+use crate::report::bar_of_steps;
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Result, bail};
 use checks::{Check, STAGES, Verdict};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use journal::Journal;
 use list::Mutant;
 use raykata::kit::Door;
@@ -108,10 +108,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let expected = scenes.shown_by(&*Source::Solutions.fresh());
     let of_gaps = scenes.of_gaps();
     let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
-    let bar = ProgressBar::new(mutants.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}") {
-        bar.set_style(style);
-    }
+    let bar = bar_of_steps(mutants.len());
     bar.set_message("what gaps show");
     let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
     let gaps = if mutants.iter().any(needs_gaps) {

@@ -28,6 +28,17 @@ fn say(reply: &Reply) -> bool {
     send(&mut pipe(), reply).is_ok()
 }
 
+/// Late for ever, but only once: the process that is asked next finds the mark that the one before left, and goes on.
+fn late_once(mark: u32) {
+    let mark = std::env::temp_dir().join(format!("raykata-late-{mark}"));
+    if std::fs::File::create_new(&mark).is_ok() {
+        loop {
+            std::thread::park();
+        }
+    }
+    let _ = std::fs::remove_file(mark);
+}
+
 fn main() {
     raykata::worker::serve_with(&|request, watch| {
         if let Request::SphereAlgebraic(queries) = request {
@@ -41,10 +52,11 @@ fn main() {
                 },
                 -6 => println!("test result: ok. 24 passed; 0 failed"),
                 -7 => return Answer::SphereAlgebraic(vec![]),
-                -9 => std::thread::sleep(Duration::from_secs(3)),
+                -9 => late_once(queries[0].ray.t_max as u32),
                 -8 => return Answer::EncodeGamma(vec![1]),
                 -10 => drop(black_box(vec![1_u8; 3 << 30])),
                 -11 => std::thread::sleep(Duration::from_secs(3600)),
+                -14 => std::thread::sleep(Duration::from_secs(3)),
                 -12 => panic!("{:?}", std::fs::read("/etc/passwd").map_err(|error| error.kind())),
                 -13 => panic!(
                     "{:?}",

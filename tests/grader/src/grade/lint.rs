@@ -1,0 +1,232 @@
+//! The syntax check: names what no exercise needs, with line and reason, before anything is compiled.
+//!
+//! It is a courtesy and no wall: safe Rust can reach around it, and the jail is there for that. It reads tokens and not
+//! only syntax trees, so that what stands in a macro is seen as well. A file that is no Rust is left to the compiler.
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use serde::{Deserialize, Serialize};
+use std::str::FromStr;
+
+/// Something that no exercise needs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    /// Which rule: what `--allow` takes.
+    pub rule: String,
+    /// Line of the file.
+    pub line: usize,
+    /// What stands there, and why it may not.
+    pub why: String,
+}
+
+/// Modules of the standard library that no exercise needs, by rule.
+const MODULES: [(&str, &str, &str); 12] = [
+    ("process", "process", "an exercise starts and ends no processes"),
+    ("files", "fs", "an exercise reads and writes no files: the scaffold loads scenes"),
+    ("network", "net", "an exercise has no network"),
+    ("environment", "env", "an exercise depends on its arguments alone"),
+    ("threads", "thread", "the scaffold renders on all cores; exercises need no threads of their own"),
+    ("system", "os", "an exercise does not ask the operating system"),
+    ("system", "ffi", "an exercise calls no foreign code"),
+    ("system", "alloc", "an exercise needs no allocator of its own"),
+    ("panics", "panic", "an exercise may panic, and the kit says so; it may not catch or hide it"),
+    ("intrinsics", "arch", "an exercise is written in plain Rust"),
+    ("intrinsics", "intrinsics", "an exercise is written in plain Rust"),
+    ("input", "stdin", "nobody types anything while exercises are graded"),
+];
+
+/// Macros that look outside of the file, by rule.
+const MACROS: [(&str, &str, &str); 8] = [
+    ("include", "include", "an exercise stands in its file"),
+    ("include", "include_str", "an exercise stands in its file"),
+    ("include", "include_bytes", "an exercise stands in its file"),
+    ("environment", "env", "an exercise depends on its arguments alone"),
+    ("environment", "option_env", "an exercise depends on its arguments alone"),
+    ("intrinsics", "asm", "an exercise is written in plain Rust"),
+    ("intrinsics", "global_asm", "an exercise is written in plain Rust"),
+    ("intrinsics", "naked_asm", "an exercise is written in plain Rust"),
+];
+
+/// Attributes that reach into the build, by rule.
+const ATTRIBUTES: [(&str, &str, &str); 14] = [
+    ("include", "path", "an exercise stands in its file"),
+    ("linkage", "link", "an exercise links nothing"),
+    ("linkage", "link_section", "an exercise decides nothing about how programs are linked"),
+    ("linkage", "link_name", "an exercise decides nothing about how programs are linked"),
+    ("linkage", "no_mangle", "an exercise decides nothing about how programs are linked"),
+    ("linkage", "export_name", "an exercise decides nothing about how programs are linked"),
+    ("linkage", "used", "an exercise decides nothing about how programs are linked"),
+    ("linkage", "global_allocator", "an exercise needs no allocator of its own"),
+    ("linkage", "panic_handler", "an exercise may panic, and the kit says so; it may not catch or hide it"),
+    ("linkage", "no_std", "exercises are built as the kit builds them"),
+    ("linkage", "no_main", "exercises are built as the kit builds them"),
+    ("linkage", "feature", "exercises are built with a stable compiler"),
+    ("linkage", "unsafe_code", "unsafe code is not part of any exercise"),
+    ("linkage", "long_running_const_eval", "what never ends while compiling is stopped early with this lint"),
+];
+
+/// Everything in a file that no exercise needs, in the order of its lines.
+pub fn findings(text: &str) -> Vec<Finding> {
+    // Tokens that do not match up are the compiler's to explain.
+    let Ok(tokens) = TokenStream::from_str(text) else { return Vec::new() };
+    let mut findings = Vec::new();
+    look(tokens, &mut findings);
+    findings.sort_by_key(|finding| finding.line);
+    findings.dedup();
+    findings
+}
+
+fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    for (index, token) in tokens.iter().enumerate() {
+        let rest = &tokens[index + 1..];
+        let line = token.span().start().line;
+        let mut say = |rule: &str, what: String, why: &str| {
+            findings.push(Finding { rule: rule.into(), line, why: format!("{what}: {why}") });
+        };
+        match token {
+            TokenTree::Ident(word) => match word.to_string().as_str() {
+                "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
+                "extern" => say("linkage", "`extern`".into(), "an exercise calls no foreign code"),
+                root @ ("std" | "core" | "alloc") => {
+                    for (rule, what, why) in of_root(root, rest) {
+                        say(rule, what, why);
+                    }
+                }
+                name if is(rest.first(), '!') => {
+                    for (rule, _, why) in MACROS.iter().filter(|(_, banned, _)| *banned == name) {
+                        say(rule, format!("`{name}!`"), why);
+                    }
+                }
+                _ => {}
+            },
+            TokenTree::Punct(mark) if mark.as_char() == '#' => {
+                let attribute = if is(rest.first(), '!') { rest.get(1) } else { rest.first() };
+                if let Some(TokenTree::Group(group)) = attribute
+                    && group.delimiter() == Delimiter::Bracket
+                {
+                    let words = words(group.stream());
+                    for (rule, name, why) in ATTRIBUTES {
+                        if words.iter().any(|word| word == name) {
+                            say(rule, format!("`#[{name}]`"), why);
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+        if let TokenTree::Group(group) = token {
+            look(group.stream(), findings);
+        }
+    }
+}
+
+/// What is wrong with what follows `std`, `core` or `alloc`: rule, what, why.
+fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'static str)> {
+    if let Some(TokenTree::Ident(word)) = rest.first()
+        && word == "as"
+    {
+        return vec![("system", format!("`{root} as …`"), "under another name nobody sees what is used")];
+    }
+    if !(is(rest.first(), ':') && is(rest.get(1), ':')) {
+        return Vec::new();
+    }
+    let firsts: Vec<String> = match rest.get(2) {
+        Some(TokenTree::Ident(word)) => vec![word.to_string()],
+        Some(TokenTree::Group(group)) => firsts(group.stream()),
+        Some(TokenTree::Punct(star)) if star.as_char() == '*' => vec!["*".into()],
+        _ => Vec::new(),
+    };
+    let banned = |first: &String| {
+        if first == "*" || first == "self" {
+            let why = "all of it brings along what no exercise needs";
+            return vec![("system", format!("`{root}::{first}`"), why)];
+        }
+        let named = MODULES.iter().filter(|(_, module, _)| module == first);
+        named.map(|(rule, module, why)| (*rule, format!("`{root}::{module}`"), *why)).collect()
+    };
+    firsts.iter().flat_map(banned).collect()
+}
+
+/// The first words of the paths in `{…}` after `use std::`.
+fn firsts(group: TokenStream) -> Vec<String> {
+    let (mut firsts, mut at_start) = (Vec::new(), true);
+    for token in group {
+        match &token {
+            TokenTree::Ident(word) if at_start => firsts.push(word.to_string()),
+            TokenTree::Punct(mark) if at_start && mark.as_char() == '*' => firsts.push("*".into()),
+            TokenTree::Group(inner) if at_start => firsts.extend(self::firsts(inner.stream())),
+            _ => {}
+        }
+        at_start = is(Some(&token), ',');
+    }
+    firsts
+}
+
+/// All words, at any depth.
+fn words(tokens: TokenStream) -> Vec<String> {
+    let words = tokens.into_iter().flat_map(|token| match token {
+        TokenTree::Ident(word) => vec![word.to_string()],
+        TokenTree::Group(group) => words(group.stream()),
+        _ => Vec::new(),
+    });
+    words.collect()
+}
+
+fn is(token: Option<&TokenTree>, mark: char) -> bool {
+    matches!(token, Some(TokenTree::Punct(punct)) if punct.as_char() == mark)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::findings;
+
+    fn rules(text: &str) -> Vec<(String, usize)> {
+        findings(text).into_iter().map(|finding| (finding.rule, finding.line)).collect()
+    }
+
+    #[test]
+    fn what_no_exercise_needs_is_found_with_its_line() {
+        let cases = [
+            ("fn f() {\n    std::process::exit(0)\n}", "process", 2),
+            ("use std::{f32::consts::PI,\n fs};", "files", 1),
+            ("use std::{{net}};", "network", 1),
+            ("use ::std::env;", "environment", 1),
+            ("use std::*;", "system", 1),
+            ("use std::{self};", "system", 1),
+            ("extern crate std as other;", "linkage", 1),
+            ("use std as other;", "system", 1),
+            ("fn f() { core::arch::x86_64::_mm_pause() }", "intrinsics", 1),
+            ("const S: &str = include_str!(\"/etc/passwd\");", "include", 1),
+            ("const S: Option<&str> = option_env!(\"HOME\");", "environment", 1),
+            ("#[path = \"/x.rs\"]\nmod x;", "include", 1),
+            ("#[cfg_attr(all(), path = \"/x.rs\")]\nmod x;", "include", 1),
+            ("#![allow(unsafe_code)]", "linkage", 1),
+            ("#[unsafe(no_mangle)] pub fn f() {}", "unsafe", 1),
+            ("macro_rules! m { () => {\n unsafe { 1 } } }", "unsafe", 2),
+            ("fn f() {\n\n unsafe {} }", "unsafe", 3),
+            ("extern \"C\" { fn exit(code: i32); }", "linkage", 1),
+            ("static A: [fn(); 1] = [f]; #[used] static B: u8 = 0;", "linkage", 1),
+            ("fn f() { std::thread::spawn(|| ()); }", "threads", 1),
+            ("fn f() { std::panic::set_hook(todo!()) }", "panics", 1),
+        ];
+        for (text, rule, line) in cases {
+            assert!(rules(text).contains(&(rule.into(), line)), "{text}: {:?}", rules(text));
+        }
+    }
+
+    #[test]
+    fn honest_code_is_left_alone() {
+        let honest = [
+            "use std::f32::consts::PI; fn f(env: f32) -> f32 { env * PI }",
+            "fn process(path: f32) -> f32 { let thread = path; thread.max(0.0) }",
+            "use std::{cmp::Ordering, mem, f32};",
+            "/// include_str!(\"x\") and unsafe in a comment\nfn f() { let s = \"std::process::exit\"; }",
+            "#[derive(Clone)] #[inline] #[allow(dead_code)] struct S; fn f() { println!(\"{:?}\", 1) }",
+            "fn f() { let used = 1; let link = used; todo!(\"path\") }",
+            "fn broken( {",
+        ];
+        for text in honest {
+            assert_eq!(rules(text), [], "{text}");
+        }
+    }
+}
