@@ -5,7 +5,7 @@
 
 mod chart;
 mod class_page;
-mod clean;
+pub mod clean;
 mod junit;
 mod machines;
 mod names;
