@@ -11,6 +11,17 @@ fn recurse(depth: u64) -> u64 {
     if black_box(depth) == u64::MAX { 0 } else { 1 + black_box(recurse(depth + 1)) }
 }
 
+/// Late for ever, but only once: the process that is asked next finds the mark that the one before left, and goes on.
+fn late_once(mark: u32) {
+    let mark = std::env::temp_dir().join(format!("raykata-late-{mark}"));
+    if std::fs::File::create_new(&mark).is_ok() {
+        loop {
+            std::thread::park();
+        }
+    }
+    let _ = std::fs::remove_file(mark);
+}
+
 /// The pipe to the judge, behind the back of the library.
 #[cfg(unix)]
 fn pipe() -> impl std::io::Write {
@@ -26,17 +37,6 @@ fn pipe() -> impl std::io::Write {
 
 fn say(reply: &Reply) -> bool {
     send(&mut pipe(), reply).is_ok()
-}
-
-/// Late for ever, but only once: the process that is asked next finds the mark that the one before left, and goes on.
-fn late_once(mark: u32) {
-    let mark = std::env::temp_dir().join(format!("raykata-late-{mark}"));
-    if std::fs::File::create_new(&mark).is_ok() {
-        loop {
-            std::thread::park();
-        }
-    }
-    let _ = std::fs::remove_file(mark);
 }
 
 fn main() {
