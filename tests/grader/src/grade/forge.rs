@@ -47,7 +47,9 @@ impl Forge {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
-        let pristine = crate::sync::pristine(root)?;
+        let mut pristine = crate::sync::pristine(root)?;
+        let glue = pristine.get_mut("glue.rs").context("no file glue.rs among the exercises")?;
+        *glue = without_frames(glue)?;
         Ok(Forge { libraries: libraries(root)?, rustc, toolchain, pristine })
     }
 
@@ -185,6 +187,21 @@ impl Forge {
     }
 }
 
+/// The glue without whole frames: no check asks for one, and they are half of what the compiler has to do (0.7 s in place
+/// of 1.5 for stages 1 to 4).
+fn without_frames(glue: &str) -> Result<String> {
+    let mut without = glue.to_owned();
+    for (call, nothing) in [
+        ("tracer::render(job, watch)", "{ let _ = (job, watch); None }"),
+        ("tracer::trace(job, x, y)", "{ let _ = (job, x, y); Vec::new() }"),
+        ("tracer::outlines(job, depth)", "{ let _ = (job, depth); Vec::new() }"),
+    ] {
+        ensure!(without.matches(call).count() == 1, "glue.rs no longer says `{call}` once");
+        without = without.replace(call, nothing);
+    }
+    Ok(without)
+}
+
 fn option(name: &str, path: &Path) -> OsString {
     let mut option = OsString::from(name);
     option.push(path);
@@ -217,7 +234,6 @@ fn libraries(root: &Path) -> Result<PathBuf> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(root)
         .args(["build", "--quiet", "--package", "raykata", "--lib", "--message-format=json"])
-        .args(["--target-dir", "target/grade"])
         .stdin(Stdio::null())
         .stderr(Stdio::inherit())
         .output()
@@ -243,6 +259,7 @@ fn libraries(root: &Path) -> Result<PathBuf> {
     }
     let folder = root.join("target/grade").join(format!("libraries-{}", &hex(&hash.finalize())[..16]));
     if !folder.exists() {
+        fs::create_dir_all(root.join("target/grade"))?;
         // Whole or not at all, also if two of us do it at the same time.
         let draft = tempfile::tempdir_in(root.join("target/grade"))?;
         for (name, file) in &files {

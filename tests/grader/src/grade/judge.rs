@@ -3,15 +3,18 @@
 use super::result::{CheckResult, Outcome};
 use crate::grade::report::clean;
 use crate::jail::Jail;
+use crate::queue;
 use crate::worker::Worker;
+use anyhow::{Result, ensure};
 use checks::rubric;
 use checks::{Check, STAGES, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a call may take, in processor time. The slowest of the reference takes half a second without optimisation.
@@ -26,26 +29,37 @@ const MOST_SAID: usize = 2048;
 
 /// What a submission is asked, and how.
 pub struct Judge {
-    /// The checks, in the order of the lecture.
-    pub checks: Vec<&'static Check>,
+    /// The checks, in the order of the lecture, and whether hidden inputs are others than those that students have.
+    checks: Vec<(&'static Check, bool)>,
     /// Picks the hidden inputs.
-    pub seed: u64,
+    seed: u64,
     /// What holds a worker; `None` on the instructor's own word.
-    pub jail: Option<Jail>,
+    jail: Option<Jail>,
 }
 
 impl Judge {
-    /// All checks of these stages.
-    pub fn of(stages: &[u8], seed: u64, jail: Option<Jail>) -> Judge {
+    /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
+    /// put once, and one on which the reference itself fails with this seed is unfair; its seed is left out, with a word.
+    pub fn of(stages: &[u8], seed: u64, jail: Option<Jail>) -> Result<Judge> {
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
-        Judge { checks: of_stages.flat_map(|(_, checks)| checks.iter()).collect(), seed, jail }
+        let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
+        let hides = |_: &(), check: &&'static Check| {
+            let [(known, passes), (hidden, passes_hidden)] = [0, seed].map(|seed| asked(check, seed));
+            ensure!(passes, "the reference fails {} of stage {}: is the kit whole?", check.name, check.stage);
+            if !passes_hidden {
+                eprintln!("{} of stage {} is put with the known inputs alone", check.name, check.stage);
+            }
+            Ok((*check, passes_hidden && known != hidden))
+        };
+        let checks = queue::run(&queue::one_a_core(), &checks, hides)?;
+        Ok(Judge { checks, seed, jail })
     }
 
     /// Puts all checks to `worker`; those of the files in `replaced` have their outcome already.
     pub fn judge(&self, worker: &Path, replaced: &BTreeMap<String, (Outcome, String)>) -> Vec<CheckResult> {
         let until = Instant::now() + BUDGET;
-        let judged = self.checks.iter().map(|check| {
-            let (outcome, message) = match self.ask(check, worker, until) {
+        let judged = self.checks.iter().map(|(check, hides)| {
+            let (outcome, message) = match self.ask(check, *hides, worker, until) {
                 // The empty exercise says which file it is, and why it is empty is known.
                 (Outcome::NotWritten, place) => {
                     let lost = replaced.iter().find(|(file, _)| place.contains(file.as_str()));
@@ -60,11 +74,11 @@ impl Judge {
 
     /// The same outcome for every check.
     pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
-        self.checks.iter().map(|check| result(check, outcome, message)).collect()
+        self.checks.iter().map(|(check, _)| result(check, outcome, message)).collect()
     }
 
     /// Puts one check to a worker that nobody has asked anything yet.
-    fn ask(&self, check: &'static Check, program: &Path, until: Instant) -> (Outcome, String) {
+    fn ask(&self, check: &Check, hides: bool, program: &Path, until: Instant) -> (Outcome, String) {
         if Instant::now() > until {
             let message = "not tried: the checks before this one have used up the time of the submission";
             return (Outcome::NotTried, message.into());
@@ -78,6 +92,7 @@ impl Judge {
         // With the inputs that students have, so that they can see again what they are told.
         let known = checks::examine(check, &kit, 0);
         let judged = match outcome(&known) {
+            Outcome::Passed if !hides => (Outcome::Passed, String::new()),
             Outcome::Passed => {
                 let hidden = outcome(&checks::examine(check, &kit, self.seed));
                 match hidden {
@@ -127,6 +142,28 @@ fn result(check: &Check, outcome: Outcome, message: &str) -> CheckResult {
         earned,
         message,
         picture: None,
+    }
+}
+
+/// What the reference is asked by a check, as a fingerprint, and whether it passes.
+fn asked(check: &Check, seed: u64) -> (Vec<u8>, bool) {
+    let questions = Arc::new(Mutex::new(Sha256::new()));
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Overheard(questions.clone())));
+    let passes = matches!(checks::examine(check, &kit, seed), Ok(Ok(())));
+    let questions = questions.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    (questions.finalize().to_vec(), passes)
+}
+
+/// The reference, with somebody who writes down what it is asked.
+struct Overheard(Arc<Mutex<Sha256>>);
+
+impl Transport for Overheard {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        let mut message = Vec::new();
+        // Into a vector nothing fails.
+        let _ = raykata::worker::send(&mut message, &request);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).update(message);
+        request.answer(&solutions::Kit, watch)
     }
 }
 

@@ -124,7 +124,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     store.retain(&names)?;
     let judge =
-        Judge::of(&session.stages, session.seed, (!options.insecure).then(|| Jail::new(Purpose::Worker)));
+        Judge::of(&session.stages, session.seed, (!options.insecure).then(|| Jail::new(Purpose::Worker)))?;
     let grader = Grader { forge, judge, allowed: options.allow.clone() };
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
