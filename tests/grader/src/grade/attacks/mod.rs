@@ -1,8 +1,8 @@
 //! The attack corpus: submissions that want points they have not earned, or harm, and honest ones that look as if they did.
 //! `tests/corpus/attack/NAME/attack.toml` says how one is made and what must come of it; see its neighbour `README.md`.
 //!
-//! `step` (what attack.toml says) · `make` (the folder or archive) · `source` (changes of a source file) · `pack` (archives that no archiver makes) ·
-//! `remember` (answers known by heart) · `verdict` (what came of it) · `run` (all of them)
+//! `step` (what attack.toml says) · `make` (the folder or archive) · `source` (changes of a source file) · `pack` (archives
+//! that no archiver makes) · `remember` (answers known by heart) · `verdict` (what came of it) · `run` (all of them)
 //!
 //! Nothing here runs or compiles an attack: that is for the jail alone.
 
