@@ -61,6 +61,9 @@ enum Command {
         #[arg(long)]
         out: PathBuf,
     },
+    /// Try the grader on submissions that want what they have not earned (for authors).
+    #[cfg(target_os = "linux")]
+    Attacks(grade::AttackOptions),
     /// List all checks with their points.
     List {
         /// The hard cases instead, and the checks that see to them.
@@ -129,6 +132,8 @@ fn run(cli: Cli) -> Result<bool> {
         }
         #[cfg(target_os = "linux")]
         Some(Command::Grade(options)) => return grade::run(&root()?, &options),
+        #[cfg(target_os = "linux")]
+        Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
         #[cfg(target_os = "linux")]
         Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
         Some(Command::List { cases: true }) => cases::list(&root()?)?,

@@ -11,6 +11,7 @@ use crate::queue;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The syntax check reads tokens; the longest file takes it a few milliseconds.
@@ -19,9 +20,9 @@ const LINT_PATIENCE: Duration = Duration::from_secs(10);
 /// All that a submission is graded with.
 pub struct Grader {
     /// Makes workers.
-    pub forge: Forge,
+    pub forge: Arc<Forge>,
     /// Asks them.
-    pub judge: Judge,
+    pub judge: Arc<Judge>,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,
 }

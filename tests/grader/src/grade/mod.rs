@@ -4,16 +4,19 @@
 //! exercise needs, [`forge`] compiles the rest in a jail, [`judge`] puts the laws to the worker that came of it, [`store`]
 //! writes the grade down, [`report`] tells everybody.
 
+pub mod attacks;
 mod class;
 mod forge;
 mod judge;
 mod lint;
 pub mod report;
 pub mod result;
+mod siege;
 mod store;
 mod submission;
 
 pub use class::{Grader, lint_if_asked};
+pub use siege::{Options as AttackOptions, run as attack};
 
 use crate::{jail, queue};
 use anyhow::{Context, Result, bail, ensure};
@@ -27,6 +30,7 @@ use sha2::{Digest, Sha256};
 use std::fs;
 use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use store::Store;
 use submission::Submission;
 
@@ -125,7 +129,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     store.retain(&names)?;
     let judge =
         Judge::of(&session.stages, session.seed, (!options.insecure).then(|| Jail::new(Purpose::Worker)))?;
-    let grader = Grader { forge, judge, allowed: options.allow.clone() };
+    let grader = Grader { forge: Arc::new(forge), judge: Arc::new(judge), allowed: options.allow.clone() };
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;

@@ -1,0 +1,298 @@
+//! Makes the submission of an attack: files first, then one step after the other.
+
+use super::pack::{self, Entry, Format};
+use super::step::{Act, Content, Encoding, Packed, Step, bytes_of, need, path_of};
+use super::{Attack, Base, remember, source};
+use anyhow::{Context, Result, bail, ensure};
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::fs;
+use std::os::unix::ffi::OsStringExt;
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Where students write.
+const SOURCES: &str = "exercises/src";
+
+/// The file that most attacks are in.
+const SHAPES: &str = "exercises/src/stage1_shapes.rs";
+
+/// What lies in a file beside every submission, and may be seen in no report.
+pub const CANARY: &str = "canary-7c1e-of-somebody-else";
+
+/// Where a submission is made, and of what.
+pub struct Place<'a> {
+    /// The kit.
+    pub root: &'a Path,
+    /// An empty folder. `submissions` will hold the submission and `beside` what is none of its business.
+    pub folder: &'a Path,
+}
+
+/// Makes the submission of an attack and says where it is.
+pub fn make(attack: &Attack, place: &Place<'_>) -> Result<PathBuf> {
+    let name = match (&attack.student, &attack.student_hex) {
+        (Some(name), None) => name.into(),
+        (None, Some(hex)) => OsString::from_vec(bytes_of(hex)?),
+        (None, None) => attack.name.clone().into(),
+        _ => bail!("{}: either `student` or `student_hex`", attack.name),
+    };
+    let beside = place.folder.join("beside");
+    fs::create_dir_all(&beside)?;
+    fs::write(beside.join("secret.txt"), CANARY)?;
+    let mut maker = Maker { attack, place, submission: place.folder.join("submissions").join(name) };
+    fs::create_dir_all(&maker.submission).context("the folder of the submission cannot be made")?;
+    for (name, text) in maker.base()? {
+        maker.write(&Path::new(SOURCES).join(name), text.as_bytes())?;
+    }
+    for (index, step) in attack.step.iter().enumerate() {
+        maker.take(step.clone()).with_context(|| format!("{}: step {}", attack.name, index + 1))?;
+    }
+    Ok(maker.submission)
+}
+
+struct Maker<'a> {
+    attack: &'a Attack,
+    place: &'a Place<'a>,
+    submission: PathBuf,
+}
+
+impl Maker<'_> {
+    /// The files of students before the first step.
+    fn base(&self) -> Result<BTreeMap<String, String>> {
+        let mut files = match self.attack.base {
+            Base::Nothing => BTreeMap::new(),
+            _ => crate::sync::pristine(self.place.root)?,
+        };
+        files.retain(|name, _| name.starts_with("stage"));
+        for (name, text) in &mut files {
+            let in_question = |stage: &u8| name.starts_with(&format!("stage{stage}_"));
+            if self.attack.stages.iter().any(in_question) {
+                match self.attack.base {
+                    Base::Nothing | Base::Stubs => {}
+                    Base::Solutions => *text = self.solution(name)?,
+                    Base::Wrong => {
+                        *text = source::with_bodies(&self.solution(name)?, "*", source::wrong_body)?
+                    }
+                }
+            }
+        }
+        Ok(files)
+    }
+
+    fn solution(&self, name: &str) -> Result<String> {
+        let path = self.place.root.join("solutions/src").join(name);
+        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        source::solved(&text, &path)
+    }
+
+    fn take(&mut self, mut step: Step) -> Result<()> {
+        let act = step.act;
+        match act {
+            Act::Write => {
+                let path = path_of(&mut step)?;
+                self.write(&path, &self.content(&mut step)?)?;
+            }
+            Act::Many => {
+                let path = need(step.path.take(), "path")?;
+                let (n, content) = (need(step.times.take(), "times")?, self.content(&mut step)?);
+                for index in 0..n {
+                    self.write(Path::new(&path.replace("@n@", &index.to_string())), &content)?;
+                }
+            }
+            Act::Top | Act::Append => {
+                let path = step.path.take().unwrap_or_else(|| SHAPES.into());
+                let added = String::from_utf8(self.content(&mut step)?)?;
+                let change = |text: String| match act {
+                    Act::Top => Ok(source::with_top(&text, &added)),
+                    _ => Ok(text + &added),
+                };
+                self.change(&path, change)?;
+            }
+            Act::Body => self.body(&mut step)?,
+            Act::Remove => {
+                let path = self.submission.join(path_of(&mut step)?);
+                if path.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
+            }
+            Act::Encode => self.encode(&mut step)?,
+            Act::Link => {
+                let (path, to) = (path_of(&mut step)?, self.filled(&need(step.to.take(), "to")?));
+                symlink(to, self.fresh(&path)?)?;
+            }
+            Act::Pipe => {
+                let path = path_of(&mut step)?;
+                nix::unistd::mkfifo(&self.fresh(&path)?, nix::sys::stat::Mode::S_IRWXU)?;
+            }
+            Act::Deep => {
+                let (path, n) = (need(step.path.take(), "path")?, need(step.times.take(), "times")?);
+                fs::create_dir_all(self.submission.join(vec![path; n].join("/")))?;
+            }
+            Act::Old => {
+                let file =
+                    fs::File::options().append(true).open(self.submission.join(path_of(&mut step)?))?;
+                file.set_modified(SystemTime::UNIX_EPOCH)?;
+            }
+            Act::Beside => {
+                let path = self.place.folder.join("beside").join(path_of(&mut step)?);
+                let content = self.content(&mut step)?;
+                fs::create_dir_all(path.parent().unwrap_or(&path))?;
+                fs::write(path, content)?;
+            }
+            Act::Remember => {
+                let path = step.path.take().unwrap_or_else(|| SHAPES.into());
+                let functions = need(step.functions.take(), "functions")?;
+                self.change(&path, |text| remember::by_heart(&text, &functions))?;
+            }
+            Act::Pack => self.pack(&mut step)?,
+            Act::Raw => {
+                let (format, content) = (need(step.format.take(), "format")?, self.content(&mut step)?);
+                self.become_archive(format, &content)?;
+            }
+        }
+        ensure!(step == Step { act, ..Step::default() }, "it has what it does not need: {step:?}");
+        Ok(())
+    }
+
+    fn body(&mut self, step: &mut Step) -> Result<()> {
+        let path = step.path.take().unwrap_or_else(|| SHAPES.into());
+        let name = need(step.function.take(), "function")?;
+        let body = String::from_utf8(self.content(step)?)?;
+        let solution = self.solution(path.rsplit('/').next().unwrap_or(&path))?;
+        self.change(&path, |text| {
+            source::with_bodies(&text, &name, |function| {
+                let mut body = format!("{{\n    {}\n}}", body.trim());
+                if body.contains("@right@") {
+                    body = body.replace("@right@", source::body_of(&solution, &function.name)?);
+                }
+                if body.contains("@wrong@") {
+                    body = body.replace("@wrong@", &source::wrong_body(function)?);
+                }
+                Ok(body)
+            })
+        })
+    }
+
+    fn encode(&self, step: &mut Step) -> Result<()> {
+        let path = path_of(step)?;
+        let text = fs::read_to_string(self.submission.join(&path))?;
+        let bytes = match need(step.encoding.take(), "encoding")? {
+            Encoding::Windows => format!("\u{feff}{}", text.replace('\n', "\r\n")).into_bytes(),
+            Encoding::Utf16 => format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect(),
+        };
+        self.write(&path, &bytes)
+    }
+
+    fn pack(&mut self, step: &mut Step) -> Result<()> {
+        let format = need(step.format.take(), "format")?;
+        let prefix = step.prefix.take().unwrap_or_default();
+        let mut entries = Vec::new();
+        if !step.alone.take().unwrap_or_default() {
+            let folder = self.submission.join(SOURCES);
+            let mut names: Vec<OsString> =
+                fs::read_dir(&folder)?.map(|entry| Ok(entry?.file_name())).collect::<Result<_>>()?;
+            names.sort();
+            for name in names {
+                let content = fs::read(folder.join(&name))?;
+                let name = [prefix.as_bytes(), SOURCES.as_bytes(), b"/", name.as_encoded_bytes()].concat();
+                entries.push(Entry { name, content, ..Entry::default() });
+            }
+        }
+        for packed in step.entries.take().unwrap_or_default() {
+            entries.extend(self.entries(packed)?);
+        }
+        let mut bytes = Vec::new();
+        pack::write(format, &entries, &mut bytes)?;
+        bytes.truncate(bytes.len() - step.cut.take().unwrap_or_default());
+        self.become_archive(format, &bytes)
+    }
+
+    fn entries(&self, packed: Packed) -> Result<Vec<Entry>> {
+        let content = match packed.to {
+            Some(to) => self.filled(&to).into_bytes(),
+            None => self.bytes(packed.content)?,
+        };
+        let name = |index: usize| match (&packed.name, &packed.name_hex) {
+            (Some(name), None) => Ok(self.filled(name).replace("@n@", &index.to_string()).into_bytes()),
+            (None, Some(hex)) => bytes_of(hex),
+            _ => bail!("an entry has a `name` or a `name_hex`"),
+        };
+        let entry = |index: usize| {
+            Ok(Entry {
+                name: name(index)?,
+                kind: packed.kind,
+                content: content.clone(),
+                zeros: packed.zeros.unwrap_or_default() << 20,
+                stated: packed.stated,
+                encrypted: packed.encrypted,
+            })
+        };
+        (0..packed.times.unwrap_or(1)).map(entry).collect()
+    }
+
+    /// Puts an archive in the place of the folder.
+    fn become_archive(&mut self, format: Format, bytes: &[u8]) -> Result<()> {
+        fs::remove_dir_all(&self.submission)?;
+        self.submission.as_mut_os_string().push(format.ending());
+        fs::write(&self.submission, bytes).context("the archive cannot be written")
+    }
+
+    fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {
+        fs::write(self.fresh(path)?, bytes).with_context(|| path.display().to_string())
+    }
+
+    fn change(&self, path: &str, change: impl FnOnce(String) -> Result<String>) -> Result<()> {
+        let text = fs::read_to_string(self.submission.join(path)).with_context(|| path.to_owned())?;
+        self.write(Path::new(path), change(text)?.as_bytes())
+    }
+
+    /// The place of a path, with nothing there and a folder around.
+    fn fresh(&self, path: &Path) -> Result<PathBuf> {
+        let path = self.submission.join(path);
+        fs::create_dir_all(path.parent().unwrap_or(&path))?;
+        // Never through a link that an earlier step has made.
+        if fs::symlink_metadata(&path).is_ok_and(|metadata| !metadata.is_dir()) {
+            fs::remove_file(&path)?;
+        }
+        Ok(path)
+    }
+
+    /// The text with the places that attacks are after.
+    fn filled(&self, text: &str) -> String {
+        let beside = self.place.folder.join("beside");
+        let shown = |path: &Path| path.display().to_string();
+        text.replace("@root@", &shown(self.place.root))
+            .replace("@secret@", &shown(&beside.join("secret.txt")))
+            .replace("@beside@", &shown(&beside))
+    }
+
+    /// What a step writes.
+    fn content(&self, step: &mut Step) -> Result<Vec<u8>> {
+        let content = match (step.content.take(), step.text.take(), step.fragment.take()) {
+            (Some(content), None, None) => content,
+            (None, None, None) => bail!("`text`, `fragment` or `content` is missing"),
+            (None, text, fragment) => Content { text, fragment, ..Content::default() },
+            _ => bail!("`content`, `text` or `fragment`, but not several of them"),
+        };
+        self.bytes(content)
+    }
+
+    fn bytes(&self, content: Content) -> Result<Vec<u8>> {
+        let filled = |text: Option<String>| text.map_or_else(String::new, |text| self.filled(&text));
+        let (n, before, after) = (content.times.unwrap_or(1), filled(content.before), filled(content.after));
+        let text = match (content.text, content.fragment, content.solution, content.hex) {
+            (text, None, None, None) => filled(text),
+            (None, None, Some(solution), None) => self.solution(&solution)?,
+            (None, Some(fragment), None, None) => {
+                let file = self.attack.folder.join(fragment);
+                self.filled(&fs::read_to_string(&file).with_context(|| file.display().to_string())?)
+            }
+            (None, None, None, Some(hex)) => return Ok(bytes_of(&hex)?.repeat(n)),
+            _ => bail!("`text`, `fragment`, `solution` or `hex`, but not several of them"),
+        };
+        let repeated: String = match text.contains("@n@") {
+            true => (0..n).map(|index| text.replace("@n@", &index.to_string())).collect(),
+            false => text.repeat(n),
+        };
+        Ok((before + &repeated + &after).into_bytes())
+    }
+}

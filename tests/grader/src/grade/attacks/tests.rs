@@ -1,0 +1,247 @@
+use super::*;
+use crate::grade::result::{CheckResult, Graded, Outcome, Remark};
+use crate::queue;
+use checks::{STAGES, rubric};
+use std::collections::BTreeSet;
+use std::os::unix::fs::FileTypeExt;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().unwrap()
+}
+
+fn attack(text: &str) -> Attack {
+    let head = "title = \"a\"\nwhat = \"b\"\nfamily = \"forging\"\n";
+    let mut attack: Attack = toml::from_str(&format!("{head}{text}\n[expect]\nearned = \"none\"\n")).unwrap();
+    attack.name = "ann".into();
+    attack
+}
+
+fn made(text: &str) -> Result<(tempfile::TempDir, PathBuf)> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = make(&attack(text), &Place { root: &root(), folder: folder.path() })?;
+    Ok((folder, path))
+}
+
+fn shapes_of(text: &str) -> String {
+    let (_folder, path) = made(text).unwrap();
+    fs::read_to_string(path.join("exercises/src/stage1_shapes.rs")).unwrap()
+}
+
+/// A submission of which stage 1 ended like this.
+fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
+    let stage = STAGES.iter().find(|(stage, _)| *stage == 1).unwrap();
+    let result = |check: &checks::Check| {
+        let (points, outcome) = (rubric::entry(1, check.name).points, outcome(check.name));
+        let (earned, message) = match outcome {
+            Outcome::Passed => (points, String::new()),
+            other => (0, format!("it is {}", other.words())),
+        };
+        CheckResult { stage: 1, name: check.name.into(), outcome, points, earned, message, picture: None }
+    };
+    Graded {
+        student: "ann".into(),
+        content: String::new(),
+        checks: stage.1.iter().map(result).collect(),
+        remarks: vec![Remark { file: "build.rs".into(), what: "was ignored".into() }],
+        compiler: String::new(),
+        trouble: String::new(),
+        cpu_ms: 0,
+    }
+}
+
+fn told(expected: &str, graded: &Graded) -> Vec<String> {
+    complaints(&[1], &toml::from_str(expected).unwrap(), graded)
+}
+
+#[test]
+fn every_attack_can_be_read_and_made() {
+    let attacks = load(&root()).unwrap();
+    assert!(attacks.len() >= 200, "{}", attacks.len());
+    let made = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
+        let folder = tempfile::tempdir()?;
+        let path = make(attack, &Place { root: &root(), folder: folder.path() })?;
+        ensure!(fs::symlink_metadata(&path).is_ok(), "{}: there is no submission", attack.name);
+        ensure!(!attack.title.is_empty() && attack.what.ends_with('.'), "{}: words are missing", attack.name);
+        // What is to be compiled should at least be Rust; what confuses compilers would confuse this test as well.
+        let rust = !matches!(attack.family, Family::Compiling | Family::Packing);
+        for entry in fs::read_dir(path.join("exercises/src")).into_iter().flatten().filter(|_| rust) {
+            let file = entry?.path();
+            let text = fs::read_to_string(&file)?;
+            let parsed = syn::parse_file(&text);
+            ensure!(parsed.is_ok(), "{}: {}: {:?}", attack.name, file.display(), parsed.err());
+        }
+        Ok(())
+    });
+    made.unwrap();
+}
+
+#[test]
+fn what_is_expected_names_checks_that_there_are() {
+    for attack in load(&root()).unwrap() {
+        let stages = STAGES.iter().filter(|(stage, _)| attack.stages.contains(stage));
+        let names: Vec<&str> = stages.flat_map(|(_, checks)| *checks).map(|check| check.name).collect();
+        for expected in [Some(&attack.expect), attack.without_lint.as_ref()].into_iter().flatten() {
+            let (Earned::AllBut(patterns) | Earned::AtLeastAllBut(patterns) | Earned::AtMost(patterns)) =
+                &expected.earned
+            else {
+                continue;
+            };
+            for pattern in patterns {
+                let known = names.iter().any(|name| super::verdict::is_like(name, pattern));
+                assert!(known, "{}: no check is called {pattern}", attack.name);
+            }
+        }
+        assert!(attack.expect.allow.is_empty(), "{}: `allow` is for [without_lint]", attack.name);
+        assert!(attack.without_lint.is_none_or(|expected| !expected.allow.is_empty()), "{}", attack.name);
+    }
+}
+
+#[test]
+fn attacks_of_every_family_are_there() {
+    let families: BTreeSet<Family> = load(&root()).unwrap().iter().map(|attack| attack.family).collect();
+    assert_eq!(families.len(), 13, "{families:?}");
+}
+
+#[test]
+fn bodies_are_right_or_wrong_as_a_step_says() {
+    assert!(shapes_of("").contains("todo!(\"solve the quadratic"));
+    assert!(shapes_of("base = \"solutions\"").contains("let discriminant ="));
+    let wrong = shapes_of("base = \"wrong\"");
+    assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let discriminant ="));
+    let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_viewer\"\ntext = \"if true @right@ else @wrong@\"";
+    let both = shapes_of(step);
+    assert!(both.contains("if normal.dot(dir) > 0.0 { -normal } else { normal }"));
+    assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
+}
+
+#[test]
+fn files_links_and_pipes_are_made_where_a_step_says() {
+    let steps = "[[step]]\ndo = \"many\"\npath = \"a/@n@.txt\"\ntimes = 3\ntext = \"x\"\n\
+                 [[step]]\ndo = \"write\"\npath = \"b\"\npath_hex = \"ff 2e\"\ncontent = { hex = \"00 01\", times = 2 }\n\
+                 [[step]]\ndo = \"link\"\npath = \"exercises/src/stage1_shapes.rs\"\nto = \"@secret@\"\n\
+                 [[step]]\ndo = \"pipe\"\npath = \"exercises/src/stage2_triangles.rs\"\n\
+                 [[step]]\ndo = \"append\"\npath = \"a/1.txt\"\ncontent = { text = \"@n@;\", times = 3, before = \"<\", after = \">\" }\n";
+    let (folder, path) = made(steps).unwrap();
+    assert_eq!(fs::read_to_string(path.join("a/2.txt")).unwrap(), "x");
+    assert_eq!(fs::read_to_string(path.join("a/1.txt")).unwrap(), "x<0;1;2;>");
+    let odd: Vec<_> = fs::read_dir(path.join("b")).unwrap().map(|entry| entry.unwrap()).collect();
+    assert_eq!(odd[0].file_name().as_encoded_bytes(), b"\xff.");
+    assert_eq!(fs::read(odd[0].path()).unwrap(), [0, 1, 0, 1]);
+    let target = fs::read_link(path.join("exercises/src/stage1_shapes.rs")).unwrap();
+    assert_eq!(target, folder.path().join("beside/secret.txt"));
+    assert_eq!(fs::read_to_string(target).unwrap(), CANARY);
+    let pipe = fs::symlink_metadata(path.join("exercises/src/stage2_triangles.rs")).unwrap();
+    assert!(pipe.file_type().is_fifo());
+}
+
+#[test]
+fn a_step_that_lacks_something_or_has_too_much_is_an_error() {
+    let error = |text: &str| format!("{:#}", made(text).unwrap_err());
+    let without = error("[[step]]\ndo = \"link\"\npath = \"a\"");
+    assert!(without.contains("ann: step 1: `to` is missing"), "{without}");
+    assert!(error("[[step]]\ndo = \"link\"\npath = \"a\"\nto = \"b\"\ntimes = 3").contains("does not need"));
+    assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"").contains("`content` is missing"));
+    assert!(error("[[step]]\ndo = \"write\"\npath = \"/a\"\ntext = \"\"").contains("`path` is missing"));
+    assert!(error("[[step]]\ndo = \"body\"\nfunction = \"spher\"\ntext = \"\"").contains("`pub fn spher`"));
+    assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"\ncontent = { hex = \"0x\" }").contains("no byte"));
+}
+
+#[test]
+fn archives_take_the_place_of_the_folder() {
+    let steps = "base = \"stubs\"\nstudent = \"bob\"\n[[step]]\ndo = \"pack\"\nformat = \"tar.gz\"\nprefix = \"main/\"\n\
+                 entries = [{ name = \"../@n@\", times = 2 }]\n";
+    let (_folder, path) = made(steps).unwrap();
+    assert!(path.ends_with("submissions/bob.tar.gz"), "{}", path.display());
+    let gzip = flate2::read::GzDecoder::new(fs::File::open(path).unwrap());
+    let mut archive = tar::Archive::new(gzip);
+    let names: Vec<String> = archive
+        .entries()
+        .unwrap()
+        .map(|entry| String::from_utf8(entry.unwrap().path_bytes().into_owned()).unwrap())
+        .collect();
+    assert!(names.contains(&"main/exercises/src/stage1_shapes.rs".into()), "{names:?}");
+    assert_eq!(names[names.len() - 2..], ["../0", "../1"]);
+}
+
+#[test]
+fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given() {
+    let fine = graded(|_| Outcome::Passed);
+    assert_eq!(told("earned = \"all\"", &fine), [""; 0]);
+    assert_eq!(told("earned = \"none\"", &fine).len(), 24);
+    assert_eq!(told("earned = \"any\"", &fine), [""; 0]);
+    let normal =
+        graded(|name| if name.starts_with("sphere_normal") { Outcome::TooLong } else { Outcome::Passed });
+    assert_eq!(told("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
+    assert_eq!(told("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal), [""; 0]);
+    let both = told("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
+    assert!(both.len() == 1 && both[0].contains("face_viewer_turns") && both[0].contains("not earned"));
+    let none = told("earned = { at_least_all_but = [\"plane_*\"] }", &normal);
+    assert!(none.len() == 1 && none[0].contains("should pass and is: too long"), "{none:?}");
+    assert_eq!(told("earned = { at_most = [\"plane_*\"] }", &normal).len(), 20);
+    let outcome = told("earned = { all_but = [\"sphere_normal_*\"] }\noutcomes = [\"crashed\"]", &normal);
+    assert!(outcome[0].ends_with("is: too long, not: crashed"), "{outcome:?}");
+}
+
+#[test]
+fn words_are_looked_for_in_everything_that_is_told() {
+    let wrong = graded(|_| Outcome::Wrong);
+    assert_eq!(told("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
+    let missing =
+        told("earned = \"none\"\nsays = [\"sorry\"]\nnever_says = [\"build.rs\"]\ntrouble = true", &wrong);
+    assert!(missing.iter().any(|one| one == "nobody is told `sorry`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one == "somebody is told `build.rs`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one.contains("nobody is told why")), "{missing:?}");
+}
+
+#[test]
+fn reports_that_leak_obey_or_are_endless_are_complained_about() {
+    let with = |change: fn(&mut Graded)| {
+        let mut graded = graded(|_| Outcome::Wrong);
+        change(&mut graded);
+        told("earned = \"none\"", &graded)
+    };
+    assert_eq!(with(|_| ()), [""; 0]);
+    let cases: [(fn(&mut Graded), &str); 7] = [
+        (|graded| graded.checks[3].message = format!("found {CANARY}"), "somebody is told"),
+        (|graded| graded.remarks[0].file = "\u{1b}[2J".into(), "control characters"),
+        (|graded| graded.compiler = "\u{202e}".into(), "control characters"),
+        (|graded| graded.compiler = "x".repeat(2 << 20), "the report has"),
+        (|graded| graded.checks[3].message.clear(), "without a message"),
+        (|graded| graded.checks[3].earned = 1, "has 1 of"),
+        (|graded| drop(graded.checks.pop()), "checks were graded"),
+    ];
+    for (change, says) in cases {
+        let told = with(change);
+        assert!(told.iter().any(|one| one.contains(says)), "{says}: {told:?}");
+    }
+}
+
+#[test]
+fn a_run_names_what_went_wrong_and_what_was_changed() {
+    let names = ["exit_before_the_tests".to_owned(), "honest_solution".to_owned()];
+    let run = |grade: &(dyn Fn(&Path, &[String]) -> Result<Graded> + Sync)| {
+        run_all(&root(), &names, |path, _, allowed| grade(path, allowed)).unwrap()
+    };
+    let fine = run(&|path, _| {
+        let honest = path.ends_with("honest_solution");
+        Ok(graded(|_| if honest { Outcome::Passed } else { Outcome::Wrong }))
+    });
+    assert_eq!(fine[1].1, [""; 0]);
+    assert!(fine[0].1.iter().any(|one| one.starts_with("without the syntax check: ")), "{:?}", fine[0].1);
+    let broken = run(&|_, allowed| bail_out(allowed));
+    assert!(
+        broken[0].1.iter().any(|one| one.contains("gave up: out of paper with 1 rule")),
+        "{:?}",
+        broken[0].1
+    );
+    let harmful = run(&|path, _| {
+        fs::write(path.join("../../beside/secret.txt"), "gone")?;
+        Ok(graded(|_| Outcome::Passed))
+    });
+    assert!(harmful[1].1.iter().any(|one| one.starts_with("it changed ") && one.ends_with("secret.txt")));
+    assert!(run_all(&root(), &["nobody".into()], |_, _, _| bail_out(&[])).is_err());
+}
+
+fn bail_out(allowed: &[String]) -> Result<Graded> {
+    anyhow::bail!("out of paper with {} rule", allowed.len())
+}

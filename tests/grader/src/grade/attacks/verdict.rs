@@ -1,0 +1,164 @@
+//! What came of an attack, held against what must.
+
+use super::make::CANARY;
+use crate::grade::result::{Graded, Outcome};
+use checks::STAGES;
+use checks::rubric;
+use serde::Deserialize;
+
+/// A report of one student is a few pages, whatever the student does.
+const LONGEST_REPORT: usize = 1 << 20;
+
+/// Which points may be earned. Names of checks may have one `*`, which stands for anything.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Earned {
+    /// All: it is honest.
+    All,
+    /// None.
+    None,
+    /// All but those of these checks, none of which passes.
+    AllBut(Vec<String>),
+    /// All but those of these checks, each of which may pass or not.
+    AtLeastAllBut(Vec<String>),
+    /// None but those of these checks, each of which may pass or not.
+    AtMost(Vec<String>),
+    /// Whatever the answers are worth: they are not what this is about.
+    Any,
+}
+
+/// What must come of an attack.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expectation {
+    /// Rules of the syntax check that are switched off.
+    #[serde(default)]
+    pub allow: Vec<String>,
+    /// Which points.
+    pub earned: Earned,
+    /// How checks that do not pass may end; anyhow, if nothing is said.
+    #[serde(default)]
+    pub outcomes: Vec<Outcome>,
+    /// Whether nothing can be graded, and the reason is told; either way, if nothing is said.
+    pub trouble: Option<bool>,
+    /// Words that somebody must be told: in the message of a check, a remark, the compiler's messages or the trouble.
+    #[serde(default)]
+    pub says: Vec<String>,
+    /// Words that nobody may be told.
+    #[serde(default)]
+    pub never_says: Vec<String>,
+}
+
+/// What is not as it must be, a sentence each.
+pub fn complaints(stages: &[u8], expected: &Expectation, graded: &Graded) -> Vec<String> {
+    let mut complaints = Vec::new();
+    completeness(stages, graded, &mut complaints);
+    points(expected, graded, &mut complaints);
+    words(expected, graded, &mut complaints);
+    complaints
+}
+
+/// Every check is there once and is worth what the rubric says, whatever was handed in.
+fn completeness(stages: &[u8], graded: &Graded, complaints: &mut Vec<String>) {
+    let all = STAGES.iter().filter(|(stage, _)| stages.contains(stage)).flat_map(|(_, checks)| *checks);
+    let wanted: Vec<(u8, &str)> = all.map(|check| (check.stage, check.name)).collect();
+    let present: Vec<(u8, &str)> =
+        graded.checks.iter().map(|check| (check.stage, check.name.as_str())).collect();
+    if wanted != present {
+        complaints.push(format!("{} checks were graded, and there are {}", present.len(), wanted.len()));
+        return;
+    }
+    for check in &graded.checks {
+        let points = rubric::entry(check.stage, &check.name).points;
+        let right = if check.outcome == Outcome::Passed { points } else { 0 };
+        if (check.points, check.earned) != (points, right) {
+            complaints.push(format!(
+                "{} has {} of {} points, and its outcome is worth {right} of {points}",
+                check.name, check.earned, check.points
+            ));
+        }
+    }
+}
+
+fn points(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) {
+    match (expected.trouble, graded.trouble.as_str()) {
+        (Some(true), "") => complaints.push("nothing should have been graded, and nobody is told why".into()),
+        (Some(false), trouble) if !trouble.is_empty() => {
+            complaints.push(format!("nothing could be graded: {trouble}"));
+        }
+        _ => {}
+    }
+    for check in &graded.checks {
+        let passed = check.outcome == Outcome::Passed;
+        let named = |names: &[String]| names.iter().any(|name| is_like(&check.name, name));
+        let wanted = match &expected.earned {
+            Earned::All => Some(true),
+            Earned::None => Some(false),
+            Earned::AllBut(names) => Some(!named(names)),
+            Earned::AtLeastAllBut(names) | Earned::AtMost(names) if named(names) => None,
+            Earned::AtLeastAllBut(_) => Some(true),
+            Earned::AtMost(_) => Some(false),
+            Earned::Any => None,
+        };
+        match wanted {
+            Some(true) if !passed => complaints.push(format!(
+                "{} should pass and is: {}: {}",
+                check.name,
+                check.outcome.words(),
+                check.message
+            )),
+            Some(false) if passed => complaints.push(format!("{} passes, which is not earned", check.name)),
+            _ => {}
+        }
+        if !passed && !expected.outcomes.is_empty() && !expected.outcomes.contains(&check.outcome) {
+            let may: Vec<&str> = expected.outcomes.iter().map(|outcome| outcome.words()).collect();
+            complaints.push(format!("{} is: {}, not: {}", check.name, check.outcome.words(), may.join(", ")));
+        }
+        if !passed && check.message.trim().is_empty() && graded.trouble.is_empty() {
+            complaints.push(format!("{} fails without a message", check.name));
+        }
+    }
+}
+
+fn words(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) {
+    let messages = graded.checks.iter().map(|check| check.message.as_str());
+    let remarks = graded.remarks.iter().flat_map(|remark| [remark.file.as_str(), remark.what.as_str()]);
+    let told: Vec<&str> =
+        messages.chain(remarks).chain([graded.compiler.as_str(), graded.trouble.as_str()]).collect();
+    let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in &expected.says {
+        if !told.iter().any(|text| one_line(text).contains(&one_line(words))) {
+            complaints.push(format!("nobody is told `{words}`"));
+        }
+    }
+    for words in expected.never_says.iter().map(String::as_str).chain([CANARY]) {
+        if told.iter().any(|text| text.contains(words)) {
+            complaints.push(format!("somebody is told `{words}`"));
+        }
+    }
+    if let Some(text) = told.iter().find(|text| text.chars().any(is_dangerous)) {
+        let shown: String = text.escape_debug().take(200).collect();
+        complaints.push(format!("control characters were left in: {shown}"));
+    }
+    let length: usize = told.iter().map(|text| text.len()).sum();
+    if length > LONGEST_REPORT {
+        complaints.push(format!("the report has {length} bytes"));
+    }
+}
+
+/// Whether a terminal would obey the character, or show others in another order.
+fn is_dangerous(character: char) -> bool {
+    let bidi =
+        matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    bidi || character.is_control() && !matches!(character, '\n' | '\t')
+}
+
+/// Whether a name is like a pattern, in which one `*` stands for anything.
+pub(super) fn is_like(name: &str, pattern: &str) -> bool {
+    match pattern.split_once('*') {
+        None => name == pattern,
+        Some((start, end)) => {
+            name.len() >= start.len() + end.len() && name.starts_with(start) && name.ends_with(end)
+        }
+    }
+}
