@@ -1,6 +1,7 @@
 //! The verdict on a submission: the laws are put to its worker, over a pipe, by a process that holds no code of it.
 
 use super::result::{CheckResult, Outcome};
+use super::sanity;
 use crate::grade::report::clean;
 use crate::jail::Jail;
 use crate::queue;
@@ -178,6 +179,10 @@ impl Transport for Asked {
         if self.over.load(Ordering::Relaxed) {
             mishap::unwind(Mishap::Crashed { how: "the verdict was there before".into() });
         }
-        self.worker.call(request, watch)
+        let answer = self.worker.call(request, watch);
+        match sanity::fault(&answer) {
+            None => answer,
+            Some(what) => mishap::unwind(Mishap::Nonsense { what }),
+        }
     }
 }

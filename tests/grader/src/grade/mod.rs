@@ -11,6 +11,7 @@ mod judge;
 mod lint;
 pub mod report;
 pub mod result;
+mod sanity;
 mod siege;
 mod store;
 mod submission;
