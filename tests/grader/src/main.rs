@@ -64,6 +64,9 @@ enum Command {
     /// Try the grader on submissions that want what they have not earned (for authors).
     #[cfg(target_os = "linux")]
     Attacks(grade::AttackOptions),
+    /// Grade a made-up class whose grades are known, and compare (for authors).
+    #[cfg(target_os = "linux")]
+    Rehearse(grade::RehearsalOptions),
     /// List all checks with their points.
     List {
         /// The hard cases instead, and the checks that see to them.
@@ -134,6 +137,8 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Grade(options)) => return grade::run(&root()?, &options),
         #[cfg(target_os = "linux")]
         Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
+        #[cfg(target_os = "linux")]
+        Some(Command::Rehearse(options)) => return grade::rehearse(&root()?, &options),
         #[cfg(target_os = "linux")]
         Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
         Some(Command::List { cases: true }) => cases::list(&root()?)?,

@@ -9,6 +9,7 @@ mod class;
 mod forge;
 mod judge;
 mod lint;
+mod rehearsal;
 pub mod report;
 pub mod result;
 mod sanity;
@@ -17,6 +18,7 @@ mod store;
 mod submission;
 
 pub use class::{Grader, lint_if_asked};
+pub use rehearsal::{Options as RehearsalOptions, run as rehearse};
 pub use siege::{Options as AttackOptions, run as attack};
 
 use crate::{jail, queue};
