@@ -95,8 +95,9 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
         // A cosine near 0 decides between 0 and 1 for exponent 0.
         let cos_phi = cos_phi(query);
         let edge = n.dot(l).abs() < 1e-5 || cos_phi.abs() < 1e-5;
-        // The cosine is off by a few roundings, and the power makes n times as much of that.
-        if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + exponent) {
+        // The cosine is off by a few roundings, and the power makes n cosⁿ⁻¹ φ times as much of that: for roots more than n.
+        let steep = exponent * cos_phi.max(0.0).powf(exponent - 1.0).max(1.0);
+        if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep) {
             return Ok(());
         }
         let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent);
