@@ -147,10 +147,10 @@ pub fn render<T: Tally>(
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-        // Without threads of our own the shared pool does the same work.
+        // Where threads cannot be had, as in a jail, this one does the same work.
         match pool {
             Ok(pool) => pool.install(|| corners.into_par_iter().map(tile).collect()),
-            Err(_) => corners.into_par_iter().map(tile).collect(),
+            Err(_) => corners.into_iter().map(tile).collect(),
         }
     };
 

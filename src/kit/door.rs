@@ -121,7 +121,7 @@ macro_rules! door {
             $(fn $name(&self, queries: &[$query]) -> Vec<$answer> {
                 match self.0.call(Request::$Message(queries.to_vec()), &crate::frame::Unwatched) {
                     Answer::$Message(answers) if answers.len() == queries.len() => answers,
-                    answer => mishap::wrong_answer(&format!("{answer:?}")),
+                    answer => mishap::wrong_answer(&answer),
                 }
             })*
         })*
@@ -131,22 +131,26 @@ macro_rules! door {
 impl<T: Transport> Frames for Door<T> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         match self.0.call(Request::Render(Box::new(job.clone())), watch) {
+            // The other side says how large its picture is; what is done with it relies on that.
+            Answer::Render(Some(rendering)) if !job.fits(&rendering.film) => {
+                mishap::wrong_answer(&rendering.film)
+            }
             Answer::Render(rendering) => rendering.map(|rendering| *rendering),
-            answer => mishap::wrong_answer(&format!("{answer:?}")),
+            answer => mishap::wrong_answer(&answer),
         }
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
         match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
             Answer::Trace(rays) => rays,
-            answer => mishap::wrong_answer(&format!("{answer:?}")),
+            answer => mishap::wrong_answer(&answer),
         }
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
         match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
             Answer::Outlines(edges) => edges,
-            answer => mishap::wrong_answer(&format!("{answer:?}")),
+            answer => mishap::wrong_answer(&answer),
         }
     }
 }

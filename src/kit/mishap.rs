@@ -61,8 +61,27 @@ pub fn unwind(mishap: Mishap) -> ! {
     panic::resume_unwind(Box::new(mishap))
 }
 
-pub(super) fn wrong_answer(what: &str) -> ! {
-    unwind(Mishap::Nonsense { what: what.chars().take(200).collect() })
+/// Says how the answer begins, and writes no more of it than that: it may be very long, on purpose.
+pub(super) fn wrong_answer(answer: &dyn fmt::Debug) -> ! {
+    let mut beginning = Beginning { words: String::new(), room: 200 };
+    // It fails when there is no more room.
+    let _ = fmt::write(&mut beginning, format_args!("{answer:?}"));
+    unwind(Mishap::Nonsense { what: beginning.words })
+}
+
+struct Beginning {
+    words: String,
+    room: usize,
+}
+
+impl fmt::Write for Beginning {
+    fn write_str(&mut self, more: &str) -> fmt::Result {
+        for letter in more.chars() {
+            self.room = self.room.checked_sub(1).ok_or(fmt::Error)?;
+            self.words.push(letter);
+        }
+        Ok(())
+    }
 }
 
 thread_local! {

@@ -80,6 +80,15 @@ pub struct RenderJob {
     pub count: bool,
 }
 
+impl RenderJob {
+    /// Whether a picture has the size that was asked for.
+    fn fits(&self, film: &Film) -> bool {
+        let asked = &self.scene.film;
+        let pixels = u64::from(asked.width) * u64::from(asked.height);
+        (film.width, film.height) == (asked.width, asked.height) && film.pixels.len() as u64 == pixels
+    }
+}
+
 /// How large a structure is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StructureSize {

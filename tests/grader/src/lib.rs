@@ -8,7 +8,9 @@ pub mod explain;
 pub mod gaps;
 pub mod gauntlet;
 pub mod generate;
+#[cfg(target_os = "linux")]
 pub mod grade;
+pub mod jail;
 pub mod kits;
 pub mod knobs;
 pub mod mutants;

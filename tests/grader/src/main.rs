@@ -2,9 +2,12 @@
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
+#[cfg(target_os = "linux")]
+use grader::grade;
 use grader::kits::{Source, Which, root};
 use grader::{
-    cases, check, compare, corpus, explain, gaps, gauntlet, generate, mutants, render, strip, sync, tree,
+    cases, check, compare, corpus, explain, gaps, gauntlet, generate, jail, mutants, render, strip, sync,
+    tree,
 };
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -45,6 +48,22 @@ enum Command {
         #[arg(long, value_enum, default_value_t = Which::Exercises)]
         kit: Which,
     },
+    /// Grade a folder of submissions, each in a jail, and write tables and reports (for instructors).
+    #[cfg(target_os = "linux")]
+    Grade(grade::Options),
+    /// Put together what `grade --shard` has made of the parts of a class (for instructors).
+    #[cfg(target_os = "linux")]
+    Merge {
+        /// The folders of the parts.
+        #[arg(required = true)]
+        parts: Vec<PathBuf>,
+        /// The folder for the grades of the whole class.
+        #[arg(long)]
+        out: PathBuf,
+    },
+    /// Try the grader on submissions that want what they have not earned (for authors).
+    #[cfg(target_os = "linux")]
+    Attacks(grade::AttackOptions),
     /// List all checks with their points.
     List {
         /// The hard cases instead, and the checks that see to them.
@@ -83,6 +102,10 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    // As a launcher of what is not trusted, or as the syntax check, this program does nothing else.
+    jail::launch_if_asked();
+    #[cfg(target_os = "linux")]
+    grade::lint_if_asked();
     let cli = Cli::parse();
     match run(cli) {
         Ok(true) => ExitCode::SUCCESS,
@@ -107,6 +130,12 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Check { stage, kit }) => {
             return check::scorecard(&Source::prepare(kit, &root()?)?, stage);
         }
+        #[cfg(target_os = "linux")]
+        Some(Command::Grade(options)) => return grade::run(&root()?, &options),
+        #[cfg(target_os = "linux")]
+        Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
+        #[cfg(target_os = "linux")]
+        Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
         Some(Command::List { cases: true }) => cases::list(&root()?)?,
         Some(Command::List { cases: false }) => check::list(),
         Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,

@@ -53,6 +53,15 @@ pub fn exercises(root: &Path) -> Result<Vec<Exercise>> {
         .collect()
 }
 
+/// The files of `exercises/src` as nobody has begun them, by name.
+pub fn pristine(root: &Path) -> Result<BTreeMap<String, String>> {
+    let named = |exercise: Exercise| {
+        let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        (name, exercise.stub)
+    };
+    Ok(exercises(root)?.into_iter().map(named).collect())
+}
+
 /// Says which exercises differ from what `sync` would write; fails if any does.
 pub fn check(root: &Path) -> Result<()> {
     let different: Vec<String> = exercises(root)?

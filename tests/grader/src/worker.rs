@@ -3,15 +3,21 @@
 //! A process that panics, loops, overflows its stack or ends costs the call that it was asked, and nothing else: the
 //! next call starts a new one.
 
+mod autopsy;
+mod watchdog;
+
+use crate::jail::{self, Jail};
+use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Mishap, Request, Transport, mishap};
-use raykata::worker::{self, Reply};
+use raykata::worker::{self, LONGEST_MESSAGE, Reply};
 use std::io::{self, BufReader, BufWriter, Read, Write};
-use std::path::PathBuf;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::{Duration, Instant};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use watchdog::Watchdog;
 
 /// How long a call of a check may take. The slowest needs a tenth of a second.
 pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
@@ -19,12 +25,14 @@ pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
 /// How long a frame may go without progress: building a large hierarchy in a development build takes a while.
 const FRAME_PATIENCE: Duration = Duration::from_secs(120);
 
-/// How much of what a worker writes to standard error is kept.
-const KEPT_STDERR: u64 = 64 * 1024;
+/// The longest reply of a jailed worker: ten times what the largest frame of a check takes. It bounds what the judge can
+/// be made to hold; values can take some times as much in memory as in a message.
+const LONGEST_JAILED_REPLY: usize = 64 << 20;
 
 /// A kit in a process of its own.
 pub struct Worker {
     program: PathBuf,
+    jail: Option<Jail>,
     call_patience: Duration,
     frame_patience: Duration,
     asks_again: AtomicBool,
@@ -36,11 +44,19 @@ impl Worker {
     pub fn new(program: PathBuf, call_patience: Duration) -> Self {
         Worker {
             program,
+            jail: None,
             call_patience,
             frame_patience: FRAME_PATIENCE,
             asks_again: AtomicBool::new(false),
             process: Mutex::new(None),
         }
+    }
+
+    /// The same for code that nobody trusts. It has `patience` for a frame, too, however often that says that it gets
+    /// on. Time counts only while the worker computes, up to three times the patience, so that a busy machine does
+    /// not change a verdict.
+    pub fn jailed(program: PathBuf, patience: Duration, jail: Jail) -> Self {
+        Worker { jail: Some(jail), frame_patience: patience, ..Worker::new(program, patience) }
     }
 
     /// The same for small pictures, of which some never end: it waits no longer for a frame than for any other call.
@@ -56,14 +72,19 @@ impl Worker {
 
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, Mishap> {
         let mut slot = lock(&self.process);
-        let mut process = match slot.take().map_or_else(|| Process::start(&self.program), Ok) {
+        let start = || Process::start(&self.program, self.jail.as_ref());
+        let mut process = match slot.take().map_or_else(start, Ok) {
             Ok(process) => process,
             Err(error) => return Err(Mishap::Crashed { how: format!("it cannot be started: {error}") }),
         };
         match process.ask(request, watch, patience) {
             Ok(Some(Reply::Mishap(mishap))) => {
                 *slot = Some(process);
-                Err(mishap)
+                Err(shortened(mishap))
+            }
+            // That is for frames that are no longer wanted: from here it could be out of step.
+            Ok(Some(Reply::Answer(answer))) if matches!(*answer, Answer::Render(None)) => {
+                Err(Mishap::Nonsense { what: "no picture".into() })
             }
             Ok(Some(Reply::Answer(answer))) => {
                 *slot = Some(process);
@@ -98,36 +119,51 @@ struct Process {
     from_worker: Box<dyn Read + Send>,
     watchdog: Arc<Watchdog>,
     stderr: std::thread::JoinHandle<String>,
+    /// How much memory it was given, if it is in a jail.
+    memory: Option<u64>,
 }
 
 impl Process {
-    fn start(program: &PathBuf) -> io::Result<Process> {
-        let mut command = Command::new(program);
+    fn start(program: &Path, jail: Option<&Jail>) -> io::Result<Process> {
+        let mut command = match jail {
+            Some(jail) => jail.command(program),
+            None => Command::new(program),
+        };
         command.stdout(Stdio::null()).stderr(Stdio::piped());
-        let (mut child, to_worker, from_worker) = spawn(command)?;
+        let (mut child, to_worker, from_worker) = spawn(command, jail.is_some())?;
         let stderr = child.stderr.take().ok_or_else(|| io::Error::other("no standard error"))?;
         let child = Arc::new(Mutex::new(child));
         Ok(Process {
-            watchdog: Watchdog::guard(&child),
+            watchdog: Watchdog::guard(&child, jail.is_some()),
             child,
             to_worker,
             from_worker,
             stderr: std::thread::spawn(move || keep_start(stderr)),
+            memory: jail.map(|jail| jail.limits.memory_bytes),
         })
     }
 
     /// `None` if `watch` no longer wants the answer.
     fn ask(&mut self, request: &Request, watch: &dyn Watch, patience: Duration) -> io::Result<Option<Reply>> {
+        let jailed = self.memory.is_some();
+        let longest = if jailed { LONGEST_JAILED_REPLY } else { LONGEST_MESSAGE };
+        // Before the question: a worker that does not read it may not stop us for ever.
         self.watchdog.bark_after(patience);
         worker::send(&mut self.to_worker, request)?;
         loop {
-            match worker::receive(&mut self.from_worker)? {
+            match worker::receive_up_to(&mut self.from_worker, longest)? {
+                Reply::Progress { .. } if !matches!(request, Request::Render(_)) => {
+                    return Err(io::Error::other("it says how far a frame is, and was asked for none"));
+                }
                 Reply::Progress { done, total } => {
                     watch.progress(done, total);
                     if watch.cancelled() {
                         return Ok(None);
                     }
-                    self.watchdog.bark_after(patience);
+                    // Code that nobody trusts could say so for ever.
+                    if !jailed {
+                        self.watchdog.bark_after(patience);
+                    }
                 }
                 reply => {
                     self.watchdog.rest();
@@ -137,12 +173,13 @@ impl Process {
         }
     }
 
-    /// Why the process no longer answers.
+    /// Why the process no longer answers, or what is wrong with what it says.
     fn post_mortem(mut self, error: &io::Error, patience: Duration) -> Mishap {
-        let timed_out = self.watchdog.barked.load(Ordering::Relaxed);
+        let timed_out = self.watchdog.has_barked();
+        // That is how a message is refused; the pipe fails in other ways.
+        let nonsense = !timed_out && error.kind() == io::ErrorKind::Other;
         // The pipe may close a moment before the process is gone; then it ends by itself.
-        let status =
-            if error.kind() == io::ErrorKind::InvalidData { None } else { wait_briefly(&self.child) };
+        let status = if nonsense { None } else { wait_briefly(&self.child) };
         let _ = lock(&self.child).kill();
         let status = status.or_else(|| lock(&self.child).wait().ok());
         self.to_worker = Box::new(io::sink());
@@ -152,7 +189,10 @@ impl Process {
         if timed_out {
             return Mishap::TimedOut { seconds: patience.as_secs() };
         }
-        Mishap::Crashed { how: cause_of_death(status, &stderr) }
+        if nonsense {
+            return Mishap::Nonsense { what: error.to_string() };
+        }
+        cause_of_death(status, &stderr, self.memory, patience)
     }
 }
 
@@ -167,102 +207,6 @@ impl Drop for Process {
     }
 }
 
-fn wait_briefly(child: &Mutex<Child>) -> Option<ExitStatus> {
-    let until = Instant::now() + Duration::from_millis(500);
-    while Instant::now() < until {
-        if let Ok(Some(status)) = lock(child).try_wait() {
-            return Some(status);
-        }
-        std::thread::yield_now();
-    }
-    None
-}
-
-fn cause_of_death(status: Option<ExitStatus>, stderr: &str) -> String {
-    if stderr.contains("has overflowed its stack") {
-        return "the stack overflowed: a recursion that never ends?".into();
-    }
-    match status {
-        None => "for an unknown reason".into(),
-        Some(status) => match stderr.lines().rev().find(|line| !line.trim().is_empty()) {
-            Some(last) => format!("{status}; its last words: {}", last.chars().take(160).collect::<String>()),
-            None => status.to_string(),
-        },
-    }
-}
-
-/// Reads to the end and keeps the beginning.
-fn keep_start(mut stderr: impl Read) -> String {
-    let mut kept = Vec::new();
-    let _ = stderr.by_ref().take(KEPT_STDERR).read_to_end(&mut kept);
-    let _ = io::copy(&mut stderr, &mut io::sink());
-    String::from_utf8_lossy(&kept).into_owned()
-}
-
-/// Ends a process that does not answer in time. One thread a process; it sleeps between calls.
-struct Watchdog {
-    deadline: Mutex<Deadline>,
-    changed: Condvar,
-    barked: AtomicBool,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Deadline {
-    None,
-    At(Instant),
-    Retired,
-}
-
-impl Watchdog {
-    fn guard(child: &Arc<Mutex<Child>>) -> Arc<Watchdog> {
-        let watchdog = Arc::new(Watchdog {
-            deadline: Mutex::new(Deadline::None),
-            changed: Condvar::new(),
-            barked: AtomicBool::new(false),
-        });
-        let (on_duty, child) = (watchdog.clone(), child.clone());
-        std::thread::spawn(move || on_duty.watch(&child));
-        watchdog
-    }
-
-    fn watch(&self, child: &Mutex<Child>) {
-        let mut deadline = lock(&self.deadline);
-        loop {
-            deadline = match *deadline {
-                Deadline::Retired => return,
-                Deadline::None => self.changed.wait(deadline).unwrap_or_else(PoisonError::into_inner),
-                Deadline::At(end) => match end.checked_duration_since(Instant::now()) {
-                    Some(left) => {
-                        self.changed.wait_timeout(deadline, left).unwrap_or_else(PoisonError::into_inner).0
-                    }
-                    None => {
-                        self.barked.store(true, Ordering::Relaxed);
-                        let _ = lock(child).kill();
-                        return;
-                    }
-                },
-            };
-        }
-    }
-
-    fn bark_after(&self, patience: Duration) {
-        self.set(Deadline::At(Instant::now() + patience));
-    }
-
-    fn rest(&self) {
-        self.set(Deadline::None);
-    }
-
-    fn retire(&self) {
-        self.set(Deadline::Retired);
-    }
-
-    fn set(&self, deadline: Deadline) {
-        *lock(&self.deadline) = deadline;
-        self.changed.notify_one();
-    }
-}
-
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -270,19 +214,19 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 type Pipes = (Child, Box<dyn Write + Send>, Box<dyn Read + Send>);
 
 #[cfg(unix)]
-fn spawn(mut command: Command) -> io::Result<Pipes> {
+fn spawn(mut command: Command, jailed: bool) -> io::Result<Pipes> {
     use std::os::fd::OwnedFd;
     use std::os::unix::net::UnixStream;
     let (ours, theirs) = UnixStream::pair()?;
     // The command keeps its end open until it is dropped; then only the worker has it, and its end is our end of file.
-    let child = command.stdin(Stdio::from(OwnedFd::from(theirs))).spawn()?;
-    drop(command);
+    command.stdin(Stdio::from(OwnedFd::from(theirs)));
+    let child = if jailed { jail::spawn_guarded(command)? } else { command.spawn()? };
     let writer = ours.try_clone()?;
     Ok((child, Box::new(BufWriter::new(writer)), Box::new(BufReader::new(ours))))
 }
 
 #[cfg(not(unix))]
-fn spawn(mut command: Command) -> io::Result<Pipes> {
+fn spawn(mut command: Command, _: bool) -> io::Result<Pipes> {
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
     let (Some(stdin), Some(stdout)) = (child.stdin.take(), child.stdout.take()) else {
         return Err(io::Error::other("no pipes"));

@@ -72,6 +72,18 @@ pub struct CheckResult {
     /// For the student: what went wrong, without anything that is hidden. Empty if it passed. Plain text of several lines
     /// that may quote what student code has said; control characters have been taken out.
     pub message: String,
+    /// What says more than words, if the check compares pictures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picture: Option<Picture>,
+}
+
+/// A picture for the student.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Picture {
+    /// What it shows, in words.
+    pub caption: String,
+    /// The bytes of a PNG file, in base64.
+    pub png: String,
 }
 
 /// A file of a submission that was not taken, or taken in another way than as it is.
@@ -98,7 +110,8 @@ pub struct Graded {
     pub compiler: String,
     /// Why nothing could be graded (an archive that cannot be read, …); empty otherwise.
     pub trouble: String,
-    /// Processor time of everything, in milliseconds. Differs from run to run.
+    /// Processor time of everything, in milliseconds. Differs from run to run, so `results.json` leaves it out.
+    #[serde(default)]
     pub cpu_ms: u64,
 }
 

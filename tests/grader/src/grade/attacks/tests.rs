@@ -36,7 +36,7 @@ fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
             Outcome::Passed => (points, String::new()),
             other => (0, format!("it is {}", other.words())),
         };
-        CheckResult { stage: 1, name: check.name.into(), outcome, points, earned, message }
+        CheckResult { stage: 1, name: check.name.into(), outcome, points, earned, message, picture: None }
     };
     Graded {
         student: "ann".into(),
@@ -201,7 +201,8 @@ fn reports_that_leak_obey_or_are_endless_are_complained_about() {
         told("earned = \"none\"", &graded)
     };
     assert_eq!(with(|_| ()), [""; 0]);
-    let cases: [(fn(&mut Graded), &str); 7] = [
+    type Spoil = fn(&mut Graded);
+    let cases: [(Spoil, &str); 7] = [
         (|graded| graded.checks[3].message = format!("found {CANARY}"), "somebody is told"),
         (|graded| graded.remarks[0].file = "\u{1b}[2J".into(), "control characters"),
         (|graded| graded.compiler = "\u{202e}".into(), "control characters"),

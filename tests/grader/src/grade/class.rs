@@ -1,0 +1,159 @@
+//! Grades all submissions of a folder, some at a time.
+
+use super::forge::Forge;
+use super::judge::Judge;
+use super::lint::{self, Finding};
+use super::result::{Graded, Outcome, Remark};
+use super::store::Store;
+use super::submission::{self, Submission, Taken};
+use crate::jail::{self, How, Jail, Purpose};
+use crate::queue;
+use anyhow::{Context, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// The syntax check reads tokens; the longest file takes it a few milliseconds.
+const LINT_PATIENCE: Duration = Duration::from_secs(10);
+
+/// All that a submission is graded with.
+pub struct Grader {
+    /// Makes workers.
+    pub forge: Arc<Forge>,
+    /// Asks them.
+    pub judge: Arc<Judge>,
+    /// Rules of the syntax check that do not apply.
+    pub allowed: Vec<String>,
+}
+
+/// A file that was not built with, and why.
+type Lost = BTreeMap<String, (Outcome, String)>;
+
+impl Grader {
+    /// Grades all that `store` does not know yet, on `jobs` threads; tells `done` of each.
+    pub fn grade_all(
+        &self,
+        submissions: &[Submission],
+        store: &Store,
+        jobs: usize,
+        done: impl Fn(&Graded) + Sync,
+    ) -> Result<()> {
+        let grade = |_: &(), submission: &Submission| {
+            let taken = self.take(&submission.path);
+            if let Some(known) = store.known(&submission.student, &taken.content())? {
+                done(&known);
+                return Ok(());
+            }
+            let graded = self.grade(&submission.student, taken)?;
+            store.keep(&graded)?;
+            done(&graded);
+            Ok(())
+        };
+        queue::run(&vec![(); jobs], submissions, grade).map(drop)
+    }
+
+    /// What is taken of a submission.
+    pub fn take(&self, path: &Path) -> Taken {
+        submission::take(path, &self.forge.exercises())
+    }
+
+    /// Grades what was taken of a submission. Fails only if the grader itself does.
+    pub fn grade(&self, student: &str, taken: Taken) -> Result<Graded> {
+        let content = taken.content();
+        let Taken { files, mut remarks, trouble } = taken;
+        let mut graded = Graded {
+            student: student.into(),
+            content,
+            checks: Vec::new(),
+            remarks: Vec::new(),
+            compiler: String::new(),
+            trouble: trouble.unwrap_or_default(),
+            cpu_ms: 0,
+        };
+        if !graded.trouble.is_empty() {
+            graded.checks = self.judge.all(Outcome::NotWritten, "nothing could be taken of the submission");
+            graded.remarks = remarks;
+            return Ok(graded);
+        }
+        // Outside of the folders of the kit and of the submission, and gone afterwards.
+        let scratch = tempfile::tempdir().context("cannot make a folder to compile in")?;
+        let refused = self.refused(&files, &mut remarks)?;
+        let kept: BTreeMap<String, String> =
+            files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
+        let forged = self.forge.build(scratch.path(), &kept)?;
+        graded.cpu_ms = forged.cpu.as_millis() as u64;
+        for (name, (_, messages)) in &forged.replaced {
+            let what =
+                "does not compile; the empty exercise was put in its place, so that others can be judged";
+            remarks.push(Remark { file: name.clone(), what: what.into() });
+            graded.compiler += messages;
+        }
+        let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
+        let started = Instant::now();
+        graded.checks = self.judge.judge(&forged.worker, &lost);
+        graded.cpu_ms += started.elapsed().as_millis() as u64;
+        graded.remarks = remarks;
+        Ok(graded)
+    }
+
+    /// The files that hold what no exercise needs. Each is looked at in a jail: what is meant to confuse a compiler may
+    /// confuse the check.
+    fn refused(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Lost> {
+        let mut lost = Lost::new();
+        for (name, text) in files.iter().filter(|(name, text)| !self.forge.is_untouched(name, text)) {
+            let findings = match findings(text)? {
+                Some(findings) => findings,
+                None => {
+                    let why =
+                        "the syntax check broke on it: it is nested too deeply for any exercise".to_owned();
+                    vec![Finding { rule: "nesting".into(), line: 1, why }]
+                }
+            };
+            let against: Vec<String> = findings
+                .iter()
+                .filter(|finding| !self.allowed.contains(&finding.rule))
+                .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
+                .collect();
+            if !against.is_empty() {
+                let told = against.join("\n");
+                remarks.push(Remark { file: name.clone(), what: format!("was refused:\n{told}") });
+                lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{told}")));
+            }
+        }
+        Ok(lost)
+    }
+}
+
+/// What the syntax check finds; `None` if it broke.
+fn findings(text: &str) -> Result<Option<Vec<Finding>>> {
+    let mut command = Jail::new(Purpose::Reader).command(&own_program()?);
+    command.arg(LINT_WORD);
+    let ended = jail::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
+        .context("the syntax check cannot be started")?;
+    if ended.how != How::Exited(0) {
+        return Ok(None);
+    }
+    Ok(Some(serde_json::from_slice(&ended.stdout).context("the syntax check gave no answer")?))
+}
+
+/// With this word for its first argument the program checks what it reads.
+const LINT_WORD: &str = "__syntax";
+
+/// Does the syntax check if this process was started for that. For the start of `main`.
+pub fn lint_if_asked() {
+    if std::env::args().nth(1).as_deref() == Some(LINT_WORD) {
+        let mut text = String::new();
+        let read = std::io::Read::read_to_string(&mut std::io::stdin(), &mut text);
+        let found = lint::findings(&text);
+        match (read, serde_json::to_string(&found)) {
+            (Ok(_), Ok(json)) => println!("{json}"),
+            _ => std::process::exit(1),
+        }
+        std::process::exit(0);
+    }
+}
+
+fn own_program() -> Result<PathBuf> {
+    std::env::current_exe().context("this program cannot find itself")
+}

@@ -1,0 +1,291 @@
+//! Makes a worker of a submission: one `rustc` for the exercises, one for the program, both in a jail, against libraries
+//! that were built once. Cargo is not asked, so no two submissions ever share what cargo would take for fresh.
+
+use super::result::Outcome;
+use crate::jail::{self, Ended, How, Jail, Purpose};
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+mod blame;
+
+/// A class is compiled in minutes only if nobody takes more than this; the reference takes a second.
+const COMPILER_PATIENCE: Duration = Duration::from_secs(60);
+
+/// How much of the compiler's messages is read. Each error is a few kilobytes of JSON.
+const MOST_MESSAGES: usize = 4 << 20;
+
+/// What workers are made with.
+pub struct Forge {
+    rustc: PathBuf,
+    toolchain: PathBuf,
+    /// The scaffold and foreign crates, nothing else: whatever lies here a submission can read.
+    libraries: PathBuf,
+    /// The exercises as nobody has begun them, and what connects them.
+    pristine: BTreeMap<String, String>,
+}
+
+/// What came of it.
+pub struct Forged {
+    /// The program that answers.
+    pub worker: PathBuf,
+    /// Files in whose place the empty exercise was put, with the outcome of their checks and the reason.
+    pub replaced: BTreeMap<String, (Outcome, String)>,
+    /// Processor time.
+    pub cpu: Duration,
+}
+
+impl Forge {
+    /// Builds the libraries, if that has not been done, and looks at what is there.
+    pub fn prepare(root: &Path) -> Result<Forge> {
+        let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
+        let rustc = toolchain.join("bin/rustc");
+        ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
+        let mut pristine = crate::sync::pristine(root)?;
+        let glue = pristine.get_mut("glue.rs").context("no file glue.rs among the exercises")?;
+        *glue = without_frames(glue)?;
+        Ok(Forge { libraries: libraries(root)?, rustc, toolchain, pristine })
+    }
+
+    /// The names of the files in which students write.
+    pub fn exercises(&self) -> Vec<String> {
+        self.pristine.keys().filter(|name| name.starts_with("stage")).cloned().collect()
+    }
+
+    /// Whether this is the exercise as nobody has begun it.
+    pub fn is_untouched(&self, name: &str, text: &str) -> bool {
+        self.pristine.get(name).is_some_and(|pristine| pristine == text)
+    }
+
+    /// Fingerprint of the exercises, the glue and the libraries.
+    pub fn fingerprint(&self) -> String {
+        let mut hash = Sha256::new();
+        self.pristine.iter().for_each(|(name, text)| hash.update(format!("{name}\0{text}\0")));
+        hash.update(self.libraries.to_string_lossy().as_bytes());
+        hex(&hash.finalize())
+    }
+
+    /// Compiles these files, in `scratch`, an empty folder. Files that stand in the way of a program are replaced by the
+    /// empty exercise, one after the other.
+    pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
+        let mut cpu = Duration::ZERO;
+        let mut replaced = BTreeMap::new();
+        loop {
+            self.lay_out(scratch, files, &replaced)?;
+            let ended = self.library(scratch)?;
+            cpu += ended.cpu;
+            if ended.how == How::Exited(0) {
+                break;
+            }
+            let present =
+                |name: &&String| !replaced.contains_key(*name) && !self.is_untouched(name, &files[*name]);
+            let suspects: Vec<&String> = files.keys().filter(present).collect();
+            ensure!(!suspects.is_empty(), "the empty exercises do not compile:\n{}", text_of(&ended));
+            let verdict = blame::blame(&ended, &suspects);
+            if verdict.is_empty() {
+                // The compiler died without a word: whose file is it? Each is tried alone.
+                for name in suspects {
+                    let alone = files.keys().filter(|other| *other != name).chain(replaced.keys());
+                    let alone = alone
+                        .map(|other| (other.clone(), (Outcome::DoesNotCompile, String::new())))
+                        .collect();
+                    self.lay_out(scratch, files, &alone)?;
+                    let ended = self.library(scratch)?;
+                    cpu += ended.cpu;
+                    if ended.how != How::Exited(0) {
+                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, died(&ended)));
+                    }
+                }
+                ensure!(!replaced.is_empty(), "the compiler ended without a message: {}", died(&ended));
+            }
+            replaced.extend(verdict.into_iter().map(|(name, why)| (name, (Outcome::DoesNotCompile, why))));
+        }
+        let ended = self.program(scratch)?;
+        cpu += ended.cpu;
+        let worker = scratch.join("out/worker");
+        if ended.how != How::Exited(0) {
+            bail!("the worker cannot be linked: {}\n{}", died(&ended), text_of(&ended));
+        }
+        Ok(Forged { worker, replaced, cpu })
+    }
+
+    fn lay_out(
+        &self,
+        scratch: &Path,
+        files: &BTreeMap<String, String>,
+        replaced: &BTreeMap<String, (Outcome, String)>,
+    ) -> Result<()> {
+        let folder = scratch.join("exercises/src");
+        fs::create_dir_all(&folder)?;
+        fs::create_dir_all(scratch.join("out"))?;
+        for (name, pristine) in &self.pristine {
+            let text = files.get(name).filter(|_| name.starts_with("stage") && !replaced.contains_key(name));
+            fs::write(folder.join(name), text.unwrap_or(pristine))?;
+        }
+        Ok(())
+    }
+
+    /// Compiles the exercises.
+    fn library(&self, scratch: &Path) -> Result<Ended> {
+        let arguments = [
+            "exercises/src/lib.rs",
+            "--crate-name=exercises",
+            "--crate-type=rlib",
+            "--emit=link",
+            "-o",
+            "out/libexercises.rlib",
+            // Not --cap-lints, which would turn the next line into a warning.
+            "-Awarnings",
+            "-Funsafe_code",
+            "--error-format=json",
+        ];
+        self.compile(Purpose::Compiler, scratch, &arguments, &["raykata", "glam"])
+    }
+
+    /// Links the program that answers with the exercises.
+    fn program(&self, scratch: &Path) -> Result<Ended> {
+        let arguments = [
+            "exercises/src/worker.rs",
+            "--crate-name=worker",
+            "--crate-type=bin",
+            "-o",
+            "out/worker",
+            "--extern=exercises=out/libexercises.rlib",
+            "-Cstrip=debuginfo",
+        ];
+        self.compile(Purpose::Linker, scratch, &arguments, &["raykata"])
+    }
+
+    fn compile(
+        &self,
+        purpose: Purpose,
+        scratch: &Path,
+        arguments: &[&str],
+        externs: &[&str],
+    ) -> Result<Ended> {
+        let jail = Jail {
+            readable: vec![self.toolchain.clone(), self.libraries.clone()],
+            writable: vec![scratch.to_owned()],
+            ..Jail::new(purpose)
+        };
+        let mut command = jail.command(&self.rustc);
+        command.current_dir(scratch).args(arguments).args(["--edition=2024", "-Cdebuginfo=0"]);
+        // An exercise is asked so little that optimising it costs more than its answers take.
+        command.args(["-Copt-level=0", "-Ccodegen-units=2", "-Cembed-bitcode=no"]);
+        command.arg(option("-Ldependency=", &self.libraries));
+        for name in externs {
+            command
+                .arg(option(&format!("--extern={name}="), &self.libraries.join(format!("lib{name}.rlib"))));
+        }
+        jail::run(command, &[], COMPILER_PATIENCE, MOST_MESSAGES).context("the compiler cannot be started")
+    }
+}
+
+/// The glue without whole frames: no check asks for one, and they are half of what the compiler has to do (0.7 s in place
+/// of 1.5 for stages 1 to 4).
+fn without_frames(glue: &str) -> Result<String> {
+    let mut without = glue.to_owned();
+    for (call, nothing) in [
+        ("tracer::render(job, watch)", "{ let _ = (job, watch); None }"),
+        ("tracer::trace(job, x, y)", "{ let _ = (job, x, y); Vec::new() }"),
+        ("tracer::outlines(job, depth)", "{ let _ = (job, depth); Vec::new() }"),
+    ] {
+        ensure!(without.matches(call).count() == 1, "glue.rs no longer says `{call}` once");
+        without = without.replace(call, nothing);
+    }
+    Ok(without)
+}
+
+fn option(name: &str, path: &Path) -> OsString {
+    let mut option = OsString::from(name);
+    option.push(path);
+    option
+}
+
+fn died(ended: &Ended) -> String {
+    match ended.how {
+        How::Exited(code) => format!("the compiler ended with code {code}"),
+        How::Signalled(6 | 9 | 11) => {
+            "the compiler ran out of memory or stack: something here grows without end while it is compiled"
+                .into()
+        }
+        How::Signalled(signal) => format!("the compiler was ended by signal {signal}"),
+        How::TookTooLong | How::UsedUpCpu => {
+            "the compiler did not come to an end in time: something here never ends while it is compiled"
+                .into()
+        }
+        How::TooManyProcesses => "the compiler started more processes than it needs".into(),
+        How::WroteTooMuch => "the compiler had more to say than anybody can read".into(),
+    }
+}
+
+fn text_of(ended: &Ended) -> String {
+    String::from_utf8_lossy(&ended.stderr).chars().take(4000).collect()
+}
+
+/// Builds the scaffold with the crates that it needs, and puts what came of it into a folder of its own.
+fn libraries(root: &Path) -> Result<PathBuf> {
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .current_dir(root)
+        .args(["build", "--quiet", "--package", "raykata", "--lib", "--message-format=json"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::inherit())
+        .output()
+        .context("cargo, which builds the scaffold, cannot be started")?;
+    ensure!(output.status.success(), "the scaffold does not compile: the compiler says above what is wrong");
+    let artifacts: Vec<Value> = String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .filter(|message| message["reason"] == "compiler-artifact")
+        .collect();
+    let files: BTreeSet<(String, PathBuf)> = artifacts
+        .iter()
+        .flat_map(|artifact| {
+            let name = artifact["target"]["name"].as_str().unwrap_or_default().replace('-', "_");
+            let files = artifact["filenames"].as_array().into_iter().flatten().filter_map(Value::as_str);
+            files.map(move |file| (name.clone(), PathBuf::from(file))).collect::<Vec<_>>()
+        })
+        .filter(|(_, file)| file.extension().is_some_and(|ending| ending == "rlib" || ending == "so"))
+        .collect();
+    let mut hash = Sha256::new();
+    for (_, file) in &files {
+        hash.update(fs::read(file).with_context(|| file.display().to_string())?);
+    }
+    let folder = root.join("target/grade").join(format!("libraries-{}", &hex(&hash.finalize())[..16]));
+    if !folder.exists() {
+        fs::create_dir_all(root.join("target/grade"))?;
+        // Whole or not at all, also if two of us do it at the same time.
+        let draft = tempfile::tempdir_in(root.join("target/grade"))?;
+        for (name, file) in &files {
+            let direct = ["raykata", "glam"].contains(&name.as_str());
+            let to = if direct {
+                format!("lib{name}.rlib").into()
+            } else {
+                file.file_name().unwrap_or_default().to_owned()
+            };
+            fs::copy(file, draft.path().join(to))?;
+        }
+        if let Err(error) = fs::rename(draft.keep(), &folder)
+            && !folder.exists()
+        {
+            return Err(error).with_context(|| format!("cannot make {}", folder.display()));
+        }
+    }
+    Ok(folder)
+}
+
+fn said_by(command: &mut Command) -> Result<String> {
+    let output = command.output().context("rustc, which compiles submissions, cannot be started")?;
+    ensure!(output.status.success(), "rustc says: {}", String::from_utf8_lossy(&output.stderr));
+    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
+}
+
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,72 @@
+//! Whose fault it is that the exercises do not compile, by what the compiler says.
+
+use crate::jail::Ended;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How much of the compiler's messages a student is shown about a file.
+const SHOWN: usize = 4000;
+
+/// Which of the suspects an error speaks against.
+type Sign = fn(&Value, &[&String]) -> BTreeSet<String>;
+
+/// The files to blame, each with the messages about it. Empty if the compiler has said nothing that helps.
+pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
+    let errors: Vec<Value> = String::from_utf8_lossy(&ended.stderr)
+        .lines()
+        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
+        .filter(|message| message["level"] == "error" && message["spans"].is_array())
+        .collect();
+    // The surest sign first: where errors are; then where they point to; then which modules they name. An exercise that
+    // is missing or has other arguments is an error of the glue that calls it.
+    let signs: [Sign; 3] = [primary, pointed_to, named];
+    for sign in signs {
+        let mut blamed: BTreeMap<String, String> = BTreeMap::new();
+        for error in &errors {
+            for name in sign(error, suspects) {
+                let told = blamed.entry(name).or_default();
+                if told.len() < SHOWN {
+                    told.push_str(error["rendered"].as_str().unwrap_or_default());
+                }
+            }
+        }
+        if !blamed.is_empty() {
+            return blamed;
+        }
+    }
+    BTreeMap::new()
+}
+
+fn primary(error: &Value, suspects: &[&String]) -> BTreeSet<String> {
+    spans(error)
+        .into_iter()
+        .filter(|span| span["is_primary"] == true)
+        .filter_map(|span| file(span, suspects))
+        .collect()
+}
+
+fn pointed_to(error: &Value, suspects: &[&String]) -> BTreeSet<String> {
+    let children = error["children"].as_array().into_iter().flatten();
+    let all = spans(error).into_iter().chain(children.flat_map(spans));
+    all.filter_map(|span| file(span, suspects)).collect()
+}
+
+fn named(error: &Value, suspects: &[&String]) -> BTreeSet<String> {
+    let text = error["rendered"].as_str().unwrap_or_default();
+    let module = |name: &&&String| text.contains(name.trim_end_matches(".rs"));
+    suspects.iter().filter(module).map(|name| (*name).clone()).collect()
+}
+
+fn spans(message: &Value) -> Vec<&Value> {
+    message["spans"].as_array().into_iter().flatten().collect()
+}
+
+/// The file of a span, or of the call of the macro that it is in.
+fn file(span: &Value, suspects: &[&String]) -> Option<String> {
+    let name = span["file_name"].as_str().unwrap_or_default().rsplit('/').next().unwrap_or_default();
+    match suspects.iter().find(|suspect| suspect.as_str() == name) {
+        Some(suspect) => Some((*suspect).clone()),
+        None if span["expansion"].is_object() => file(&span["expansion"]["span"], suspects),
+        None => None,
+    }
+}

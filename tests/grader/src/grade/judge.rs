@@ -1,0 +1,188 @@
+//! The verdict on a submission: the laws are put to its worker, over a pipe, by a process that holds no code of it.
+
+use super::result::{CheckResult, Outcome};
+use super::sanity;
+use crate::grade::report::clean;
+use crate::jail::Jail;
+use crate::queue;
+use crate::worker::Worker;
+use anyhow::{Result, ensure};
+use checks::rubric;
+use checks::{Check, STAGES, Verdict};
+use raykata::frame::Watch;
+use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How long a call may take, in processor time. The slowest of the reference takes half a second without optimisation.
+const CALL_PATIENCE: Duration = Duration::from_secs(4);
+
+/// How long all checks of a submission may take together. With the slowest way to fail, a call that never returns, that
+/// is enough for 70 checks; what is left then is not tried.
+const BUDGET: Duration = Duration::from_secs(300);
+
+/// How much of a message is kept.
+const MOST_SAID: usize = 2048;
+
+/// What a submission is asked, and how.
+pub struct Judge {
+    /// The checks, in the order of the lecture, and whether hidden inputs are others than those that students have.
+    checks: Vec<(&'static Check, bool)>,
+    /// Picks the hidden inputs.
+    seed: u64,
+    /// What holds a worker; `None` on the instructor's own word.
+    jail: Option<Jail>,
+}
+
+impl Judge {
+    /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
+    /// put once, and one on which the reference itself fails with this seed is unfair; its seed is left out, with a word.
+    pub fn of(stages: &[u8], seed: u64, jail: Option<Jail>) -> Result<Judge> {
+        let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
+        let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
+        let hides = |_: &(), check: &&'static Check| {
+            let [(known, passes), (hidden, passes_hidden)] = [0, seed].map(|seed| asked(check, seed));
+            ensure!(passes, "the reference fails {} of stage {}: is the kit whole?", check.name, check.stage);
+            if !passes_hidden {
+                eprintln!("{} of stage {} is put with the known inputs alone", check.name, check.stage);
+            }
+            Ok((*check, passes_hidden && known != hidden))
+        };
+        let checks = queue::run(&queue::one_a_core(), &checks, hides)?;
+        Ok(Judge { checks, seed, jail })
+    }
+
+    /// Puts all checks to `worker`; those of the files in `replaced` have their outcome already.
+    pub fn judge(&self, worker: &Path, replaced: &BTreeMap<String, (Outcome, String)>) -> Vec<CheckResult> {
+        let until = Instant::now() + BUDGET;
+        let judged = self.checks.iter().map(|(check, hides)| {
+            let (outcome, message) = match self.ask(check, *hides, worker, until) {
+                // The empty exercise says which file it is, and why it is empty is known.
+                (Outcome::NotWritten, place) => {
+                    let lost = replaced.iter().find(|(file, _)| place.contains(file.as_str()));
+                    lost.map_or((Outcome::NotWritten, place), |(_, lost)| lost.clone())
+                }
+                other => other,
+            };
+            result(check, outcome, &message)
+        });
+        judged.collect()
+    }
+
+    /// The same outcome for every check.
+    pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
+        self.checks.iter().map(|(check, _)| result(check, outcome, message)).collect()
+    }
+
+    /// Puts one check to a worker that nobody has asked anything yet.
+    fn ask(&self, check: &Check, hides: bool, program: &Path, until: Instant) -> (Outcome, String) {
+        if Instant::now() > until {
+            let message = "not tried: the checks before this one have used up the time of the submission";
+            return (Outcome::NotTried, message.into());
+        }
+        let worker = match &self.jail {
+            Some(jail) => Worker::jailed(program.to_owned(), CALL_PATIENCE, jail.clone()),
+            None => Worker::new(program.to_owned(), CALL_PATIENCE),
+        };
+        let over = Arc::new(AtomicBool::new(false));
+        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
+        // With the inputs that students have, so that they can see again what they are told.
+        let known = checks::examine(check, &kit, 0);
+        let judged = match outcome(&known) {
+            Outcome::Passed if !hides => (Outcome::Passed, String::new()),
+            Outcome::Passed => {
+                let hidden = outcome(&checks::examine(check, &kit, self.seed));
+                match hidden {
+                    Outcome::Wrong | Outcome::NotWritten => (Outcome::WrongOnHidden, hidden_message(check)),
+                    Outcome::Passed => (Outcome::Passed, String::new()),
+                    other => (other, format!("{}\n  on hidden inputs", other.words())),
+                }
+            }
+            other => match checks::verdict(check, known) {
+                Verdict::Passed => (Outcome::Passed, String::new()),
+                Verdict::Failed(message) => (other, message),
+                Verdict::NotWritten { task, place } => (other, format!("not written yet: {place}\n  {task}")),
+            },
+        };
+        // A check that hangs is left behind on a thread of its own: without answers it comes to an end.
+        over.store(true, Ordering::Relaxed);
+        judged
+    }
+}
+
+fn hidden_message(check: &Check) -> String {
+    format!(
+        "{}  right on the inputs that you have, wrong on others: an answer for special cases?\n",
+        rubric::entry(check.stage, check.name).header()
+    )
+}
+
+fn outcome(examined: &Result<checks::Outcome, Mishap>) -> Outcome {
+    match examined {
+        Ok(Ok(())) => Outcome::Passed,
+        Ok(Err(_)) | Err(Mishap::Panicked { .. } | Mishap::Nonsense { .. }) => Outcome::Wrong,
+        Err(Mishap::NotWritten { .. }) => Outcome::NotWritten,
+        Err(Mishap::TimedOut { .. }) => Outcome::TooLong,
+        Err(Mishap::Crashed { .. }) => Outcome::Crashed,
+    }
+}
+
+fn result(check: &Check, outcome: Outcome, message: &str) -> CheckResult {
+    let points = rubric::entry(check.stage, check.name).points;
+    let earned = if outcome == Outcome::Passed { points } else { 0 };
+    let message = clean::clean(message.trim_end(), MOST_SAID);
+    CheckResult {
+        stage: check.stage,
+        name: check.name.into(),
+        outcome,
+        points,
+        earned,
+        message,
+        picture: None,
+    }
+}
+
+/// What the reference is asked by a check, as a fingerprint, and whether it passes.
+fn asked(check: &Check, seed: u64) -> (Vec<u8>, bool) {
+    let questions = Arc::new(Mutex::new(Sha256::new()));
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Overheard(questions.clone())));
+    let passes = matches!(checks::examine(check, &kit, seed), Ok(Ok(())));
+    let questions = questions.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    (questions.finalize().to_vec(), passes)
+}
+
+/// The reference, with somebody who writes down what it is asked.
+struct Overheard(Arc<Mutex<Sha256>>);
+
+impl Transport for Overheard {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        let mut message = Vec::new();
+        // Into a vector nothing fails.
+        let _ = raykata::worker::send(&mut message, &request);
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).update(message);
+        request.answer(&solutions::Kit, watch)
+    }
+}
+
+/// A worker that is asked until the verdict is there.
+struct Asked {
+    worker: Worker,
+    over: Arc<AtomicBool>,
+}
+
+impl Transport for Asked {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        if self.over.load(Ordering::Relaxed) {
+            mishap::unwind(Mishap::Crashed { how: "the verdict was there before".into() });
+        }
+        let answer = self.worker.call(request, watch);
+        match sanity::fault(&answer) {
+            None => answer,
+            Some(what) => mishap::unwind(Mishap::Nonsense { what }),
+        }
+    }
+}

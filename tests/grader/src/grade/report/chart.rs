@@ -1,0 +1,127 @@
+//! Drawings of numbers: a histogram, and bars of outcomes. Colours are those of `style.css`.
+
+use super::tally::Tally;
+use crate::grade::result::Outcome;
+use maud::{Markup, html};
+
+/// Drawing area of the histogram, in units of its own.
+const WIDTH: u32 = 520;
+const HEIGHT: u32 = 190;
+const ABOVE: u32 = 20;
+const BELOW: u32 = 24;
+
+/// How many students have how many points.
+pub(super) fn histogram(points: &[u32], of: u32) -> Markup {
+    let step = step(of);
+    let n_bins = of / step + 1;
+    let mut counts = vec![0u32; n_bins as usize];
+    for points in points {
+        counts[(points / step).min(n_bins - 1) as usize] += 1;
+    }
+    let most = counts.iter().copied().max().unwrap_or(0).max(1);
+    let slot = WIDTH / n_bins;
+    let bottom = HEIGHT - BELOW;
+    let bins = counts.into_iter().zip(0..).map(|(n, i)| {
+        let height = (bottom - ABOVE) * n / most;
+        Bin {
+            n,
+            from: i * step,
+            to: (i * step + step - 1).min(of),
+            left: i * slot,
+            top: bottom - height,
+            height,
+        }
+    });
+    html! {
+        svg.histogram viewBox=(format!("0 0 {} {HEIGHT}", slot * n_bins)) role="img" aria-label="How many submissions have how many points" {
+            @for bin in bins {
+                g {
+                    title { (bin.from) "–" (bin.to) " points: " (bin.n) }
+                    rect x=(bin.left + 2) y=(bin.top) width=(slot.saturating_sub(4)) height=(bin.height) rx="2" {}
+                    @if bin.n > 0 {
+                        text.count x=(bin.left + slot / 2) y=(bin.top - 5) { (bin.n) }
+                    }
+                    text x=(bin.left + slot / 2) y=(HEIGHT - 8) { (bin.from) }
+                }
+            }
+            line x1="0" x2=(slot * n_bins) y1=(bottom) y2=(bottom) {}
+        }
+    }
+}
+
+struct Bin {
+    n: u32,
+    from: u32,
+    to: u32,
+    left: u32,
+    top: u32,
+    height: u32,
+}
+
+/// A round number of points, so that there are about twelve columns.
+fn step(of: u32) -> u32 {
+    let steps = [1, 2, 5, 10, 20, 25, 50, 100, 200, 500];
+    steps.into_iter().find(|step| of / step <= 13).unwrap_or(of.max(1).div_ceil(12))
+}
+
+/// Which part of the class ended how.
+pub(super) fn outcomes(tally: &Tally) -> Markup {
+    html! {
+        span.bar {
+            @for (outcome, n) in tally.outcomes() {
+                span class={ "part " (class(outcome)) } style={ "flex-grow:" (n) } title={ (outcome.words()) ": " (n) } {}
+            }
+        }
+    }
+}
+
+/// How much of something was earned.
+pub(super) fn share(earned: u32, of: u32) -> Markup {
+    html! {
+        span.bar {
+            @if earned > 0 { span.part.passed style={ "flex-grow:" (earned) } {} }
+            @if earned < of { span.part.rest style={ "flex-grow:" (of - earned) } {} }
+        }
+    }
+}
+
+/// What the colours mean.
+pub(super) fn legend() -> Markup {
+    html! {
+        p.legend {
+            @for outcome in Outcome::ALL {
+                span { span class={ "key " (class(outcome)) } {} (outcome.words()) }
+            }
+        }
+    }
+}
+
+/// The class that gives an outcome its colour.
+pub(super) fn class(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "passed",
+        Outcome::NotWritten => "not-written",
+        Outcome::Wrong => "wrong",
+        Outcome::WrongOnHidden => "hidden-wrong",
+        Outcome::TooLong => "too-long",
+        Outcome::Crashed => "crashed",
+        Outcome::DoesNotCompile => "no-compile",
+        Outcome::Refused => "refused",
+        Outcome::NotTried => "not-tried",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_few_columns_and_the_last_one_ends_with_all_points() {
+        for of in (0..2000).chain([50_000]) {
+            assert!((1..=14).contains(&(of / step(of) + 1)), "{of}");
+        }
+        let drawn = histogram(&[0, 9, 10, 100], 100).into_string();
+        assert!(drawn.contains("<title>0–9 points: 2</title>"), "{drawn}");
+        assert!(drawn.contains("<title>100–100 points: 1</title>"), "{drawn}");
+    }
+}

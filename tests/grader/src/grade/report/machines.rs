@@ -1,0 +1,158 @@
+//! For programs: `results.json`, and the files of Gradescope and GitHub Classroom.
+
+use super::clean::clean_line;
+use super::{presentable, told};
+use crate::grade::result::{CheckResult, Class, Graded, Outcome, Remark, Session};
+use anyhow::Result;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// A class without what differs from run to run, and without pictures.
+#[derive(Serialize)]
+struct ClassView<'a> {
+    session: &'a Session,
+    students: Vec<GradedView<'a>>,
+}
+
+#[derive(Serialize)]
+struct GradedView<'a> {
+    student: &'a str,
+    content: &'a str,
+    earned: u32,
+    of: u32,
+    checks: Vec<CheckResult>,
+    remarks: &'a [Remark],
+    compiler: &'a str,
+    trouble: &'a str,
+}
+
+/// The class as it is, for tools of the instructor; it can be read back as a [`Class`].
+pub(super) fn results(class: &Class) -> Result<Vec<u8>> {
+    let students = class.students.iter().map(|graded| {
+        let (earned, of) = graded.points();
+        let without_picture = |check: &CheckResult| CheckResult { picture: None, ..check.clone() };
+        GradedView {
+            student: &graded.student,
+            content: &graded.content,
+            earned,
+            of,
+            checks: graded.checks.iter().map(without_picture).collect(),
+            remarks: &graded.remarks,
+            compiler: &graded.compiler,
+            trouble: &graded.trouble,
+        }
+    });
+    pretty(&ClassView { session: &class.session, students: students.collect() })
+}
+
+/// JSON for people too.
+pub(super) fn pretty(value: &impl Serialize) -> Result<Vec<u8>> {
+    let mut bytes = serde_json::to_vec_pretty(value)?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// What Gradescope reads as `/autograder/results/results.json`. All of it may be shown to the student.
+pub fn gradescope(graded: &Graded, session: &Session) -> Value {
+    let graded = &presentable(graded);
+    let mut place = (0, 0);
+    let tests: Vec<Value> = graded
+        .checks
+        .iter()
+        .map(|check| {
+            place = if place.0 == check.stage { (place.0, place.1 + 1) } else { (check.stage, 1) };
+            let status = if check.outcome == Outcome::Passed { "passed" } else { "failed" };
+            json!({
+                "name": title(check),
+                "number": format!("{}.{}", place.0, place.1),
+                "score": check.earned,
+                "max_score": check.points,
+                "status": status,
+                "output": told::told(check),
+                "output_format": "text",
+                "name_format": "text",
+                "visibility": "visible",
+            })
+        })
+        .collect();
+    let kit = clean_line(&session.kit, super::LINE);
+    let mut results = json!({
+        "output": format!("{}\n\nkit: {kit}", told::summary(graded)),
+        "output_format": "text",
+        "test_output_format": "text",
+        "test_name_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": tests,
+    });
+    // Gradescope adds up the tests; only where there are none does it want to be told.
+    if graded.checks.is_empty() {
+        results["score"] = json!(0);
+    }
+    results
+}
+
+/// What GitHub Classroom reads from a runner, before base64. Its score is the sum over `tests`; the share of tests that it
+/// prints counts each test alike, whatever it is worth.
+pub fn classroom(graded: &Graded) -> Value {
+    let graded = &presentable(graded);
+    let (earned, of) = graded.points();
+    let mut tests: Vec<Value> = graded
+        .checks
+        .iter()
+        .map(|check| classroom_test(&title(check), status(check.outcome), &told::told(check), check.earned))
+        .collect();
+    if graded.checks.is_empty() {
+        tests.push(classroom_test("submission", "error", &graded.trouble, 0));
+    }
+    let status = match (graded.trouble.is_empty() && !graded.checks.is_empty(), earned == of) {
+        (false, _) => "error",
+        (true, true) => "pass",
+        (true, false) => "fail",
+    };
+    json!({ "version": 1, "status": status, "max_score": of, "tests": tests })
+}
+
+/// The same as a step of a workflow has to put it into its output `result`.
+pub fn classroom_output(graded: &Graded) -> String {
+    BASE64.encode(classroom(graded).to_string())
+}
+
+fn classroom_test(name: &str, status: &str, message: &str, score: u32) -> Value {
+    let message = if message.is_empty() { Value::Null } else { json!(message) };
+    json!({
+        "name": name,
+        "status": status,
+        "message": message,
+        "test_code": "",
+        "filename": "",
+        "line_no": 0,
+        "duration": 0,
+        "score": score,
+    })
+}
+
+/// `pass`, `fail` where there is a wrong answer or none yet, `error` where nothing could be judged.
+fn status(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "pass",
+        Outcome::Wrong | Outcome::WrongOnHidden | Outcome::NotWritten => "fail",
+        Outcome::TooLong
+        | Outcome::Crashed
+        | Outcome::DoesNotCompile
+        | Outcome::Refused
+        | Outcome::NotTried => "error",
+    }
+}
+
+/// The law and the name of the check, since several checks are about the same law.
+fn title(check: &CheckResult) -> String {
+    format!("{} ({})", told::entry(check).title, check.name)
+}
+
+/// Whether JUnit counts it as an error, and not as a failure.
+pub(super) fn is_error(outcome: Outcome) -> bool {
+    status(outcome) == "error"
+}

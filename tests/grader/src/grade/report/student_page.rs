@@ -1,0 +1,147 @@
+//! `students/NAME.html`: what one student gets to read.
+
+use super::chart;
+use super::page::{page, session_line, with_code};
+use super::{tally, told};
+use crate::grade::result::{CheckResult, Graded, Outcome, Picture, Session, sum};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use checks::rubric::Visibility;
+use maud::{Markup, html};
+
+/// The page.
+pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
+    let (earned, of) = graded.points();
+    let body = html! {
+        header {
+            h1.student { (graded.student) }
+            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points" } }
+            (session_line(session))
+        }
+        @if !graded.trouble.is_empty() {
+            section.alarm { h2 { "This submission could not be graded" } p { (graded.trouble) } }
+        }
+        (overview(graded))
+        (remarks(graded))
+        @if !graded.compiler.is_empty() {
+            section { h2 { "The compiler says" } pre { (graded.compiler) } }
+        }
+        @for stage in graded.stages() { (stage_section(graded, stage)) }
+    };
+    page(&format!("{} · Raykata", graded.student), &body)
+}
+
+fn overview(graded: &Graded) -> Markup {
+    html! {
+        @if !graded.checks.is_empty() {
+            table.plain.overview {
+                tbody {
+                    @for stage in graded.stages() {
+                        @let (earned, of) = sum(graded.of_stage(stage));
+                        tr {
+                            td { a href={ "#stage" (stage) } { (tally::stage_title(stage)) } }
+                            td.number { (earned) " of " (of) }
+                            td.wide { (chart::share(earned, of)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn remarks(graded: &Graded) -> Markup {
+    html! {
+        @if !graded.remarks.is_empty() {
+            section {
+                h2 { "What was not taken as it is" }
+                ul { @for remark in &graded.remarks { li { code { (remark.file) } ": " (remark.what) } } }
+            }
+        }
+    }
+}
+
+fn stage_section(graded: &Graded, stage: u8) -> Markup {
+    let passed: Vec<&CheckResult> =
+        graded.of_stage(stage).filter(|check| check.outcome == Outcome::Passed).collect();
+    html! {
+        section id={ "stage" (stage) } {
+            h2 { (tally::stage_title(stage)) }
+            @for group in groups(graded.of_stage(stage)) { (card(&group)) }
+            @if !passed.is_empty() {
+                details open[passed.len() == graded.of_stage(stage).count()] {
+                    summary { span.badge.passed { "passed" } " " (passed.len()) @if passed.len() == 1 { " check" } @else { " checks" } }
+                    ul { @for check in passed { li { (heading(check)) } } }
+                }
+            }
+        }
+    }
+}
+
+/// The checks that did not pass; those that failed together for one reason that is no answer stand together.
+fn groups<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> Vec<Vec<&'a CheckResult>> {
+    let mut groups: Vec<Vec<&CheckResult>> = Vec::new();
+    for check in checks.filter(|check| check.outcome != Outcome::Passed) {
+        let same = |group: &&mut Vec<&CheckResult>| {
+            let first = group[0];
+            let no_answer = !matches!(check.outcome, Outcome::Wrong | Outcome::TooLong | Outcome::Crashed);
+            no_answer
+                && first.outcome == check.outcome
+                && told::told_without_header(first) == told::told_without_header(check)
+        };
+        match groups.iter_mut().find(same) {
+            Some(group) => group.push(check),
+            None => groups.push(vec![check]),
+        }
+    }
+    groups
+}
+
+fn card(group: &[&CheckResult]) -> Markup {
+    let first = group[0];
+    html! {
+        article {
+            p.kind {
+                span class={ "badge " (chart::class(first.outcome)) } { (first.outcome.words()) }
+                @if group.len() > 1 { " " (group.len()) " checks" }
+            }
+            @for check in group { (failed(check, group.len() == 1)) }
+            pre { (told::told_without_header(first)) }
+            @if let Some(picture) = first.picture.as_ref().filter(|_| shows_pictures(first)) { (figure(picture)) }
+        }
+    }
+}
+
+/// A check that did not pass: its law, where to read on, and a nudge where it stands alone.
+fn failed(check: &CheckResult, alone: bool) -> Markup {
+    let entry = told::entry(check);
+    html! {
+        h3 { (heading(check)) }
+        @if !entry.slide.is_empty() { p.slide { "Read on: " (entry.slide) } }
+        @if alone && !entry.hints[0].is_empty() { details { summary { "a hint" } p { (with_code(&entry.hints[0])) } } }
+    }
+}
+
+fn heading(check: &CheckResult) -> Markup {
+    html! {
+        span.worth { (check.earned) " of " (check.points) }
+        (with_code(&told::entry(check).title)) " " span.name { (check.name) }
+    }
+}
+
+fn shows_pictures(check: &CheckResult) -> bool {
+    check.outcome != Outcome::WrongOnHidden && told::entry(check).visibility == Visibility::Visible
+}
+
+/// A picture inside the page, if it is one.
+fn figure(picture: &Picture) -> Markup {
+    let is_png = BASE64.decode(&picture.png).is_ok_and(|bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+    html! {
+        @if is_png {
+            figure {
+                img src={ "data:image/png;base64," (picture.png) } alt=(picture.caption);
+                figcaption { (picture.caption) }
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Tables for spreadsheets: `grades.csv`, `checks.csv` and `timings.csv`.
+
+use super::tally::{self, Tally};
+use crate::grade::result::{Class, sum};
+use anyhow::{Result, anyhow};
+
+/// One row a student: points in all and for each stage.
+pub(super) fn grades(class: &Class, tallies: &[Tally], pages: &[String]) -> Result<Vec<u8>> {
+    let stages = tally::stages(tallies);
+    let header = ["name", "points", "of"].map(str::to_owned).into_iter();
+    let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
+    let mut rows = vec![header.chain(["remarks", "trouble", "page"].map(str::to_owned)).collect()];
+    for (student, page) in class.students.iter().zip(pages) {
+        let mut row =
+            vec![student.student.clone(), student.points().0.to_string(), tally::of(tallies).to_string()];
+        row.extend(stages.iter().map(|&stage| sum(student.of_stage(stage)).0.to_string()));
+        row.extend([student.remarks.len().to_string(), student.trouble.clone(), page.clone()]);
+        rows.push(row);
+    }
+    table(rows)
+}
+
+/// One row for each check of each student.
+pub(super) fn checks(class: &Class) -> Result<Vec<u8>> {
+    let mut rows =
+        vec![["name", "stage", "check", "outcome", "points", "earned"].map(str::to_owned).to_vec()];
+    for student in &class.students {
+        rows.extend(student.checks.iter().map(|check| {
+            let (name, words) = (check.name.clone(), check.outcome.words().to_owned());
+            let (points, earned) = (check.points.to_string(), check.earned.to_string());
+            vec![student.student.clone(), check.stage.to_string(), name, words, points, earned]
+        }));
+    }
+    table(rows)
+}
+
+/// One row a student: processor time. Alone in its file, because it differs from run to run.
+pub(super) fn timings(class: &Class, pages: &[String]) -> Result<Vec<u8>> {
+    let mut rows = vec![["name", "cpu_ms", "page"].map(str::to_owned).to_vec()];
+    for (student, page) in class.students.iter().zip(pages) {
+        rows.push(vec![student.student.clone(), student.cpu_ms.to_string(), page.clone()]);
+    }
+    table(rows)
+}
+
+fn table(rows: Vec<Vec<String>>) -> Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.write_record(row.iter().map(|cell| defused(cell)))?;
+    }
+    writer.into_inner().map_err(|error| anyhow!("{error}"))
+}
+
+/// A cell that no spreadsheet takes for a formula.
+fn defused(cell: &str) -> String {
+    match cell.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']) {
+        true => format!("'{cell}"),
+        false => cell.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_text() -> Result<()> {
+        let row = ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\""].map(str::to_owned).to_vec();
+        let bytes = table(vec![row])?;
+        assert_eq!(String::from_utf8_lossy(&bytes), "'=1+1,'+1,'-1,'@SUM(A1),' =1,a=1,12,\"a,\"\"b\"\"\"\n");
+        Ok(())
+    }
+}

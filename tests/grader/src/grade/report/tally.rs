@@ -1,0 +1,114 @@
+//! What a class did, counted.
+
+use super::told;
+use crate::grade::result::{CheckResult, Class, Graded, Outcome};
+use checks::rubric::{Entry, RUBRIC};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// How a check went in the class.
+pub(super) struct Tally {
+    pub stage: u8,
+    pub name: String,
+    pub points: u32,
+    /// What the rubric says of it.
+    pub entry: Entry,
+    /// For each of [`Outcome::ALL`], how many submissions ended so.
+    pub counts: [usize; Outcome::ALL.len()],
+}
+
+impl Tally {
+    fn new(check: &CheckResult) -> Self {
+        let (stage, name, points) = (check.stage, check.name.clone(), check.points);
+        Tally { stage, name, points, entry: told::entry(check), counts: [0; Outcome::ALL.len()] }
+    }
+
+    /// How many submissions passed.
+    pub fn passed(&self) -> usize {
+        self.outcomes().filter(|(outcome, _)| *outcome == Outcome::Passed).map(|(_, n)| n).sum()
+    }
+
+    /// How many submissions gave an answer that is none.
+    pub fn tried_in_vain(&self) -> usize {
+        let in_vain = [Outcome::Wrong, Outcome::WrongOnHidden, Outcome::TooLong, Outcome::Crashed];
+        self.outcomes().filter(|(outcome, _)| in_vain.contains(outcome)).map(|(_, n)| n).sum()
+    }
+
+    /// How many submissions there were.
+    pub fn of(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// The outcomes that occurred.
+    pub fn outcomes(&self) -> impl Iterator<Item = (Outcome, usize)> {
+        Outcome::ALL.into_iter().zip(self.counts).filter(|(_, n)| *n > 0)
+    }
+}
+
+/// A tally for each check, in the order of the lecture.
+pub(super) fn tallies(class: &Class) -> Vec<Tally> {
+    let mut places = BTreeMap::new();
+    let mut tallies: Vec<Tally> = Vec::new();
+    for check in class.students.iter().flat_map(|student| &student.checks) {
+        let place = *places.entry((check.stage, check.name.as_str())).or_insert_with(|| {
+            tallies.push(Tally::new(check));
+            tallies.len() - 1
+        });
+        if let Some(which) = Outcome::ALL.iter().position(|&outcome| outcome == check.outcome) {
+            tallies[place].counts[which] += 1;
+        }
+    }
+    // The checks of each stage stay in their order.
+    tallies.sort_by_key(|tally| tally.stage);
+    tallies
+}
+
+/// The stages that were graded, in order.
+pub(super) fn stages(tallies: &[Tally]) -> Vec<u8> {
+    let mut stages: Vec<u8> = tallies.iter().map(|tally| tally.stage).collect();
+    stages.dedup();
+    stages
+}
+
+/// All points that there were.
+pub(super) fn of(tallies: &[Tally]) -> u32 {
+    tallies.iter().map(|tally| tally.points).sum()
+}
+
+/// A stage as a heading.
+pub(super) fn stage_title(stage: u8) -> String {
+    match RUBRIC.get(&format!("stage{stage}")) {
+        Some(known) => format!("Stage {stage} · {}", known.title),
+        None => format!("Stage {stage}"),
+    }
+}
+
+/// The checks that most submissions tried and failed, worst first. What nobody has written yet says more about time than
+/// about the lecture; among equals it counts.
+pub(super) fn worst(tallies: &[Tally], n: usize) -> Vec<&Tally> {
+    let mut worst: Vec<&Tally> = tallies.iter().filter(|tally| tally.passed() < tally.of()).collect();
+    worst.sort_by_key(|tally| (Reverse(tally.tried_in_vain()), tally.passed()));
+    worst.truncate(n);
+    worst
+}
+
+/// The student in the middle, or the mean of the two in the middle.
+pub(super) fn median(class: &Class) -> f64 {
+    let mut points: Vec<u32> = class.students.iter().map(|student| student.points().0).collect();
+    points.sort_unstable();
+    match points.len() {
+        0 => 0.0,
+        n => f64::from(points[(n - 1) / 2] + points[n / 2]) / 2.0,
+    }
+}
+
+/// Points of a student on average.
+pub(super) fn mean(class: &Class) -> f64 {
+    let sum: u32 = class.students.iter().map(|student| student.points().0).sum();
+    f64::from(sum) / class.students.len().max(1) as f64
+}
+
+/// Whether a check of the submission ended so.
+pub(super) fn has(student: &Graded, outcome: Outcome) -> bool {
+    student.checks.iter().any(|check| check.outcome == outcome)
+}

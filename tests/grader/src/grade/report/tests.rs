@@ -1,0 +1,237 @@
+use super::*;
+use crate::grade::result::Outcome;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+type Files = BTreeMap<String, String>;
+
+fn check(stage: u8, name: &str, outcome: Outcome, points: u32, message: &str) -> CheckResult {
+    let earned = if outcome == Outcome::Passed { points } else { 0 };
+    let (name, message) = (name.to_owned(), message.to_owned());
+    CheckResult { stage, name, outcome, points, earned, message, picture: None }
+}
+
+fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
+    let names = [
+        (1, "nearest_root_is_the_smaller_one_that_counts", 3),
+        (1, "sphere_algebraic_touches", 3),
+        (1, "picture_of_a_ball_on_a_plane", 5),
+        (2, "triangle_cramer_agrees_with_double_precision", 6),
+    ];
+    let checks = names.into_iter().zip(outcomes);
+    let checks =
+        checks.map(|((stage, name, points), (outcome, said))| check(stage, name, outcome, points, said));
+    Graded {
+        student: name.to_owned(),
+        content: "00".repeat(32),
+        checks: checks.collect(),
+        remarks: Vec::new(),
+        compiler: String::new(),
+        trouble: String::new(),
+        cpu_ms: 1234,
+    }
+}
+
+/// A class whose students write what breaks reports.
+fn class() -> Class {
+    use Outcome::*;
+    let nasty_message =
+        "\u{1b}[31mred\u{1b}[0m ]]> <b onload='x()'>\u{202e}desrever\u{202c} \0& \"quoted\"\r\nsecond line";
+    let mut formula = student(
+        "=cmd|' /C calc'!A0",
+        [(Passed, ""), (Wrong, nasty_message), (WrongOnHidden, "hidden input: 0.1234"), (Crashed, "")],
+    );
+    formula.remarks = vec![Remark {
+        file: "<img src=x onerror=alert(1)>.rs\n".to_owned(),
+        what: "ignored, because no exercise has that file".to_owned(),
+    }];
+    let mut script = student(
+        "<script>alert(1)</script>",
+        [(DoesNotCompile, ""), (Refused, ""), (NotTried, ""), (TooLong, &"long ".repeat(1000))],
+    );
+    script.compiler = "error[E0308]: </pre><script>alert(2)</script>\u{1b}]0;title\u{7}".to_owned();
+    let mut picture = student("anna", [(Passed, ""), (Passed, ""), (Wrong, "it differs"), (NotWritten, "")]);
+    picture.checks[2].picture = Some(Picture {
+        caption: "reference | yours | difference".to_owned(),
+        png: BASE64.encode(b"\x89PNG\r\n\x1a\nnot much of a picture"),
+    });
+    let best = student("Anna", [(Passed, ""); 4]);
+    let mut broken = student("../../broken", [(Passed, ""); 4]);
+    broken.checks.clear();
+    broken.trouble = "the archive cannot be read: \u{202e}bad <magic>".to_owned();
+    let session = Session {
+        kit: "0.1.0 (abcdef)".to_owned(),
+        stages: vec![1, 2],
+        seed: 7,
+        isolation: "rlimits + Landlock <6> + seccomp".to_owned(),
+    };
+    Class { session, students: vec![formula, script, picture, best, broken] }
+}
+
+fn files_of(class: &Class) -> Result<Files> {
+    let folder = tempfile::tempdir()?;
+    write_all(class, folder.path())?;
+    let mut files = Files::new();
+    let mut folders = vec![folder.path().to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next)? {
+            let path = entry?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path.strip_prefix(folder.path())?.to_string_lossy().into_owned();
+                files.insert(name, fs::read_to_string(&path)?);
+            }
+        }
+    }
+    Ok(files)
+}
+
+fn matches_snapshot(name: &str, text: &str) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("golden");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, text));
+}
+
+#[test]
+fn tables_and_files_for_machines_are_as_before() -> Result<()> {
+    let files = files_of(&class())?;
+    let names: Vec<&str> = files.keys().map(String::as_str).collect();
+    matches_snapshot("files", &names.join("\n"));
+    for name in ["grades.csv", "checks.csv", "timings.csv", "results.json", "junit.xml"] {
+        matches_snapshot(name, &files[name]);
+    }
+    for folder in ["gradescope", "classroom"] {
+        let of_folder = files.iter().filter(|(name, _)| name.starts_with(folder));
+        let text: String = of_folder.map(|(name, text)| format!("== {name}\n{text}")).collect();
+        matches_snapshot(folder, &text);
+    }
+    Ok(())
+}
+
+#[test]
+fn pages_show_what_students_write_and_never_run_it() -> Result<()> {
+    let files = files_of(&class())?;
+    let pages: Vec<(&String, &String)> = files.iter().filter(|(name, _)| name.ends_with(".html")).collect();
+    assert_eq!(pages.len(), 6);
+    for (name, page) in &pages {
+        for tag in
+            ["<script", "<img src=x", "<b ", "onerror=alert(1)>.", "<magic>", "<6>", "http://", "https://"]
+        {
+            assert!(!page.contains(tag), "{name} contains {tag}");
+        }
+        assert_eq!(page.matches("</pre>").count(), page.matches("<pre>").count(), "{name}");
+    }
+    let anna = pages.iter().find(|(_, page)| page.contains("<pre>it differs<")).map(|(_, page)| page);
+    assert!(anna.is_some_and(|page| page.contains("<img src=\"data:image/png;base64,iVBO")));
+    assert!(files["index.html"].contains("&lt;script&gt;alert(1)&lt;/script&gt;"));
+    Ok(())
+}
+
+#[test]
+fn no_format_lets_through_what_cannot_be_seen() -> Result<()> {
+    for (name, text) in files_of(&class())? {
+        let hidden =
+            text.chars().find(|&c| c != '\n' && (c.is_control() || ('\u{202a}'..='\u{202e}').contains(&c)));
+        assert_eq!(hidden, None, "{name}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_check_that_fails_on_hidden_inputs_tells_no_more_than_that() -> Result<()> {
+    let mut files = files_of(&class())?;
+    // What the instructor keeps.
+    files.remove("results.json");
+    assert!(files.iter().all(|(_, text)| !text.contains("0.1234")));
+    let told = files.values().filter(|text| text.contains("stage 1: 1 check fails on hidden inputs only"));
+    assert_eq!(told.count(), 1);
+    Ok(())
+}
+
+#[test]
+fn the_same_results_give_the_same_bytes_in_any_order() -> Result<()> {
+    let class = class();
+    let files = files_of(&class)?;
+    let mut other = class.clone();
+    other.students.reverse();
+    assert_eq!(files_of(&other)?, files);
+    other.students.iter_mut().for_each(|student| student.cpu_ms += 5000);
+    let slower = files_of(&other)?;
+    let differing: Vec<&str> =
+        files.iter().filter(|(name, text)| &slower[*name] != *text).map(|(name, _)| name.as_str()).collect();
+    assert_eq!(differing, ["index.html", "timings.csv"]);
+    Ok(())
+}
+
+#[test]
+fn points_are_the_same_in_every_format() -> Result<()> {
+    let files = files_of(&class())?;
+    let back: Class = serde_json::from_str(&files["results.json"])?;
+    let grades = csv::Reader::from_reader(files["grades.csv"].as_bytes());
+    let rows: Vec<csv::StringRecord> = grades.into_records().collect::<Result<_, _>>()?;
+    let cells: Vec<csv::StringRecord> =
+        csv::Reader::from_reader(files["checks.csv"].as_bytes()).into_records().collect::<Result<_, _>>()?;
+    assert_eq!(rows.len(), back.students.len());
+    for (graded, row) in back.students.iter().zip(&rows) {
+        let (earned, of) = graded.points();
+        let page = &row[row.len() - 1];
+        assert_eq!(row[1], earned.to_string());
+        assert_eq!(&row[2], "17");
+        let stages: u32 = row[3].parse::<u32>()? + row[4].parse::<u32>()?;
+        assert_eq!(stages, earned);
+
+        let of_student = cells.iter().filter(|cells| cells[0] == row[0]);
+        let in_checks: u32 = of_student.map(|cells| cells[5].parse::<u32>().unwrap_or(u32::MAX)).sum();
+        assert_eq!(in_checks, earned);
+
+        let sum = |file: &str, score: &str| -> Result<u64> {
+            let value: Value = serde_json::from_str(&files[file])?;
+            let tests = value["tests"].as_array().cloned().unwrap_or_default();
+            Ok(tests.iter().filter_map(|test| test[score].as_u64()).sum())
+        };
+        let gradescope = format!("gradescope/{page}.json");
+        assert_eq!(sum(&gradescope, "score")?, u64::from(earned));
+        assert_eq!(sum(&gradescope, "max_score")?, u64::from(of));
+        assert_eq!(sum(&format!("classroom/{page}.json"), "score")?, u64::from(earned));
+
+        let html = &files[&format!("students/{page}.html")];
+        let shown = format!("<p class=\"points\"><b>{earned}</b> of {of} points</p>");
+        assert_eq!(html.contains(&shown), !graded.checks.is_empty());
+        assert!(files["junit.xml"].contains(&format!("<property name=\"points\" value=\"{earned}\"/>")));
+    }
+    Ok(())
+}
+
+#[test]
+fn what_github_classroom_reads_is_the_same_in_base64() -> Result<()> {
+    for graded in &class().students {
+        let decoded = BASE64.decode(classroom_output(graded))?;
+        assert_eq!(serde_json::from_slice::<Value>(&decoded)?, classroom(graded));
+    }
+    Ok(())
+}
+
+#[test]
+fn cleaning_a_submission_twice_is_cleaning_it_once() {
+    for mut graded in class().students {
+        let remark = Remark { file: "a".to_owned(), what: "b".to_owned() };
+        graded.remarks = vec![remark; 1000];
+        let once = presentable(&graded);
+        assert_eq!(once.remarks.len(), REMARKS + 1);
+        assert_eq!(presentable(&once), once);
+    }
+}
+
+#[test]
+fn an_empty_class_has_reports_too() -> Result<()> {
+    let class = Class { students: Vec::new(), ..class() };
+    let files = files_of(&class)?;
+    assert_eq!(files["grades.csv"], "name,points,of,remarks,trouble,page\n");
+    assert!(files["index.html"].contains("Every submission passes every check."));
+    Ok(())
+}

@@ -1,0 +1,219 @@
+//! Where grades are kept while a class is graded: an SQLite database beside the reports. A submission is written down in
+//! one transaction when it is done, so a run that is killed loses what was under way and nothing else.
+
+use super::result::{Class, Graded, Session};
+use anyhow::{Context, Result, bail, ensure};
+use rusqlite::{Connection, OptionalExtension, params};
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Its name in the folder of results.
+pub const FILE: &str = "grades.sqlite";
+
+const TABLES: &str = "
+    CREATE TABLE IF NOT EXISTS session (id INTEGER PRIMARY KEY CHECK (id = 0), json TEXT NOT NULL);
+    CREATE TABLE IF NOT EXISTS graded (
+        student TEXT PRIMARY KEY,
+        content TEXT NOT NULL,
+        json TEXT NOT NULL
+    );";
+
+/// The grades of a class.
+pub struct Store {
+    connection: Mutex<Connection>,
+}
+
+impl Store {
+    /// Opens the database in `folder`, or makes it.
+    pub fn open(folder: &Path) -> Result<Store> {
+        let path = folder.join(FILE);
+        let connection =
+            Connection::open(&path).with_context(|| format!("cannot open {}", path.display()))?;
+        let make = || {
+            connection.pragma_update(None, "journal_mode", "wal")?;
+            connection.pragma_update(None, "synchronous", "full")?;
+            connection.busy_timeout(std::time::Duration::from_secs(10))?;
+            connection.execute_batch(TABLES)
+        };
+        make()
+            .with_context(|| format!("{} is no database of grades; choose another folder", path.display()))?;
+        Ok(Store { connection: Mutex::new(connection) })
+    }
+
+    /// How the class is graded, if that was begun.
+    pub fn session(&self) -> Result<Option<Session>> {
+        let json: Option<String> =
+            self.lock().query_row("SELECT json FROM session", [], |row| row.get(0)).optional()?;
+        json.map(|json| serde_json::from_str(&json).context("the session is no longer understood"))
+            .transpose()
+    }
+
+    /// Writes down how the class is graded. What was graded in another way is forgotten.
+    pub fn begin(&self, session: &Session) -> Result<()> {
+        let same = self.session()?.as_ref() == Some(session);
+        let mut connection = self.lock();
+        let transaction = connection.transaction()?;
+        if !same {
+            transaction.execute("DELETE FROM graded", [])?;
+        }
+        let json = serde_json::to_string(session)?;
+        transaction.execute("INSERT OR REPLACE INTO session (id, json) VALUES (0, ?1)", [json])?;
+        Ok(transaction.commit()?)
+    }
+
+    /// What is known of a submission, if it still holds what it held.
+    pub fn known(&self, student: &str, content: &str) -> Result<Option<Graded>> {
+        let json: Option<String> = self
+            .lock()
+            .query_row(
+                "SELECT json FROM graded WHERE student = ?1 AND content = ?2",
+                [student, content],
+                |row| row.get(0),
+            )
+            .optional()?;
+        json.map(|json| serde_json::from_str(&json).context("a grade is no longer understood")).transpose()
+    }
+
+    /// Writes a grade down; from here on it survives whatever happens.
+    pub fn keep(&self, graded: &Graded) -> Result<()> {
+        let json = serde_json::to_string(graded)?;
+        self.lock().execute(
+            "INSERT OR REPLACE INTO graded (student, content, json) VALUES (?1, ?2, ?3)",
+            params![graded.student, graded.content, json],
+        )?;
+        Ok(())
+    }
+
+    /// Forgets all but these students: the others have handed in nothing any more.
+    pub fn retain(&self, students: &[&str]) -> Result<()> {
+        let gone: Vec<String> =
+            self.names()?.into_iter().filter(|name| !students.contains(&name.as_str())).collect();
+        for name in gone {
+            self.lock().execute("DELETE FROM graded WHERE student = ?1", [name])?;
+        }
+        Ok(())
+    }
+
+    fn names(&self) -> Result<Vec<String>> {
+        let connection = self.lock();
+        let mut statement = connection.prepare("SELECT student FROM graded ORDER BY student")?;
+        let names = statement.query_map([], |row| row.get(0))?;
+        Ok(names.collect::<rusqlite::Result<_>>()?)
+    }
+
+    /// All that is there.
+    pub fn class(&self) -> Result<Class> {
+        let session = self.session()?.context("nothing has been graded here yet")?;
+        let connection = self.lock();
+        let mut statement = connection.prepare("SELECT json FROM graded ORDER BY student")?;
+        let rows = statement.query_map([], |row| row.get::<_, String>(0))?;
+        let students = rows.map(|json| Ok(serde_json::from_str(&json?)?)).collect::<Result<_>>()?;
+        Ok(Class { session, students })
+    }
+
+    /// Takes over the grades of another part of the class, graded in the same way.
+    pub fn take_over(&self, other: &Class, from: &Path) -> Result<()> {
+        match self.session()? {
+            None => self.begin(&other.session)?,
+            Some(session) if session.same_grades(&other.session) => {}
+            Some(session) => bail!(
+                "{} was graded in another way ({}) than what is here ({}): parts of a class need the same kit, stages and --seed",
+                from.display(),
+                other.session.words(),
+                session.words()
+            ),
+        }
+        let names = self.names()?;
+        for graded in &other.students {
+            ensure!(
+                !names.contains(&graded.student),
+                "{} is graded here and in {}: which of them counts?",
+                graded.student,
+                from.display()
+            );
+            self.keep(graded)?;
+        }
+        Ok(())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Connection> {
+        self.connection.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Session {
+    /// Whether a submission gets the same grade in both.
+    fn same_grades(&self, other: &Session) -> bool {
+        (&self.kit, &self.stages, self.seed) == (&other.kit, &other.stages, other.seed)
+    }
+
+    /// What grades depend on, without the seed, which is nobody's business.
+    fn words(&self) -> String {
+        let stages: Vec<String> = self.stages.iter().map(u8::to_string).collect();
+        format!("stages {}, kit {}", stages.join(", "), self.kit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn session(seed: u64) -> Session {
+        Session { kit: "1".into(), stages: vec![1], seed, isolation: String::new() }
+    }
+
+    fn graded(student: &str, content: &str) -> Graded {
+        Graded {
+            student: student.into(),
+            content: content.into(),
+            checks: Vec::new(),
+            remarks: Vec::new(),
+            compiler: String::new(),
+            trouble: String::new(),
+            cpu_ms: 0,
+        }
+    }
+
+    #[test]
+    fn what_was_written_down_is_there_after_a_crash_and_counts_only_while_nothing_changed() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path()).unwrap();
+        store.begin(&session(7)).unwrap();
+        store.keep(&graded("ann", "x")).unwrap();
+        // As a process that is killed: it closes nothing.
+        std::mem::forget(store);
+        let store = Store::open(folder.path()).unwrap();
+        store.begin(&session(7)).unwrap();
+        assert!(store.known("ann", "x").unwrap().is_some());
+        assert!(store.known("ann", "y").unwrap().is_none());
+        store.retain(&["bob"]).unwrap();
+        assert!(store.known("ann", "x").unwrap().is_none());
+        store.keep(&graded("ann", "x")).unwrap();
+        store.begin(&session(8)).unwrap();
+        assert!(store.class().unwrap().students.is_empty(), "another seed is another class");
+    }
+
+    #[test]
+    fn parts_of_a_class_fit_together_or_say_why_not() {
+        let (one, two) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let (store, other) = (Store::open(one.path()).unwrap(), Store::open(two.path()).unwrap());
+        other.begin(&session(1)).unwrap();
+        other.keep(&graded("ann", "x")).unwrap();
+        let part = other.class().unwrap();
+        store.take_over(&part, two.path()).unwrap();
+        assert_eq!(store.class().unwrap(), part);
+        assert!(store.take_over(&part, two.path()).unwrap_err().to_string().contains("which of them counts"));
+        let strange = Class { session: session(2), students: Vec::new() };
+        assert!(store.take_over(&strange, two.path()).unwrap_err().to_string().contains("another way"));
+    }
+
+    #[test]
+    fn what_is_no_database_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(FILE), "my notes, which are longer than a header of a database is")
+            .unwrap();
+        let error = Store::open(folder.path()).err().unwrap();
+        assert!(format!("{error:#}").contains("no database of grades"), "{error:#}");
+        assert!(std::fs::read_to_string(folder.path().join(FILE)).unwrap().starts_with("my notes"));
+    }
+}

@@ -1,0 +1,229 @@
+//! The wall around everything that a submission makes run: the syntax check, the compiler, the linker, the worker.
+//!
+//! A launcher, which is this same program started with a hidden word, takes rights away from itself and then becomes
+//! the program: limits on resources, no new privileges, Landlock for files, seccomp for the rest of the kernel. None
+//! of it needs privileges, and none can be given back. Whatever cannot be set up ends the launcher: nothing ever runs
+//! half jailed.
+
+mod ended;
+#[cfg(target_os = "linux")]
+mod files;
+#[cfg(target_os = "linux")]
+mod filter;
+#[cfg(target_os = "linux")]
+mod launcher;
+mod probes;
+#[cfg(target_os = "linux")]
+pub mod processes;
+#[cfg(target_os = "linux")]
+mod run;
+
+#[cfg(not(target_os = "linux"))]
+#[path = "elsewhere.rs"]
+mod run;
+
+pub use ended::{Ended, How};
+pub use probes::{Level, got_through, self_test};
+pub use run::{run, spawn_guarded};
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// The first argument of a launcher.
+const LAUNCH: &str = "--in-a-jail";
+
+/// The first argument of a program that tries what should not work.
+const PROBE: &str = "--probe-the-jail";
+
+/// How a launcher that could not jail itself ends.
+pub const NOT_LAUNCHED: i32 = 126;
+
+/// What its message begins with.
+pub const NOT_LAUNCHED_BECAUSE: &str = "the jail: ";
+
+/// What a jailed program is for, which decides what it may ask of the kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Answers calls over the socket that is its standard input: no files to write, no threads, no processes, no
+    /// sockets of its own. It reads itself and the shared libraries of the system.
+    Worker,
+    /// Reads text and says what it thinks: the syntax check. As a worker.
+    Reader,
+    /// rustc making a library or only metadata: threads, no processes.
+    Compiler,
+    /// rustc linking a program: as the compiler, with processes (cc, ld).
+    Linker,
+}
+
+/// How much of the machine a jailed process may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Address space.
+    pub memory_bytes: u64,
+    /// Processor time, of each process.
+    pub cpu_seconds: u64,
+    /// The longest file.
+    pub file_bytes: u64,
+    /// Open files, pipes and sockets.
+    pub open_files: u64,
+    /// Processes and threads, counted over everything that the user runs. The kernel does not count those of root; a
+    /// worker is kept from starting any by its filter.
+    pub processes: u64,
+}
+
+impl Purpose {
+    /// What is enough for honest code.
+    pub fn limits(self) -> Limits {
+        match self {
+            // A check needs some ten megabytes. Its calls have a patience of their own; the processor time is for all
+            // calls of a check together, and what a frame may take.
+            Purpose::Worker => Limits {
+                memory_bytes: 1 << 30,
+                cpu_seconds: 120,
+                file_bytes: 0,
+                open_files: 32,
+                processes: 1,
+            },
+            // Milliseconds for the longest file that is taken.
+            Purpose::Reader => Limits { cpu_seconds: 10, ..Purpose::Worker.limits() },
+            // rustc maps half a gigabyte and needs a second; the results have a few megabytes. The user may have
+            // hundreds of processes of other kinds.
+            Purpose::Compiler | Purpose::Linker => Limits {
+                memory_bytes: 3 << 30,
+                cpu_seconds: 10,
+                file_bytes: 256 << 20,
+                open_files: 512,
+                processes: 4096,
+            },
+        }
+    }
+
+    /// Whether it may write at all.
+    fn writes(self) -> bool {
+        matches!(self, Purpose::Compiler | Purpose::Linker)
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Purpose::Worker => "worker",
+            Purpose::Reader => "reader",
+            Purpose::Compiler => "compiler",
+            Purpose::Linker => "linker",
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    fn of_word(word: &std::ffi::OsStr) -> Option<Purpose> {
+        let all = [Purpose::Worker, Purpose::Reader, Purpose::Compiler, Purpose::Linker];
+        all.into_iter().find(|purpose| word == purpose.word())
+    }
+}
+
+/// Walls around a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Jail {
+    /// What it is for.
+    pub purpose: Purpose,
+    /// What it may use.
+    pub limits: Limits,
+    /// Files and folders that it may read, besides itself and the libraries of the system.
+    pub readable: Vec<PathBuf>,
+    /// Folders that it may write, if it is a compiler or a linker. The first is where it starts and keeps its
+    /// temporary files.
+    pub writable: Vec<PathBuf>,
+}
+
+impl Jail {
+    /// With the usual limits, and nothing to read or write.
+    pub fn new(purpose: Purpose) -> Jail {
+        Jail { purpose, limits: purpose.limits(), readable: vec![], writable: vec![] }
+    }
+
+    /// The command that runs `program` in here. Its environment is empty, but for where a linker looks for tools and
+    /// where temporary files go. Add arguments; do not change the environment.
+    pub fn command(&self, program: &Path) -> Command {
+        let limits = &self.limits;
+        let mut command = Command::new(launcher());
+        command.arg(LAUNCH).arg(self.purpose.word()).arg(std::process::id().to_string());
+        for limit in
+            [limits.cpu_seconds, limits.memory_bytes, limits.file_bytes, limits.open_files, limits.processes]
+        {
+            command.arg(limit.to_string());
+        }
+        for paths in [&self.readable, &self.writable] {
+            command.arg(paths.len().to_string()).args(paths.iter().map(|path| absolute(path)));
+        }
+        command.arg(absolute(program)).env_clear();
+        let start = self.writable.first().map_or_else(|| PathBuf::from("/"), |folder| absolute(folder));
+        if self.purpose.writes() {
+            command.env("TMPDIR", &start);
+        }
+        if self.purpose == Purpose::Linker {
+            command.env("PATH", "/usr/bin:/bin");
+        }
+        command.current_dir(start);
+        command
+    }
+}
+
+/// The program starts elsewhere than the command is made.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Where the processor time is among the arguments of a launcher; 1 and 2 are the purpose and the parent.
+#[cfg(target_os = "linux")]
+const CPU_SECONDS_AT: usize = 3;
+
+static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
+
+/// The program that jails itself: this one, or, for tests and benchmarks, the tool that cargo has put near them.
+fn launcher() -> PathBuf {
+    LAUNCHER.get().cloned().unwrap_or_else(|| {
+        let here = std::env::current_exe().unwrap_or_default();
+        let folder = here.parent().unwrap_or(Path::new("/"));
+        let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
+        folder.join(format!("raykata{}", std::env::consts::EXE_SUFFIX))
+    })
+}
+
+/// This program, as something to run in a jail: for a reader.
+pub fn this_program() -> PathBuf {
+    let launcher = launcher();
+    launcher.canonicalize().unwrap_or(launcher)
+}
+
+/// First thing in `main`: a process that was started as a launcher, or to probe a jail, goes no further.
+pub fn launch_if_asked() {
+    let mut arguments = std::env::args_os().skip(1);
+    let word = arguments.next().unwrap_or_default();
+    if word == PROBE {
+        probes::act(arguments.next().unwrap_or_default().to_string_lossy().as_ref());
+        std::process::exit(0);
+    }
+    if word == LAUNCH {
+        eprintln!("{NOT_LAUNCHED_BECAUSE}{}", launch(arguments.collect()));
+        std::process::exit(NOT_LAUNCHED);
+    }
+    // By way of the kernel and not by name: it stays the same program when cargo builds a new one meanwhile.
+    let myself = Path::new("/proc/self/exe");
+    if let Some(launcher) = if myself.exists() { Some(myself.into()) } else { std::env::current_exe().ok() } {
+        let _ = LAUNCHER.set(launcher);
+    }
+}
+
+/// Comes back only with what went wrong.
+#[cfg(target_os = "linux")]
+fn launch(arguments: Vec<OsString>) -> anyhow::Error {
+    match launcher::launch(arguments) {
+        Err(error) => error,
+        Ok(never) => match never {},
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn launch(_: Vec<OsString>) -> anyhow::Error {
+    anyhow::anyhow!("{}", run::ONLY_LINUX)
+}

@@ -1,0 +1,262 @@
+//! What a jailed program should not be able to do, tried. The program that tries is this one, so no compiler is needed.
+
+use super::{Ended, How, Jail, PROBE, Purpose, run, this_program};
+use anyhow::{Context, Result, bail, ensure};
+use std::fmt;
+use std::io::{self, Write};
+use std::path::Path;
+use std::time::Duration;
+
+/// The probes need milliseconds and, for the processor time, a second; this is for a very busy machine.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// What the probes say fits many times.
+const CAP: usize = 64 << 10;
+
+/// How well this machine contains what it runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Level(String);
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// Tries to break out of a jail like those of workers. Fails if anything gets through, or if there can be no jail.
+pub fn self_test() -> Result<Level> {
+    ensure!(
+        cfg!(target_os = "linux"),
+        "submissions can only be contained on Linux: grade them on a Linux machine"
+    );
+    let jail = Jail::new(Purpose::Worker);
+    let brief = Jail { limits: super::Limits { cpu_seconds: 1, ..jail.limits }, ..jail.clone() };
+    let (through, spun, flooded) = std::thread::scope(|scope| {
+        let spun = scope.spawn(|| act_in(&brief, "spin", PATIENCE));
+        let flooded = scope.spawn(|| act_in(&jail, "flood", PATIENCE));
+        (got_through(&jail), spun.join(), flooded.join())
+    });
+    let mut through = through.context("submissions cannot be contained on this machine")?;
+    let how = |ended: std::thread::Result<Result<Ended>>| match ended {
+        Ok(Ok(ended)) => Some(ended.how),
+        _ => None,
+    };
+    if how(spun) != Some(How::UsedUpCpu) {
+        through.push("use more processor time than it was given".into());
+    }
+    if how(flooded) != Some(How::WroteTooMuch) {
+        through.push("write without end".into());
+    }
+    if !through.is_empty() {
+        bail!(
+            "submissions cannot be contained on this machine: a jailed program could {}",
+            through.join(", ")
+        );
+    }
+    Ok(Level(format!("{}, seccomp, resource limits, no new privileges", landlock_level()?)))
+}
+
+fn landlock_level() -> Result<String> {
+    let mut command = std::process::Command::new(super::launcher());
+    command.args([PROBE, "level"]).env_clear();
+    let ended = run(command, b"", PATIENCE, CAP)?;
+    Ok(String::from_utf8_lossy(&ended.stdout).trim().to_owned())
+}
+
+/// The things that a program could do in `jail` and should not, as ends of the sentence "it could …". A jail for
+/// compilers or linkers lets some through on purpose: threads, processes.
+pub fn got_through(jail: &Jail) -> Result<Vec<String>> {
+    let ended = act_in(jail, "all", PATIENCE)?;
+    let said = String::from_utf8_lossy(&ended.stdout);
+    let mut through = Vec::new();
+    // Line by line: a probe that was not tried has not been contained.
+    let mut lines = said.lines();
+    for (name, _) in PROBES {
+        match lines.next().and_then(|line| line.strip_suffix(name)) {
+            Some("contained: ") => {}
+            Some("through: ") => through.push((*name).to_owned()),
+            _ => bail!(
+                "no probe of the jail could be run ({:?}): {}",
+                ended.how,
+                String::from_utf8_lossy(&ended.stderr).trim()
+            ),
+        }
+    }
+    Ok(through)
+}
+
+fn act_in(jail: &Jail, what: &str, patience: Duration) -> Result<Ended> {
+    let mut command = jail.command(&this_program());
+    command.args([PROBE, what]);
+    Ok(run(command, b"", patience, CAP)?)
+}
+
+/// In the jailed process.
+pub(super) fn act(what: &str) {
+    match what {
+        "spin" => loop {
+            std::hint::spin_loop();
+        },
+        "flood" => while io::stdout().write_all(&[b'x'; 4096]).is_ok() {},
+        "sleep" => std::thread::sleep(Duration::from_secs(3600)),
+        "environment" => println!("{:?}", std::env::vars_os().collect::<Vec<_>>()),
+        #[cfg(target_os = "linux")]
+        "level" => match super::files::level() {
+            Ok(level) => println!("{level}"),
+            Err(error) => eprintln!("{error:#}"),
+        },
+        #[cfg(target_os = "linux")]
+        "descriptors" => {
+            let open = (0..1024).filter(|descriptor| nix::unistd::close(*descriptor + 3).is_ok());
+            println!("{}", open.count());
+        }
+        "all" => {
+            for (name, try_it) in PROBES {
+                let outcome = if is_contained(&try_it()) { "contained" } else { "through" };
+                println!("{outcome}: {name}");
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Refused, or there is nothing there. Any other error, such as nobody answering at the other end, means that the
+/// kernel has let it try.
+fn is_contained(outcome: &io::Result<()>) -> bool {
+    use io::ErrorKind::{NotFound, OutOfMemory, PermissionDenied};
+    matches!(outcome, Err(error) if [NotFound, OutOfMemory, PermissionDenied].contains(&error.kind()))
+}
+
+type Probe = (&'static str, fn() -> io::Result<()>);
+
+const ELSEWHERE: &str = "/tmp";
+
+const PROBES: &[Probe] = &[
+    ("read a file of the system", || std::fs::read("/etc/passwd").map(drop)),
+    ("list the root folder", || std::fs::read_dir("/").map(drop)),
+    ("read its judge's environment", || std::fs::read(of_judge("environ")).map(drop)),
+    ("write its own memory as a file", || {
+        std::fs::File::options().write(true).open("/proc/self/mem").map(drop)
+    }),
+    ("write a file in a shared folder", || {
+        let file = elsewhere("file");
+        std::fs::write(&file, "x")?;
+        std::fs::remove_file(&file)
+    }),
+    ("make a symbolic link", || {
+        let link = elsewhere("link");
+        make_link(&link)?;
+        std::fs::remove_file(&link)
+    }),
+    ("make a folder", || {
+        let folder = elsewhere("folder");
+        std::fs::create_dir(&folder)?;
+        std::fs::remove_dir(&folder)
+    }),
+    ("set permissions", || {
+        let myself = this_program();
+        std::fs::set_permissions(&myself, myself.metadata()?.permissions())
+    }),
+    ("connect to a port", || std::net::TcpStream::connect(("127.0.0.1", 9)).map(drop)),
+    ("listen on a port", || std::net::TcpListener::bind(("127.0.0.1", 0)).map(drop)),
+    ("open a datagram socket", || std::net::UdpSocket::bind(("127.0.0.1", 0)).map(drop)),
+    ("make a pair of sockets", socket_pair),
+    ("start a process", || std::process::Command::new("/bin/sh").args(["-c", ":"]).status().map(drop)),
+    ("start a thread", || std::thread::Builder::new().spawn(|| {})?.join().map_err(|_| other())),
+    ("allocate 100 GB", || {
+        Vec::<u8>::new().try_reserve_exact(100 << 30).map_err(|_| io::ErrorKind::OutOfMemory.into())
+    }),
+    ("signal its judge", kernel::signal_judge),
+    ("signal everybody", kernel::signal_all),
+    ("leave its group", kernel::leave_group),
+    ("enter a name space of its own", kernel::name_space),
+    ("raise its own limits", kernel::raise_limits),
+    ("make a file in memory", kernel::file_in_memory),
+];
+
+fn of_judge(file: &str) -> String {
+    #[cfg(unix)]
+    let judge = std::os::unix::process::parent_id();
+    #[cfg(not(unix))]
+    let judge = "self";
+    format!("/proc/{judge}/{file}")
+}
+
+fn elsewhere(what: &str) -> std::path::PathBuf {
+    Path::new(ELSEWHERE).join(format!("raykata-probe-{}-{what}", std::process::id()))
+}
+
+fn other() -> io::Error {
+    io::Error::other("not as expected")
+}
+
+#[cfg(unix)]
+fn make_link(link: &Path) -> io::Result<()> {
+    std::os::unix::fs::symlink("/etc/passwd", link)
+}
+
+#[cfg(unix)]
+fn socket_pair() -> io::Result<()> {
+    std::os::unix::net::UnixStream::pair().map(drop)
+}
+
+#[cfg(not(unix))]
+fn make_link(_: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn socket_pair() -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(target_os = "linux")]
+mod kernel {
+    use nix::sched::{CloneFlags, unshare};
+    use nix::sys::memfd::{MFdFlags, memfd_create};
+    use nix::sys::resource::{Resource, setrlimit};
+    use nix::sys::signal::kill;
+    use nix::unistd::{Pid, getppid, setsid};
+    use std::io;
+
+    /// With no signal: only whether one could.
+    pub fn signal_judge() -> io::Result<()> {
+        Ok(kill(getppid(), None)?)
+    }
+
+    pub fn signal_all() -> io::Result<()> {
+        Ok(kill(Pid::from_raw(-1), None)?)
+    }
+
+    pub fn leave_group() -> io::Result<()> {
+        setsid()?;
+        Ok(())
+    }
+
+    pub fn name_space() -> io::Result<()> {
+        Ok(unshare(CloneFlags::CLONE_NEWUSER)?)
+    }
+
+    pub fn raise_limits() -> io::Result<()> {
+        Ok(setrlimit(Resource::RLIMIT_CPU, 1 << 20, 1 << 20)?)
+    }
+
+    pub fn file_in_memory() -> io::Result<()> {
+        memfd_create("probe", MFdFlags::empty())?;
+        Ok(())
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod kernel {
+    use std::io::Result;
+
+    pub fn signal_judge() -> Result<()> {
+        Ok(())
+    }
+    pub use signal_judge as signal_all;
+    pub use signal_judge as leave_group;
+    pub use signal_judge as name_space;
+    pub use signal_judge as raise_limits;
+    pub use signal_judge as file_in_memory;
+}

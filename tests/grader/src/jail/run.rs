@@ -1,0 +1,170 @@
+//! Runs a command to its end, whatever it does.
+
+use super::{Ended, How, processes};
+use nix::errno::Errno;
+use nix::sys::prctl;
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
+use nix::unistd::Pid;
+use std::io::{self, Read, Write};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Between two looks at a process: short at first, since some only need a millisecond.
+const FIRST_PAUSE: Duration = Duration::from_micros(200);
+const LONGEST_PAUSE: Duration = Duration::from_millis(5);
+
+/// A linker needs four processes. The kernel's own limit does not hold for root.
+const MOST_PROCESSES: usize = 32;
+
+/// How often they are counted: looking at all processes of the machine takes a millisecond or so.
+const COUNT_EVERY: Duration = Duration::from_millis(50);
+
+/// Runs a command to its end: gives it `stdin`, keeps what it writes up to `cap` bytes from each of both streams, and
+/// ends it when it writes more or after `patience`. Nothing of it is left running.
+pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -> io::Result<Ended> {
+    guard_this_process()?;
+    let cpu_limit = cpu_limit(&command);
+    // A group of its own, which nothing in a jail can leave: by that its children are found.
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
+    let mut child = spawn(command)?;
+    let (to_it, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
+    let flooded = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        // What it does not read is its loss.
+        scope.spawn(move || to_it.map(|mut pipe| pipe.write_all(stdin)));
+        let stdout = scope.spawn(|| keep(stdout, cap, &flooded));
+        let stderr = scope.spawn(|| keep(stderr, cap, &flooded));
+        let verdict = wait(&child, patience, &flooded);
+        // Also if looking at it failed: nothing of it may stay, or the threads above never end.
+        let ended = end(&mut child);
+        let (stdout, stderr) = (stdout.join().unwrap_or_default(), stderr.join().unwrap_or_default());
+        let (status, cpu) = ended?;
+        let how = match verdict? {
+            Some(how) => how,
+            None if flooded.load(Ordering::Relaxed) => How::WroteTooMuch,
+            None => how_it_ended(status, cpu, cpu_limit),
+        };
+        Ok(Ended { how, stdout, stderr, cpu })
+    })
+}
+
+/// Starts a jailed command whose end is its owner's business.
+pub fn spawn_guarded(mut command: Command) -> io::Result<Child> {
+    guard_this_process()?;
+    command.process_group(0);
+    spawn(command)
+}
+
+/// From a thread that lasts as long as the program: a jailed process ends with the thread that has
+/// started it.
+fn spawn(command: Command) -> io::Result<Child> {
+    type Order = (Command, Sender<io::Result<Child>>);
+    static SPAWNER: OnceLock<io::Result<Mutex<Sender<Order>>>> = OnceLock::new();
+    let spawner = SPAWNER.get_or_init(|| {
+        let (orders, inbox) = channel::<Order>();
+        std::thread::Builder::new().name("spawner".into()).spawn(move || {
+            for (mut command, answer) in inbox {
+                let child = command.spawn();
+                // Closes our copies of the pipes that it was given.
+                drop(command);
+                let _ = answer.send(child);
+            }
+        })?;
+        Ok(Mutex::new(orders))
+    });
+    let gone = || io::Error::other("the thread that starts processes is gone");
+    let spawner = spawner.as_ref().map_err(|error| io::Error::new(error.kind(), error.to_string()))?;
+    let (answer, answered) = channel();
+    spawner.lock().unwrap_or_else(PoisonError::into_inner).send((command, answer)).map_err(|_| gone())?;
+    answered.recv().map_err(|_| gone())?
+}
+
+/// Orphans of what we start come to us, and nobody reads our memory.
+fn guard_this_process() -> io::Result<()> {
+    static GUARDED: OnceLock<nix::Result<()>> = OnceLock::new();
+    let guarded =
+        GUARDED.get_or_init(|| prctl::set_child_subreaper(true).and_then(|()| prctl::set_dumpable(false)));
+    guarded.map_err(io::Error::from)
+}
+
+/// Of the arguments of a launcher.
+fn cpu_limit(command: &Command) -> Option<Duration> {
+    let mut arguments = command.get_args();
+    if arguments.next()? != super::LAUNCH {
+        return None;
+    }
+    Some(Duration::from_secs(arguments.nth(super::CPU_SECONDS_AT - 1)?.to_str()?.parse().ok()?))
+}
+
+/// Reads to the end, or to `cap`.
+fn keep(pipe: Option<impl Read>, cap: usize, flooded: &AtomicBool) -> Vec<u8> {
+    let mut kept = Vec::new();
+    if let Some(pipe) = pipe {
+        let _ = pipe.take(cap as u64 + 1).read_to_end(&mut kept);
+    }
+    if kept.len() > cap {
+        kept.truncate(cap);
+        flooded.store(true, Ordering::Relaxed);
+    }
+    kept
+}
+
+/// Until it has ended by itself, which is `None`, or has to be ended.
+fn wait(child: &Child, patience: Duration, flooded: &AtomicBool) -> io::Result<Option<How>> {
+    let started = Instant::now();
+    let (mut pause, mut counted) = (FIRST_PAUSE, started);
+    while !has_ended(child, WaitPidFlag::WNOHANG)? {
+        if flooded.load(Ordering::Relaxed) {
+            return Ok(Some(How::WroteTooMuch));
+        }
+        if started.elapsed() > patience {
+            return Ok(Some(How::TookTooLong));
+        }
+        if counted.elapsed() > COUNT_EVERY {
+            if processes::count(child.id()) > MOST_PROCESSES {
+                return Ok(Some(How::TooManyProcesses));
+            }
+            counted = Instant::now();
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(LONGEST_PAUSE);
+    }
+    Ok(None)
+}
+
+/// Without waiting for it in the sense of the kernel: its number stays its own.
+fn has_ended(child: &Child, flag: WaitPidFlag) -> io::Result<bool> {
+    let child = Pid::from_raw(child.id() as i32);
+    loop {
+        return match waitid(Id::Pid(child), WaitPidFlag::WEXITED | WaitPidFlag::WNOWAIT | flag) {
+            Ok(status) => Ok(status != WaitStatus::StillAlive),
+            Err(Errno::EINTR) => continue,
+            Err(error) => Err(error.into()),
+        };
+    }
+}
+
+/// Ends a process and whatever it has started.
+fn end(child: &mut Child) -> io::Result<(ExitStatus, Duration)> {
+    child.kill()?;
+    has_ended(child, WaitPidFlag::empty())?;
+    let cpu = processes::cpu_time(child.id()).unwrap_or_default();
+    let group_ended = processes::end_group(child.id());
+    let status = child.wait()?;
+    group_ended?;
+    Ok((status, cpu))
+}
+
+fn how_it_ended(status: ExitStatus, cpu: Duration, cpu_limit: Option<Duration>) -> How {
+    use nix::libc::{SIGKILL, SIGXCPU};
+    match (status.code(), status.signal()) {
+        (Some(code), _) => How::Exited(code),
+        (_, Some(SIGXCPU)) => How::UsedUpCpu,
+        (_, Some(SIGKILL)) if cpu_limit.is_some_and(|limit| cpu >= limit) => How::UsedUpCpu,
+        (_, signal) => How::Signalled(signal.unwrap_or_default()),
+    }
+}

@@ -1,0 +1,226 @@
+//! What runs in a jail stays in it.
+#![cfg(target_os = "linux")]
+
+use grader::jail::{self, Ended, How, Jail, Limits, Purpose, got_through, run, this_program};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Far more than anything here needs: a limit for a machine in trouble, not a measure.
+const PATIENCE: Duration = Duration::from_secs(60);
+const CAP: usize = 1 << 20;
+
+fn probe(jail: &Jail, what: &str) -> Ended {
+    let mut command = jail.command(&this_program());
+    command.args(["--probe-the-jail", what]);
+    run(command, b"", PATIENCE, CAP).expect("it runs")
+}
+
+fn said(ended: &Ended) -> String {
+    format!(
+        "{:?}: {}{}",
+        ended.how,
+        String::from_utf8_lossy(&ended.stdout),
+        String::from_utf8_lossy(&ended.stderr)
+    )
+}
+
+#[test]
+fn this_machine_contains_submissions() {
+    let started = Instant::now();
+    let level = jail::self_test().expect("contained").to_string();
+    assert!(level.starts_with("Landlock ABI ") && level.contains("seccomp"), "{level}");
+    eprintln!("{level}, found out in {:?}", started.elapsed());
+}
+
+#[test]
+fn each_purpose_lets_through_what_it_is_for_and_nothing_else() {
+    for (purpose, through) in [
+        (Purpose::Worker, &[][..]),
+        (Purpose::Reader, &[]),
+        (Purpose::Compiler, &["start a thread"]),
+        (Purpose::Linker, &["make a pair of sockets", "start a process", "start a thread"]),
+    ] {
+        assert_eq!(got_through(&Jail::new(purpose)).expect("probed"), through, "{purpose:?}");
+    }
+}
+
+#[test]
+fn what_is_not_asked_for_is_not_there() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let worker = Jail::new(Purpose::Worker);
+    let compiler = Jail { writable: vec![scratch.path().into()], ..Jail::new(Purpose::Compiler) };
+    assert_eq!(said(&probe(&worker, "environment")), "Exited(0): []\n");
+    let environment = said(&probe(&compiler, "environment"));
+    assert_eq!(environment, format!("Exited(0): [(\"TMPDIR\", {:?})]\n", scratch.path()));
+    assert_eq!(said(&probe(&worker, "descriptors")), "Exited(0): 0\n");
+}
+
+#[test]
+fn an_open_file_of_the_judge_is_not_inherited() {
+    // A redirection of the shell is not closed on exec, unlike what Rust opens. The shell is the launcher's parent.
+    let script = "exec 7</etc/passwd 9</etc/passwd
+        launcher=$1 word=$2 purpose=$3; shift 4; \"$launcher\" \"$word\" \"$purpose\" $$ \"$@\"; exit $?";
+    let jailed = Jail::new(Purpose::Worker).command(&this_program());
+    let mut command = Command::new("/bin/sh");
+    command.args(["-c", script, "sh"]).arg(jailed.get_program()).args(jailed.get_args());
+    command.args(["--probe-the-jail", "descriptors"]);
+    assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 0\n");
+}
+
+#[test]
+fn endless_work_output_and_sleep_end() {
+    let jail = Jail::new(Purpose::Worker);
+    let brief = Jail { limits: Limits { cpu_seconds: 1, ..jail.limits }, ..jail.clone() };
+    let spun = probe(&brief, "spin");
+    assert_eq!(spun.how, How::UsedUpCpu);
+    assert!(spun.cpu >= Duration::from_millis(900), "{:?}", spun.cpu);
+    let flooded = probe(&jail, "flood");
+    assert_eq!((flooded.how, flooded.stdout.len()), (How::WroteTooMuch, CAP));
+    let mut command = jail.command(&this_program());
+    command.args(["--probe-the-jail", "sleep"]);
+    let ended = run(command, b"", Duration::from_millis(200), CAP).expect("it runs");
+    assert_eq!(ended.how, How::TookTooLong);
+}
+
+/// Processes whose command line holds `word`.
+fn running(word: &str) -> Vec<String> {
+    let entries = std::fs::read_dir("/proc").expect("/proc");
+    entries
+        .filter_map(|entry| std::fs::read(entry.ok()?.path().join("cmdline")).ok())
+        .map(|line| String::from_utf8_lossy(&line).replace('\0', " "))
+        .filter(|line| line.contains(word))
+        .collect()
+}
+
+/// Children of this process that have ended and wait for somebody to notice.
+fn zombies() -> usize {
+    let myself = format!(" Z {} ", std::process::id());
+    let entries = std::fs::read_dir("/proc").expect("/proc");
+    entries
+        .filter_map(|entry| std::fs::read_to_string(entry.ok()?.path().join("stat")).ok())
+        .filter(|line| line.contains(&myself))
+        .count()
+}
+
+fn shell(script: &str) -> Command {
+    let mut command = Jail::new(Purpose::Linker).command(Path::new("/bin/sh"));
+    command.args(["-c", script]);
+    command
+}
+
+#[test]
+fn nothing_is_left_of_a_tree_of_processes() {
+    // Each number of seconds appears nowhere else on the machine.
+    let script = "sleep 7261 & (sleep 7262 & (sleep 7263 & sleep 7264) & sleep 7265) & wait";
+    let ended = run(shell(script), b"", Duration::from_millis(500), CAP).expect("it runs");
+    assert_eq!(ended.how, How::TookTooLong, "{}", said(&ended));
+    assert_eq!(running("sleep 726"), Vec::<String>::new());
+    // One that ends by itself and leaves others behind.
+    let ended = run(shell("sleep 7361 & sleep 7362 & exit 3"), b"", PATIENCE, CAP).expect("it runs");
+    assert_eq!(ended.how, How::Exited(3), "{}", said(&ended));
+    assert_eq!(running("sleep 736"), Vec::<String>::new());
+    // Other tests run at the same time, and theirs are waited for soon.
+    let until = Instant::now() + PATIENCE;
+    while zombies() > 0 {
+        assert!(Instant::now() < until, "processes that nobody waits for");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn a_crowd_of_processes_is_ended() {
+    let script = "i=0; while [ $i -lt 200 ]; do sleep 7461 & i=$((i+1)); done; wait";
+    let ended = run(shell(script), b"", PATIENCE, CAP).expect("it runs");
+    assert_eq!(ended.how, How::TooManyProcesses, "{}", said(&ended));
+    assert_eq!(running("sleep 7461"), Vec::<String>::new());
+}
+
+#[test]
+fn what_cannot_be_jailed_does_not_run() {
+    let missing = Jail { readable: vec!["/no/such/folder".into()], ..Jail::new(Purpose::Worker) };
+    let ended = probe(&missing, "environment");
+    assert_eq!(ended.how, How::Exited(jail::NOT_LAUNCHED));
+    assert!(said(&ended).contains("the jail: /no/such/folder cannot be made accessible"), "{}", said(&ended));
+    let writes = Jail { writable: vec!["/tmp".into()], ..Jail::new(Purpose::Worker) };
+    assert!(said(&probe(&writes, "environment")).contains("a worker writes nothing"));
+    let command = Jail::new(Purpose::Worker).command(Path::new("/no/such/program"));
+    let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
+    assert!(said(&ended).contains("the jail: /no/such/program"), "{}", said(&ended));
+}
+
+fn toolchain() -> PathBuf {
+    let found = Command::new("rustc").args(["--print", "sysroot"]).output().expect("rustc");
+    String::from_utf8(found.stdout).expect("a path").trim().into()
+}
+
+fn compile(purpose: Purpose, scratch: &Path, source: &str, arguments: &[&str]) -> Ended {
+    let file = scratch.join("source.rs");
+    std::fs::write(&file, source).expect("written");
+    let toolchain = toolchain();
+    let jail =
+        Jail { readable: vec![toolchain.clone()], writable: vec![scratch.into()], ..Jail::new(purpose) };
+    let mut command = jail.command(&toolchain.join("bin/rustc"));
+    command.arg(file).args(["--edition", "2024"]).args(arguments);
+    run(command, b"", PATIENCE, CAP).expect("it runs")
+}
+
+#[test]
+fn a_library_is_compiled_and_a_file_of_the_system_is_not_included() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let library = ["--crate-type", "rlib", "-o", "libhello.rlib"];
+    let ended = compile(Purpose::Compiler, scratch.path(), "pub fn hello() -> u8 { 7 }", &library);
+    assert_eq!(said(&ended), "Exited(0): ");
+    assert!(scratch.path().join("libhello.rlib").is_file());
+    for macro_name in ["include_str", "include_bytes"] {
+        let source = format!("pub fn leak() {{ {macro_name}!(\"/etc/passwd\"); }}");
+        let ended = compile(Purpose::Compiler, scratch.path(), &source, &library);
+        assert_eq!(ended.how, How::Exited(1));
+        assert!(said(&ended).contains("couldn't read `/etc/passwd`: Permission denied"), "{}", said(&ended));
+    }
+    let elsewhere = ["--crate-type", "rlib", "-o", "/tmp/libleaked.rlib"];
+    assert_ne!(compile(Purpose::Compiler, scratch.path(), "", &elsewhere).how, How::Exited(0));
+    assert!(!Path::new("/tmp/libleaked.rlib").exists());
+}
+
+#[test]
+fn a_program_is_linked_and_runs() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let source = r#"fn main() { println!("hello from {:?}", std::env::current_dir().is_ok()); }"#;
+    let ended = compile(Purpose::Linker, scratch.path(), source, &["-o", "hello"]);
+    assert_eq!(said(&ended), "Exited(0): ");
+    let command = Jail::new(Purpose::Worker).command(&scratch.path().join("hello"));
+    let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
+    assert_eq!(said(&ended), "Exited(0): hello from false\n");
+}
+
+#[test]
+fn a_recursion_as_deep_as_a_worker_may_go_returns() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    // 100,000 calls of some five hundred bytes each.
+    let source = "use std::hint::black_box;
+        fn deep(n: u32) -> u32 { let room = black_box([n; 100]); if n == 0 { 0 } else { 1 + deep(n - 1) + room[9] - n } }
+        fn main() { println!(\"{}\", deep(100_000)); }";
+    assert_eq!(said(&compile(Purpose::Linker, scratch.path(), source, &["-O", "-o", "deep"])), "Exited(0): ");
+    let command = Jail::new(Purpose::Worker).command(&scratch.path().join("deep"));
+    assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 100000\n");
+}
+
+/// With native code, as a hole in the compiler would allow it.
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn code_beyond_the_rules_of_rust_gets_no_further() {
+    let scratch = tempfile::tempdir().expect("a folder");
+    let source = include_str!("hostile/native.rs");
+    let ended = compile(Purpose::Linker, scratch.path(), source, &["-O", "-o", "native"]);
+    assert_eq!(said(&ended), "Exited(0): ");
+    for purpose in [Purpose::Worker, Purpose::Reader] {
+        let jail = Jail::new(purpose);
+        let command = jail.command(&scratch.path().join("native"));
+        assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): tried\n");
+        let mut command = jail.command(&scratch.path().join("native"));
+        command.arg("other-architecture");
+        // SIGSYS.
+        assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Signalled(31): ");
+    }
+}

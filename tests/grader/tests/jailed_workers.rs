@@ -1,0 +1,120 @@
+//! What the judge makes of jailed workers that do everything wrong: one mishap for the call, never a wait without end.
+#![cfg(target_os = "linux")]
+
+use glam::Vec3;
+use grader::jail::{Jail, Purpose};
+use grader::worker::Worker;
+use raykata::frame::{Unwatched, Watch};
+use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+use std::path::Path;
+use std::time::Duration;
+
+fn jailed(program: &str, seconds: u64) -> Door<Worker> {
+    Door(Worker::jailed(program.into(), Duration::from_secs(seconds), Jail::new(Purpose::Worker)))
+}
+
+fn door() -> Door<Worker> {
+    jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 1)
+}
+
+fn query(radius: f32) -> SphereQuery {
+    SphereQuery {
+        ray: Ray::new(Vec3::new(-20.0, 0.0, 0.0), Vec3::X),
+        sphere: Sphere { center: Vec3::ZERO, radius },
+    }
+}
+
+fn ask(door: &Door<Worker>, radius: f32) -> Result<Vec<Option<f32>>, Mishap> {
+    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
+}
+
+fn crash(door: &Door<Worker>, radius: f32) -> String {
+    match ask(door, radius) {
+        Err(Mishap::Crashed { how }) => how,
+        other => panic!("not a crash: {other:?}"),
+    }
+}
+
+#[test]
+fn an_honest_worker_passes_every_check_in_a_jail() {
+    for (_, checks) in checks::STAGES {
+        for check in *checks {
+            // The patience of the tool: some checks take a while where others run at the same time.
+            let kit = jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 10);
+            let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(kit);
+            assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
+        }
+    }
+}
+
+#[test]
+fn each_death_is_told_in_words_and_the_next_call_is_answered() {
+    let door = door();
+    assert!(crash(&door, -2.0).contains("exit status: 0"));
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+    assert!(crash(&door, -3.0).contains("SIGABRT"));
+    assert!(crash(&door, -4.0).starts_with("the stack overflowed, or memory was touched"));
+    assert_eq!(crash(&door, -10.0), "it took more memory than the 1 GiB it was given");
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+    assert!(
+        crash(&jailed("/no/such/worker", 1), 10.0).contains("cannot be started: the jail: /no/such/worker")
+    );
+}
+
+#[test]
+fn files_and_processes_are_out_of_reach() {
+    for radius in [-12.0, -13.0] {
+        let Err(Mishap::Panicked { message, .. }) = ask(&door(), radius) else { panic!("no panic") };
+        assert_eq!(message, "Err(PermissionDenied)");
+    }
+}
+
+#[test]
+fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
+    let door = door();
+    for radius in [-5.0, -11.0] {
+        assert_eq!(ask(&door, radius), Err(Mishap::TimedOut { seconds: 1 }));
+    }
+    // It sleeps for three seconds, as if others had the processor: twice that is granted.
+    assert!(ask(&jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 2), -14.0).is_ok());
+}
+
+#[test]
+fn what_is_no_answer_is_a_mishap() {
+    let door = door();
+    for radius in [-7.0, -8.0, -20.0, -21.0, -22.0, -23.0] {
+        let outcome = ask(&door, radius);
+        assert!(matches!(outcome, Err(Mishap::Nonsense { .. })), "{radius}: {outcome:?}");
+        assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+    }
+}
+
+#[test]
+fn a_worker_that_does_not_read_does_not_stop_the_judge() {
+    // More than any socket holds, so that writing it has to wait.
+    let many: Vec<SphereQuery> = std::iter::repeat_n(query(10.0), 200_000).collect();
+    // Says nothing on the pipe and reads nothing.
+    let outcome = mishap::catch(|| jailed("/usr/bin/yes", 1).sphere_algebraic(&many));
+    assert_eq!(outcome, Err(Mishap::TimedOut { seconds: 1 }));
+    // Answers this and all that follows without reading it.
+    let door = door();
+    assert_eq!(ask(&door, -24.0), Ok(vec![Some(1.0)]));
+    let outcome = mishap::catch(|| door.sphere_algebraic(&many));
+    assert_eq!(outcome, Err(Mishap::TimedOut { seconds: 1 }));
+}
+
+#[test]
+fn a_frame_in_a_jail_is_the_frame_that_is_linked() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
+    let mut scene = raykata::scene::load::load(file).expect("the scene");
+    (scene.film.width, scene.film.height) = (40, 25);
+    // Two threads are asked for; there are none in a jail.
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
+    let watch: &dyn Watch = &Unwatched;
+    let kit = jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 10);
+    let jailed = kit.render(&job, watch).expect("nobody cancels");
+    let linked = solutions::Kit.render(&job, watch).expect("nobody cancels");
+    assert_eq!((jailed.film, jailed.counts, jailed.notes), (linked.film, linked.counts, linked.notes));
+}
