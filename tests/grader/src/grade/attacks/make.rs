@@ -62,8 +62,9 @@ impl Maker<'_> {
     fn base(&self) -> Result<BTreeMap<String, String>> {
         let mut files = match self.attack.base {
             Base::Nothing => BTreeMap::new(),
-            _ => self.untouched()?,
+            _ => crate::sync::pristine(self.place.root)?,
         };
+        files.retain(|name, _| name.starts_with("stage"));
         for (name, text) in &mut files {
             let in_question = |stage: &u8| name.starts_with(&format!("stage{stage}_"));
             if self.attack.stages.iter().any(in_question) {
@@ -77,15 +78,6 @@ impl Maker<'_> {
             }
         }
         Ok(files)
-    }
-
-    /// The files of students as nobody has begun them.
-    fn untouched(&self) -> Result<BTreeMap<String, String>> {
-        let named = crate::sync::exercises(self.place.root)?.into_iter().map(|exercise| {
-            let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            (name, exercise.stub)
-        });
-        Ok(named.filter(|(name, _)| name.starts_with("stage")).collect())
     }
 
     fn solution(&self, name: &str) -> Result<String> {
