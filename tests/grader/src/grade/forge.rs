@@ -3,7 +3,7 @@
 
 use super::result::Outcome;
 use crate::jail::{self, Ended, How, Jail, Purpose};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, BTreeSet};
@@ -110,7 +110,24 @@ impl Forge {
         cpu += ended.cpu;
         let worker = scratch.join("out/worker");
         if ended.how != How::Exited(0) {
-            bail!("the worker cannot be linked: {}\n{}", died(&ended), text_of(&ended));
+            let suspects: Vec<&String> =
+                files.keys().filter(|name| !self.is_untouched(name, &files[*name])).collect();
+            ensure!(
+                !suspects.is_empty(),
+                "the worker cannot be linked: {}\n{}",
+                died(&ended),
+                text_of(&ended)
+            );
+            // Nobody knows whose fault it is, so all that was written is left out.
+            let why = format!("what was written compiles and cannot be linked: {}\n", died(&ended));
+            let all: BTreeMap<_, _> = suspects
+                .into_iter()
+                .map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())))
+                .collect();
+            let mut empty = self.build(scratch, &BTreeMap::new())?;
+            empty.replaced.extend(all);
+            empty.cpu += cpu;
+            return Ok(empty);
         }
         Ok(Forged { worker, replaced, cpu })
     }
