@@ -202,6 +202,13 @@ pub fn triangle_point(triangle: &Triangle, beta: f64, gamma: f64) -> DVec3 {
 
 /// Where an endless line along `ray` enters and leaves a box, which is closed; `(inf, -inf)` if it passes by.
 pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
+    let (near, far) = slabs_interval(ray, bounds);
+    if near <= far { (near, far) } else { (f64::INFINITY, f64::NEG_INFINITY) }
+}
+
+/// The last `t` at which an endless line enters a slab of a box and the first at which it leaves one. Where the first is
+/// the larger one the line passes by, and their difference says by how much.
+pub fn slabs_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
         let [low, high, origin, dir] =
@@ -216,5 +223,5 @@ pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
         };
         (near, far) = (near.max(enter), far.min(leave));
     }
-    if near <= far { (near, far) } else { (f64::INFINITY, f64::NEG_INFINITY) }
+    (near, far)
 }

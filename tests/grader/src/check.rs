@@ -24,15 +24,20 @@ impl Graded {
 
 /// Runs all checks of the stages for which `wanted` holds, each with a kit of its own, on all cores.
 pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
-    run_checks_on(queue::cores(), source, wanted)
+    run_checks_on(queue::cores(), source, wanted, 0)
 }
 
-/// The same on this many threads.
-pub fn run_checks_on(threads: usize, source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
+/// The same on this many threads, with the inputs that `seed` picks.
+pub fn run_checks_on(
+    threads: usize,
+    source: &Source,
+    wanted: impl Fn(u8) -> bool,
+    seed: u64,
+) -> Result<Vec<Graded>> {
     let checks: Vec<&'static Check> =
         STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
     let grade = |_: &(), &check: &&'static Check| {
-        let verdict = checks::run(check, &source.fresh(), 0);
+        let verdict = checks::run(check, &source.fresh(), seed);
         Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
     };
     queue::run(&vec![(); threads], &checks, grade)

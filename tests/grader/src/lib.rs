@@ -8,6 +8,9 @@ pub mod compare;
 pub mod corpus;
 pub mod explain;
 #[cfg(feature = "author")]
+#[cfg(target_os = "linux")]
+pub mod export;
+#[cfg(feature = "author")]
 pub mod gaps;
 #[cfg(feature = "author")]
 pub mod gauntlet;

@@ -2,13 +2,13 @@
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
-#[cfg(feature = "author")]
-#[cfg(target_os = "linux")]
-use grader::grade;
 use grader::kits::{Choice, Source, Which, root};
 #[cfg(feature = "author")]
 use grader::{cases, corpus, gaps, gauntlet, generate, handout, jail, mutants, sync};
 use grader::{check, compare, explain, render, strip, tree};
+#[cfg(feature = "author")]
+#[cfg(target_os = "linux")]
+use grader::{export, grade};
 #[cfg(feature = "author")]
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -53,6 +53,10 @@ enum Command {
     #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Grade(grade::Options),
+    /// Grade one submission for Gradescope or GitHub Classroom (what `export` writes runs this).
+    #[cfg(feature = "author")]
+    #[cfg(target_os = "linux")]
+    GradeOne(grade::OneOptions),
     /// Put together what `grade --shard` has made of the parts of a class (for instructors).
     #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
@@ -68,6 +72,10 @@ enum Command {
     #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Attacks(grade::AttackOptions),
+    /// Grade a made-up class whose grades are known, and compare (for authors).
+    #[cfg(feature = "author")]
+    #[cfg(target_os = "linux")]
+    Rehearse(grade::RehearsalOptions),
     /// List all checks with their points.
     List {
         /// The hard cases instead, and the checks that see to them.
@@ -86,6 +94,11 @@ enum Command {
     /// Make the student's repository: no answers, nothing that only instructors need (for instructors).
     #[cfg(feature = "author")]
     Handout(handout::Options),
+    /// Write what Gradescope or GitHub Classroom needs to grade (for instructors).
+    #[cfg(feature = "author")]
+    #[cfg(target_os = "linux")]
+    #[command(subcommand)]
+    Export(export::What),
     /// Make exercises/ from solutions/ (for authors). Keeps what you have begun.
     #[cfg(feature = "author")]
     Sync {
@@ -151,8 +164,14 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Grade(options)) => return grade::run(&root()?, &options),
         #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
+        Some(Command::GradeOne(options)) => return grade::one(root, &options),
+        #[cfg(feature = "author")]
+        #[cfg(target_os = "linux")]
         Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
         #[cfg(feature = "author")]
+        #[cfg(feature = "author")]
+        #[cfg(target_os = "linux")]
+        Some(Command::Rehearse(options)) => return grade::rehearse(&root()?, &options),
         #[cfg(target_os = "linux")]
         Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
         #[cfg(feature = "author")]
@@ -161,6 +180,9 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,
         #[cfg(feature = "author")]
         Some(Command::Handout(options)) => handout::run(&root()?, &options)?,
+        #[cfg(feature = "author")]
+        #[cfg(target_os = "linux")]
+        Some(Command::Export(what)) => export::run(&root()?, &what)?,
         #[cfg(feature = "author")]
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
         #[cfg(feature = "author")]

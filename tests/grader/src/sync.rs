@@ -123,6 +123,12 @@ pub fn stub(solution: &str, path: &Path) -> Result<String> {
     Ok(lines.join("\n").trim_end().to_owned() + "\n")
 }
 
+/// A solution file as a student would have written it: without the marks.
+pub fn answer(solution: &str) -> String {
+    let is_mark = |line: &str| line == BEGIN || line == END || line.starts_with(STUB);
+    solution.lines().filter(|line| !is_mark(line.trim_start())).map(|line| format!("{line}\n")).collect()
+}
+
 /// A solution file, cut at its marks.
 pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
     let mut blocks: Vec<Block<'a>> = Vec::new();

@@ -2,6 +2,7 @@
 
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
+use crate::double::U;
 use crate::generate::{point, triangle};
 use crate::judge::{compare, known};
 use crate::paste::{Paste, call};
@@ -51,13 +52,22 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
     let judge = |triangles: &[Triangle]| {
         compare(triangles, trial.kit.face_normal(triangles), |triangle, yours| {
             let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
-            let cross = (b - a).cross(c - a);
+            let (u, v) = (b - a, c - a);
+            let cross = u.cross(v);
             let expected = cross.try_normalize().filter(|_| cross != DVec3::ZERO).map(|n| n.as_vec3());
-            // Corners are multiples of 1/8 times the factor, so edges and cross product are exact to a few roundings.
+            // Corners are multiples of 1/8 times the factor, so edges are exact; but once they are scaled they are rounded,
+            // and of a thin triangle the product is what little remains: some sixteen roundings of |u| |v|.
+            let slack = (16.0 * U * u.length() * v.length() / cross.length()).max(1e-5);
+            let unit = |normal: Vec3| (normal.length() - 1.0).abs() < 1e-5;
+            // By the same roundings edges in one line may have an area, unless the line is an axis.
+            let slanting =
+                [u, v].iter().all(|edge| edge.to_array().iter().filter(|x| **x != 0.0).count() > 1);
             let right = match (yours, expected) {
-                (Some(yours), Some(expected)) => (yours - expected).length() < 1e-5,
-                (None, None) => true,
-                _ => false,
+                (Some(yours), Some(expected)) => {
+                    unit(yours) && f64::from((yours - expected).length()) < slack
+                }
+                (Some(yours), None) => unit(yours) && slanting,
+                (None, expected) => expected.is_none(),
             };
             let diagnosis = match (yours, expected) {
                 (Some(yours), _) if yours.is_nan() => "0/0: a triangle without area has no normal",

@@ -1,6 +1,6 @@
 //! The whole illumination.
 
-use super::terms::specular;
+use super::terms::{cos_phi, specular};
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::generate::{point, unit};
@@ -45,20 +45,34 @@ pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
     )
 }
 
+fn term(query: &ShadeQuery, index: usize) -> TermQuery {
+    TermQuery {
+        normal: query.surface.shading_normal,
+        to_light: query.lights[index].direction,
+        to_viewer: query.to_viewer,
+        exponent: query.material.exponent,
+    }
+}
+
 /// The diffuse and the specular share of light `index` in double precision, shadows aside.
 fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
     let light = &query.lights[index];
-    let normal = query.surface.shading_normal;
-    let diffuse = normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
-    let term = TermQuery {
-        normal,
-        to_light: light.direction,
-        to_viewer: query.to_viewer,
-        exponent: query.material.exponent,
-    };
+    let diffuse = query.surface.shading_normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
     let radiance = light.radiance.as_dvec3();
     let Material { diffuse: kd, specular: ks, .. } = &query.material;
-    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term)]
+    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term(query, index))]
+}
+
+/// Whether light `index` is at the horizon, or the viewer at right angles to its mirrored direction: there it may or may not
+/// count, and with exponent 0 that is not a small difference.
+fn is_on_edge(query: &ShadeQuery, index: usize) -> bool {
+    let term = term(query, index);
+    term.normal.dot(term.to_light).abs() < 1e-5 || cos_phi(&term).abs() < 1e-5
+}
+
+/// How far a colour may be off from `right`.
+fn tolerance(right: DVec3) -> f64 {
+    1e-4 * (1.0 + right.abs().max_element())
 }
 
 /// The share of light `index`, shadows aside.
@@ -76,12 +90,8 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Out
     compare(queries, trial.kit.shade(queries), |query, yours| {
         let color = yours.color.as_dvec3();
         let expected = expected_color(query, |light| query.visible[light]);
-        // Lights on the horizon may or may not count, and with exponent 0 that is not a small difference.
-        let horizon =
-            query.lights.iter().any(|light| light.direction.dot(query.surface.shading_normal).abs() < 1e-5);
-        let same =
-            |other: DVec3| (color - other).abs().max_element() < 1e-4 * (1.0 + other.abs().max_element());
-        if horizon || same(expected) {
+        let same = |other: DVec3| (color - other).abs().max_element() < tolerance(other);
+        if (0..query.lights.len()).any(|light| is_on_edge(query, light)) || same(expected) {
             return Ok(());
         }
         let diagnosis = shade_diagnosis(query, color, expected, same);
@@ -193,11 +203,12 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
     });
     trial.forall(2000, queries, |queries| {
         compare(queries, trial.kit.shade(queries), |query, yours| {
-            // A light needs a ray if it is in front of the surface and has a share to give.
+            // A light needs a ray if it has a share to give that the colour shows: a cosine to the power of 32 may be 0 in
+            // single precision, and what is darker than colours are judged to may be left out.
             let cosine = |light: usize| query.lights[light].direction.dot(query.surface.shading_normal);
-            let needed: Vec<usize> = (0..query.lights.len())
-                .filter(|&light| cosine(light) > 1e-5 && share(query, light) != DVec3::ZERO)
-                .collect();
+            let shows = |light: usize| share(query, light).max_element() > tolerance(DVec3::ZERO);
+            let needed: Vec<usize> =
+                (0..query.lights.len()).filter(|&light| !is_on_edge(query, light) && shows(light)).collect();
             let needless =
                 |light: &usize| cosine(*light) < -1e-5 || query.lights[*light].radiance == Vec3::ZERO;
             let mut traced = yours.traced.clone();

@@ -62,11 +62,16 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, terms(), judge)
 }
 
+/// The cosine of the angle between the mirrored light and the viewer, in double precision.
+pub(super) fn cos_phi(query: &TermQuery) -> f64 {
+    let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
+    (2.0 * n.dot(l) * n - l).dot(v)
+}
+
 /// `cosⁿ φ` in double precision.
 pub(super) fn specular(query: &TermQuery) -> f64 {
-    let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
-    let cos_theta = n.dot(l);
-    let cos_phi = (2.0 * cos_theta * n - l).dot(v);
+    let cos_theta = query.normal.as_dvec3().dot(query.to_light.as_dvec3());
+    let cos_phi = cos_phi(query);
     if cos_theta > 0.0 && cos_phi > 0.0 { cos_phi.powf(f64::from(query.exponent)) } else { 0.0 }
 }
 
@@ -88,10 +93,11 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
         let exponent = f64::from(query.exponent);
         let expected = specular(query);
         // A cosine near 0 decides between 0 and 1 for exponent 0.
-        let cos_phi = (2.0 * n.dot(l) * n - l).dot(v);
+        let cos_phi = cos_phi(query);
         let edge = n.dot(l).abs() < 1e-5 || cos_phi.abs() < 1e-5;
-        // The cosine is off by a few roundings, and the power makes n times as much of that.
-        if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + exponent) {
+        // The cosine is off by a few roundings, and the power makes n cosⁿ⁻¹ φ times as much of that: for roots more than n.
+        let steep = exponent * cos_phi.max(0.0).powf(exponent - 1.0).max(1.0);
+        if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep) {
             return Ok(());
         }
         let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent);

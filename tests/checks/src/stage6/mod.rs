@@ -2,7 +2,7 @@
 //!
 //! `pixels` · `lens` · `lamps` · `rough` (surfaces) · `motion`
 //!
-//! Distributions are judged by [`crate::statistics`], with 1 false alarm in 10,000 a test.
+//! Distributions are judged by [`crate::statistics`], with 1 false alarm in 10 million a test.
 
 mod lamps;
 mod lens;

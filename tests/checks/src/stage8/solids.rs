@@ -58,14 +58,22 @@ fn rays<S: Solid>(range: bool) -> impl Strategy<Value = SolidQuery<S>> + Clone {
 /// The `t` that may come back, `None` if a miss may, too; nothing if the ray passes too near to an edge to say.
 fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
     let SolidQuery { ray, solid } = query;
-    let [smaller, own, larger] =
-        [1.0 - SHELL, 1.0, 1.0 + SHELL].map(|factor| Some(solid.grown(factor).meet(ray)?.t));
-    match (smaller?, own?, larger?) {
+    // Shells of a flat shape lie in its plane and say nothing about a ray that does, too. A height above the plane is off by
+    // 1e-5, and by that over the slope where the ray comes through: no more than a shell.
+    let slope = own_normal(query).map_or(1.0, |normal| {
+        let dir = ray.dir.as_dvec3();
+        (dir.dot(normal).abs() / (dir.length() * normal.length())) as f32
+    });
+    if slope < 1e-5 / SHELL {
+        return None;
+    }
+    let [smaller, larger] = [1.0 - SHELL, 1.0 + SHELL].map(|factor| Some(solid.grown(factor).meet(ray)?.t));
+    match (smaller?, solid.meet(ray)?.t, larger?) {
         (None, None, None) => Some(None),
         (Some(p), Some(q), Some(r)) => {
             let (low, high) = (p.min(q).min(r), p.max(q).max(r));
             // A method in single precision is off by a hundred roundings, 1e-5 of the way; twice that, in lengths of dir.
-            let slack = 2e-5 * (1.0 + ray.origin.length()) / ray.dir.length();
+            let slack = 2e-5 * (1.0 + ray.origin.length()) / (slope * ray.dir.length());
             if low - slack <= ray.t_min || ray.t_max <= high + slack {
                 return None;
             }

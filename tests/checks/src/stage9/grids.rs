@@ -62,7 +62,11 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
             if one.is_empty() && times > 0 {
                 return Some((told(times), told(0), "what is not a number is in no cell"));
             }
-            if !one.is_empty() && cell.touches(one) && times != 1 {
+            // Cells over one point are all that point: one that lists what is there will do.
+            let elsewhere = || (0..n).any(|other| grid.primitives(other).contains(&(id as u32)));
+            let one_place = grid.bounds.min == grid.bounds.max;
+            if !one.is_empty() && cell.touches(one) && times != 1 && !(times == 0 && one_place && elsewhere())
+            {
                 let middle = cell.touches(&Aabb::new(0.5 * (one.min + one.max), 0.5 * (one.min + one.max)));
                 let diagnosis = match times {
                     0 if !middle => {

@@ -30,9 +30,11 @@ pub(super) fn bounds_fault(bounds: &Aabb, boxes: &[Aabb]) -> Option<(String, Str
     })
 }
 
-/// Whether a box that a cell lists has nothing to do with it: it is farther off than a 64th of all.
+/// Whether a box that a cell lists has nothing to do with it: it is farther off than a 64th of all, and than the room that
+/// builders leave, which is 2⁻²² of the largest coordinate at least. Around a single point that is all there is.
 pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
-    let room = (all.max - all.min).max_element() / 64.0;
+    let largest = all.min.abs().max(all.max.abs()).max_element();
+    let room = ((all.max - all.min).max_element() / 64.0).max(2f32.powi(-20) * largest);
     let gap = (one.min - cell.max).max(cell.min - one.max);
     !(gap.max_element() <= room)
 }

@@ -2,7 +2,7 @@
 
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
-use crate::double::box_interval;
+use crate::double::slabs_interval;
 use crate::generate::point;
 use crate::judge::{compare, known};
 use crate::paste::{Arguments, Paste};
@@ -23,11 +23,11 @@ pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> O
 
 fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.cell_span(queries), |query, yours| {
-        let (near, far) = box_interval(&query.ray, &query.bounds);
+        let (near, far) = slabs_interval(&query.ray, &query.bounds);
         let range = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
         let expected = (near.max(range.0), far.min(range.1));
-        // Some 2⁻¹⁸ for the room that rounding asks for, of t or of the numbers that t is made of; whether a corner is
-        // touched is left open.
+        // Some 2⁻¹⁸ for the room that rounding asks for, of t or of the numbers that t is made of. What a ray passes by at
+        // no more than that, a corner or a box without thickness, it may be said to touch.
         let room = |t: f64| (-18f64).exp2() * (1.0 + t.abs());
         let close = |p: f64, q: f64| p == q || (p - q).abs() <= room(q);
         let fits = match yours {

@@ -40,6 +40,13 @@ pub struct Options {
     /// Write tests/corpus/matrix.txt and tests/corpus/messages.
     #[arg(long, conflicts_with = "check")]
     bless: bool,
+    /// Right ways only.
+    #[arg(long)]
+    right: bool,
+    /// Pick the inputs of the checks with this seed instead of 0. What a mistake is told may then be another thing: it only
+    /// has to be caught by the check that is there to catch it.
+    #[arg(long, conflicts_with_all = ["check", "bless"])]
+    seed: Option<u64>,
 }
 
 /// Tries entries and reports; whether all is as it must be.
@@ -48,7 +55,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let n_all = all.len();
     let chosen = choose(all, options)?;
     let complete = chosen.len() == n_all;
-    let tried = try_all(root, &chosen, options.jobs.max(1))?;
+    let tried = try_all(root, &chosen, options.jobs.max(1), options.seed)?;
 
     let matrix = Matrix::read(root);
     let differences = if options.check { records::differences(root, &matrix, &tried) } else { Vec::new() };
@@ -73,6 +80,7 @@ fn choose(all: Vec<Entry>, options: &Options) -> Result<Vec<Entry>> {
         (options.names.is_empty() || options.names.iter().any(|name| is_named(entry, name)))
             && options.stage.is_none_or(|stage| stage == entry.stage)
             && (!options.slice || slice.contains(&entry.to_string()))
+            && (!options.right || entry.claim == Claim::Right)
     };
     let chosen: Vec<Entry> = all.into_iter().filter(wanted).collect();
     if chosen.is_empty() {
@@ -101,7 +109,7 @@ fn slice(all: &[Entry]) -> Vec<String> {
 }
 
 /// Tries entries in as many workshops as there are jobs.
-fn try_all(root: &Path, entries: &[Entry], jobs: usize) -> Result<Vec<Tried>> {
+fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Result<Vec<Tried>> {
     let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
@@ -109,7 +117,7 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize) -> Result<Vec<Tried>> {
     let threads = queue::cores().div_ceil(jobs);
     let tried = queue::run(&workshops, entries, |workshop, entry| {
         bar.set_message(entry.to_string());
-        let one = try_one(workshop, entry, threads)?;
+        let one = try_one(workshop, entry, threads, seed)?;
         bar.inc(1);
         Ok(one)
     })?;
@@ -117,17 +125,22 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize) -> Result<Vec<Tried>> {
     Ok(tried)
 }
 
-fn try_one(workshop: &Workshop, entry: &Entry, threads: usize) -> Result<Tried> {
+fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>) -> Result<Tried> {
     let tried = |fate, failures| Ok(Tried { entry: entry.clone(), fate, failures });
     let worker = match workshop.build(&entry.file, &entry.diff)? {
         Built::Worker(worker) => worker,
         Built::DoesNotApply(why) => return tried(Fate::DoesNotApply(why), Default::default()),
         Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
     };
-    let graded = run_checks_on(threads, &Source::Worker(worker), |stage| stage == entry.stage)?;
+    let wanted = |stage| stage == entry.stage;
+    let graded = run_checks_on(threads, &Source::Worker(worker), wanted, seed.unwrap_or(0))?;
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
-    tried(Fate::of(entry, &failures), failures)
+    let fate = match Fate::of(entry, &failures) {
+        Fate::Unnamed(_) if seed.is_some() => Fate::Killed,
+        fate => fate,
+    };
+    tried(fate, failures)
 }
 
 /// Names the checks that no mistake fails: nobody knows whether they can fail at all.

@@ -1,6 +1,7 @@
 //! The verdict on a submission: the laws are put to its worker, over a pipe, by a process that holds no code of it.
 
 use super::result::{CheckResult, Outcome};
+use super::sanity;
 use crate::grade::report::clean;
 use crate::jail::Jail;
 use crate::queue;
@@ -11,7 +12,8 @@ use checks::{Check, STAGES, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -24,17 +26,30 @@ const CALL_PATIENCE: Duration = Duration::from_secs(4);
 /// is enough for 70 checks; what is left then is not tried.
 const BUDGET: Duration = Duration::from_secs(300);
 
+/// How often a function that is right on the known inputs and wrong on hidden ones is asked again. An honest mistake that
+/// one run in two meets is met by all of them and not by the known inputs in 1 of 500 submissions that have it.
+const MORE_SEEDS: u64 = 7;
+
 /// How much of a message is kept.
 const MOST_SAID: usize = 2048;
 
 /// What a submission is asked, and how.
 pub struct Judge {
-    /// The checks, in the order of the lecture, and whether hidden inputs are others than those that students have.
-    checks: Vec<(&'static Check, bool)>,
+    /// In the order of the lecture.
+    checks: Vec<Put>,
     /// Picks the hidden inputs.
     seed: u64,
     /// What holds a worker; `None` on the instructor's own word.
     jail: Option<Jail>,
+}
+
+/// A check, and what is known of it from putting it to the reference.
+struct Put {
+    check: &'static Check,
+    /// Whether hidden inputs are others than those that students have.
+    hides: bool,
+    /// The functions that it asks.
+    asks: HashSet<Discriminant<Request>>,
 }
 
 impl Judge {
@@ -44,12 +59,13 @@ impl Judge {
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
         let hides = |_: &(), check: &&'static Check| {
-            let [(known, passes), (hidden, passes_hidden)] = [0, seed].map(|seed| asked(check, seed));
+            let [(known, asks, passes), (hidden, _, passes_hidden)] =
+                [0, seed].map(|seed| asked(check, seed));
             ensure!(passes, "the reference fails {} of stage {}: is the kit whole?", check.name, check.stage);
             if !passes_hidden {
                 eprintln!("{} of stage {} is put with the known inputs alone", check.name, check.stage);
             }
-            Ok((*check, passes_hidden && known != hidden))
+            Ok(Put { check, hides: passes_hidden && known != hidden, asks })
         };
         let checks = queue::run(&queue::one_a_core(), &checks, hides)?;
         Ok(Judge { checks, seed, jail })
@@ -58,30 +74,44 @@ impl Judge {
     /// Puts all checks to `worker`; those of the files in `replaced` have their outcome already.
     pub fn judge(&self, worker: &Path, replaced: &BTreeMap<String, (Outcome, String)>) -> Vec<CheckResult> {
         let until = Instant::now() + BUDGET;
-        let judged = self.checks.iter().map(|(check, hides)| {
-            let (outcome, message) = match self.ask(check, *hides, worker, until) {
-                // The empty exercise says which file it is, and why it is empty is known.
-                (Outcome::NotWritten, place) => {
-                    let lost = replaced.iter().find(|(file, _)| place.contains(file.as_str()));
-                    lost.map_or((Outcome::NotWritten, place), |(_, lost)| lost.clone())
+        let mut by_heart = HashSet::new();
+        let judged: Vec<(Outcome, String)> = self
+            .checks
+            .iter()
+            .map(|put| {
+                let (outcome, message, special) = self.ask(put, worker, until);
+                // A check of several functions does not say which of them it was.
+                if special && put.asks.len() == 1 {
+                    by_heart.extend(&put.asks);
                 }
-                other => other,
-            };
-            result(check, outcome, &message)
+                // The empty exercise says which file it is, and why it is empty is known.
+                let mut lost = replaced.iter().filter(|_| outcome == Outcome::NotWritten);
+                let lost = lost.find(|(file, _)| message.contains(file.as_str()));
+                lost.map_or((outcome, message), |(_, lost)| lost.clone())
+            })
+            .collect();
+        let results = self.checks.iter().zip(judged).map(|(put, (outcome, message))| {
+            // Whose inputs everybody knows proves nothing of a function that knows its inputs.
+            if outcome == Outcome::Passed && !put.hides && !put.asks.is_disjoint(&by_heart) {
+                return result(put.check, Outcome::WrongOnHidden, &hidden_message(put.check));
+            }
+            result(put.check, outcome, &message)
         });
-        judged.collect()
+        results.collect()
     }
 
     /// The same outcome for every check.
     pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
-        self.checks.iter().map(|(check, _)| result(check, outcome, message)).collect()
+        self.checks.iter().map(|put| result(put.check, outcome, message)).collect()
     }
 
-    /// Puts one check to a worker that nobody has asked anything yet.
-    fn ask(&self, check: &Check, hides: bool, program: &Path, until: Instant) -> (Outcome, String) {
+    /// Puts one check to a worker that nobody has asked anything yet. Also says whether the known inputs are the only ones
+    /// on which it is right.
+    fn ask(&self, put: &Put, program: &Path, until: Instant) -> (Outcome, String, bool) {
+        let check = put.check;
         if Instant::now() > until {
             let message = "not tried: the checks before this one have used up the time of the submission";
-            return (Outcome::NotTried, message.into());
+            return (Outcome::NotTried, message.into(), false);
         }
         let worker = match &self.jail {
             Some(jail) => Worker::jailed(program.to_owned(), CALL_PATIENCE, jail.clone()),
@@ -91,12 +121,19 @@ impl Judge {
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
         // With the inputs that students have, so that they can see again what they are told.
         let known = checks::examine(check, &kit, 0);
-        let judged = match outcome(&known) {
-            Outcome::Passed if !hides => (Outcome::Passed, String::new()),
+        let mut special = false;
+        let (outcome, message) = match outcome(&known) {
+            Outcome::Passed if !put.hides => (Outcome::Passed, String::new()),
             Outcome::Passed => {
                 let hidden = outcome(&checks::examine(check, &kit, self.seed));
                 match hidden {
-                    Outcome::Wrong | Outcome::NotWritten => (Outcome::WrongOnHidden, hidden_message(check)),
+                    Outcome::Wrong | Outcome::NotWritten => {
+                        let seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
+                        special = seeds
+                            .map(|seed| outcome(&checks::examine(check, &kit, seed)))
+                            .all(|outcome| matches!(outcome, Outcome::Wrong | Outcome::NotWritten));
+                        (Outcome::WrongOnHidden, hidden_message(check))
+                    }
                     Outcome::Passed => (Outcome::Passed, String::new()),
                     other => (other, format!("{}\n  on hidden inputs", other.words())),
                 }
@@ -109,7 +146,7 @@ impl Judge {
         };
         // A check that hangs is left behind on a thread of its own: without answers it comes to an end.
         over.store(true, Ordering::Relaxed);
-        judged
+        (outcome, message, special)
     }
 }
 
@@ -145,24 +182,27 @@ fn result(check: &Check, outcome: Outcome, message: &str) -> CheckResult {
     }
 }
 
-/// What the reference is asked by a check, as a fingerprint, and whether it passes.
-fn asked(check: &Check, seed: u64) -> (Vec<u8>, bool) {
-    let questions = Arc::new(Mutex::new(Sha256::new()));
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Overheard(questions.clone())));
+/// What the reference is asked by a check: a fingerprint of the questions, and to which functions; and whether it passes.
+fn asked(check: &Check, seed: u64) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
+    let heard = Arc::new(Mutex::new((Sha256::new(), HashSet::new())));
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Overheard(heard.clone())));
     let passes = matches!(checks::examine(check, &kit, seed), Ok(Ok(())));
-    let questions = questions.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    (questions.finalize().to_vec(), passes)
+    let (questions, functions) = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    (questions.finalize().to_vec(), functions, passes)
 }
 
 /// The reference, with somebody who writes down what it is asked.
-struct Overheard(Arc<Mutex<Sha256>>);
+struct Overheard(Arc<Mutex<(Sha256, HashSet<Discriminant<Request>>)>>);
 
 impl Transport for Overheard {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
         // Into a vector nothing fails.
         let _ = raykata::worker::send(&mut message, &request);
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).update(message);
+        let mut heard = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        heard.0.update(message);
+        heard.1.insert(discriminant(&request));
+        drop(heard);
         request.answer(&solutions::Kit, watch)
     }
 }
@@ -178,6 +218,10 @@ impl Transport for Asked {
         if self.over.load(Ordering::Relaxed) {
             mishap::unwind(Mishap::Crashed { how: "the verdict was there before".into() });
         }
-        self.worker.call(request, watch)
+        let answer = self.worker.call(request, watch);
+        match sanity::fault(&answer) {
+            None => answer,
+            Some(what) => mishap::unwind(Mishap::Nonsense { what }),
+        }
     }
 }

@@ -1,0 +1,135 @@
+//! Whether a structure that came out of a worker is one at all. The checks go through trees with loops and recursion of
+//! their own; in a tree whose root is its own child they would go on for ever, or until the judge has no stack left.
+
+use raykata::bvh::Contents;
+use raykata::kit::Answer;
+use raykata::partition::{BspNode, Grid, KdNode, OctreeNode};
+
+/// The checks go down by recursion; with the stack that they have, this is a tenth of what they survive.
+const DEEPEST: usize = 50_000;
+
+/// The node of a tree, in whatever tree.
+enum Node {
+    Inner(Vec<u32>),
+    /// Where its list begins and how long it is.
+    Leaf(u32, u32),
+}
+
+/// What is wrong with the first structure in an answer that is none.
+pub fn fault(answer: &Answer) -> Option<String> {
+    match answer {
+        Answer::Build(trees) => trees.iter().find_map(|tree| {
+            let node = |index: usize| match tree.nodes[index].contents {
+                Contents::Inner { left, right } => Node::Inner(vec![left, right]),
+                Contents::Leaf { first, count } => Node::Leaf(first, count),
+            };
+            fault_of_tree(tree.nodes.len(), tree.order.len(), node)
+        }),
+        Answer::KdBuild(trees) => trees.iter().find_map(|tree| {
+            let node = |index: usize| match tree.nodes[index] {
+                KdNode::Inner { left, right, .. } => Node::Inner(vec![left, right]),
+                KdNode::Leaf { first, count } => Node::Leaf(first, count),
+            };
+            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
+        }),
+        Answer::OctreeBuild(trees) => trees.iter().find_map(|tree| {
+            let node = |index: usize| match tree.nodes[index] {
+                OctreeNode::Inner { first } => {
+                    Node::Inner((0..8).map(|octant| first.saturating_add(octant)).collect())
+                }
+                OctreeNode::Leaf { first, count } => Node::Leaf(first, count),
+            };
+            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
+        }),
+        Answer::BspBuild(trees) => trees.iter().find_map(|tree| {
+            let node = |index: usize| match tree.nodes[index] {
+                BspNode::Inner { back, front, .. } => Node::Inner(vec![back, front]),
+                BspNode::Leaf { first, count } => Node::Leaf(first, count),
+            };
+            fault_of_tree(tree.nodes.len(), tree.items.len(), node)
+        }),
+        Answer::GridBuild(grids) => grids.iter().find_map(fault_of_grid),
+        _ => None,
+    }
+}
+
+fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -> Option<String> {
+    let mut reached = vec![false; n_nodes];
+    let mut waiting = if n_nodes > 0 { vec![(0, 1)] } else { Vec::new() };
+    while let Some((index, depth)) = waiting.pop() {
+        match reached.get_mut(index) {
+            None => return Some(format!("a child with number {index} of {n_nodes}")),
+            Some(true) => return Some(format!("node {index} has two parents, or is its own")),
+            Some(reached) => *reached = true,
+        }
+        if depth > DEEPEST {
+            return Some(format!("a tree of more than {DEEPEST} levels"));
+        }
+        match node(index) {
+            Node::Inner(children) => {
+                waiting.extend(children.into_iter().map(|child| (child as usize, depth + 1)));
+            }
+            Node::Leaf(first, count) => {
+                let end = first as usize + count as usize;
+                if end > n_items {
+                    return Some(format!("leaf {index} ends at {end} of {n_items}"));
+                }
+            }
+        }
+    }
+    None
+}
+
+fn fault_of_grid(grid: &Grid) -> Option<String> {
+    let cells = grid.resolution.to_array().into_iter().map(u64::from).try_fold(1, u64::checked_mul);
+    // Over nothing there may be no cells.
+    let fits = grid.starts.is_empty()
+        || cells.and_then(|cells| cells.checked_add(1)) == Some(grid.starts.len() as u64);
+    if !fits {
+        return Some(format!("{} starts for {} cells", grid.starts.len(), grid.resolution));
+    }
+    let ordered = grid.starts.windows(2).all(|pair| pair[0] <= pair[1]);
+    let within = grid.starts.last().is_none_or(|&end| end as usize <= grid.items.len());
+    (!ordered || !within).then(|| "cells whose lists begin before they end".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raykata::aabb::Aabb;
+    use raykata::bvh::{Bvh, Node as BvhNode};
+    use raykata::partition::KdTree;
+
+    fn tree(children: &[Option<(u32, u32)>]) -> Answer {
+        let contents = |node: &Option<(u32, u32)>| match *node {
+            Some((left, right)) => Contents::Inner { left, right },
+            None => Contents::Leaf { first: 0, count: 1 },
+        };
+        let nodes =
+            children.iter().map(|node| BvhNode { bounds: Aabb::EMPTY, contents: contents(node) }).collect();
+        let mut bvh = Bvh::for_primitives(1);
+        bvh.nodes = nodes;
+        bvh.order = vec![0];
+        Answer::Build(vec![bvh])
+    }
+
+    #[test]
+    fn rings_and_strange_children_are_no_trees() {
+        assert_eq!(fault(&tree(&[Some((1, 2)), None, None])), None);
+        assert_eq!(fault(&tree(&[])), None);
+        assert!(fault(&tree(&[Some((0, 0))])).unwrap().contains("its own"));
+        assert!(fault(&tree(&[Some((1, 1)), None])).unwrap().contains("two parents"));
+        assert!(fault(&tree(&[Some((1, 9)), None])).unwrap().contains("number 9 of 2"));
+        let mut tree = KdTree::new(Aabb::EMPTY);
+        tree.nodes = vec![KdNode::Leaf { first: u32::MAX, count: u32::MAX }];
+        assert!(fault(&Answer::KdBuild(vec![tree])).unwrap().contains("ends at"));
+    }
+
+    #[test]
+    fn a_tree_that_is_a_long_way_down_is_refused_before_anybody_follows_it() {
+        let n = 2 * DEEPEST as u32 + 1;
+        let chain: Vec<Option<(u32, u32)>> =
+            (0..n).map(|i| (i % 2 == 0 && i + 2 < n).then_some((i + 1, i + 2))).collect();
+        assert!(fault(&tree(&chain)).unwrap().contains("levels"));
+    }
+}

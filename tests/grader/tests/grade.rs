@@ -1,0 +1,205 @@
+//! `raykata grade` and `merge` as instructors run them: a class of a few, on stage 1.
+
+#![cfg(feature = "author")]
+#![cfg(target_os = "linux")]
+
+use grader::kits::root;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const SEED: &str = "11";
+
+fn raykata() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    command.current_dir(root().unwrap()).stdin(Stdio::null());
+    command
+}
+
+fn grade(class: &Path, out: &Path, more: &[&str]) -> Command {
+    let mut command = raykata();
+    command.arg("grade").arg(class).arg("--out").arg(out);
+    command.args(["--stages", "1", "--seed", SEED]).args(more);
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
+}
+
+fn done(mut command: Command) -> String {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    said(&output)
+}
+
+/// Stage 1 as the reference has it, without the marks.
+fn right() -> String {
+    let text = fs::read_to_string(root().unwrap().join("solutions/src/stage1_shapes.rs")).unwrap();
+    let is_mark = |line: &str| {
+        ["// <solution>", "// </solution>", "// <stub>"].iter().any(|mark| line.starts_with(mark))
+    };
+    text.lines().filter(|line| !is_mark(line.trim_start())).map(|line| format!("{line}\n")).collect()
+}
+
+fn hand_in(class: &Path, student: &str, text: &str) {
+    let folder = class.join(student).join("exercises/src");
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("stage1_shapes.rs"), text).unwrap();
+}
+
+/// A class of five: one right, one that does not compile, one that has not begun, one that exits, and one that is no archive.
+fn class() -> tempfile::TempDir {
+    let class = tempfile::tempdir().unwrap();
+    let (right, stub) =
+        (right(), fs::read_to_string(root().unwrap().join("exercises/src/stage1_shapes.rs")).unwrap());
+    hand_in(class.path(), "ann", &right);
+    hand_in(class.path(), "bob", &right.replace("pub fn plane(", "pub fn plane_("));
+    hand_in(class.path(), "cat", &stub);
+    hand_in(class.path(), "dan", &format!("{right}\nfn leave() {{ std::process::exit(0) }}\n"));
+    fs::write(class.path().join("eve.zip"), "no zip").unwrap();
+    class
+}
+
+/// Student and points, as the table says.
+fn points(out: &Path) -> Vec<(String, u32)> {
+    let table = fs::read_to_string(out.join("grades.csv")).unwrap();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        (cells[0].to_owned(), cells[1].parse().unwrap())
+    };
+    table.lines().skip(1).map(row).collect()
+}
+
+fn graded(out: &Path) -> Vec<(String, String)> {
+    let Ok(connection) = rusqlite::Connection::open(out.join("grades.sqlite")) else { return Vec::new() };
+    let Ok(mut statement) = connection.prepare("SELECT student, json FROM graded ORDER BY student") else {
+        return Vec::new();
+    };
+    statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?))).unwrap().filter_map(Result::ok).collect()
+}
+
+fn results(out: &Path) -> String {
+    fs::read_to_string(out.join("results.json")).unwrap()
+}
+
+fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => found.extend(files(&path)),
+            false => found.push((path.clone(), fs::read(&path).unwrap())),
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_is_shared_out() {
+    let class = class();
+    let outs: Vec<tempfile::TempDir> = (0..4).map(|_| tempfile::tempdir().unwrap()).collect();
+    let [whole, killed, first, second] = [0, 1, 2, 3].map(|index| outs[index].path());
+    let handed_in = files(class.path());
+
+    let output = grade(class.path(), whole, &["--jobs", "2"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "one of them is no archive:\n{}", said(&output));
+    assert!(said(&output).contains("eve: cannot be unpacked"), "{}", said(&output));
+    let all = points(whole).into_iter().map(|(name, points)| (name, points > 0)).collect::<Vec<_>>();
+    let expected = [("ann", true), ("bob", false), ("cat", false), ("dan", false), ("eve", false)];
+    assert_eq!(all, expected.map(|(name, some)| (name.to_owned(), some)));
+    let full: u32 = fs::read_to_string(root().unwrap().join("tests/rubric.toml"))
+        .unwrap()
+        .split("[stage2]")
+        .next()
+        .unwrap()
+        .lines()
+        .filter_map(|line| line.strip_prefix("points = ")?.parse::<u32>().ok())
+        .sum();
+    assert_eq!(points(whole)[0].1, full);
+
+    // Killed as soon as something has been written down, by its process id.
+    let mut run = grade(class.path(), killed, &["--jobs", "1"]).stderr(Stdio::null()).spawn().unwrap();
+    let late = Instant::now() + Duration::from_secs(300);
+    while graded(killed).is_empty() && run.try_wait().unwrap().is_none() {
+        assert!(Instant::now() < late, "nothing is written down");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    run.kill().unwrap();
+    run.wait().unwrap();
+    let before = graded(killed);
+    assert!(!before.is_empty() && before.len() < 5, "{} were done", before.len());
+    let again = said(&grade(class.path(), killed, &[]).output().unwrap());
+    assert!(again.contains("--resume"), "{again}");
+    assert_eq!(grade(class.path(), killed, &["--resume"]).status().unwrap().code(), Some(1));
+    // What was there is what is there, the milliseconds included: it was not done twice.
+    assert!(before.iter().all(|row| graded(killed).contains(row)));
+    assert_eq!(results(killed), results(whole));
+
+    for (part, out) in [("1/2", first), ("2/2", second)] {
+        let output = grade(class.path(), out, &["--shard", part]).output().unwrap();
+        assert!(out.join("results.json").exists(), "{}", said(&output));
+    }
+    let merged = tempfile::tempdir().unwrap();
+    let mut merge = raykata();
+    merge.arg("merge").args([first, second]).arg("--out").arg(merged.path());
+    assert_eq!(merge.status().unwrap().code(), Some(1));
+    assert_eq!(results(merged.path()), results(whole));
+
+    // One hands in again: nobody else is graded again.
+    let before = graded(whole);
+    hand_in(class.path(), "cat", &right());
+    assert_eq!(grade(class.path(), whole, &["--resume"]).status().unwrap().code(), Some(1));
+    let after = graded(whole);
+    let changed: Vec<&String> =
+        before.iter().zip(&after).filter(|(old, new)| old != new).map(|((name, _), _)| name).collect();
+    assert_eq!(changed, ["cat"]);
+    assert_eq!(points(whole)[2].1, full);
+
+    hand_in(
+        class.path(),
+        "cat",
+        &fs::read_to_string(root().unwrap().join("exercises/src/stage1_shapes.rs")).unwrap(),
+    );
+    assert_eq!(files(class.path()), handed_in, "a submission was changed");
+}
+
+#[test]
+fn what_cannot_be_graded_is_said_in_words() {
+    let (class, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    for (more, says) in [
+        (&["--stages", "12"][..], "there is no stage 12"),
+        (&["--shard", "3/2"], "parts are counted from 1"),
+        (&["--jobs", "0"], "0 is not in 1.."),
+    ] {
+        let output = raykata()
+            .arg("grade")
+            .arg(class.path())
+            .arg("--out")
+            .arg(out.path())
+            .args(more)
+            .output()
+            .unwrap();
+        assert!(!output.status.success() && said(&output).contains(says), "{}", said(&output));
+    }
+    let nowhere = raykata().args(["grade", "/no/such/folder", "--out"]).arg(out.path()).output().unwrap();
+    assert!(said(&nowhere).contains("cannot read the folder /no/such/folder"), "{}", said(&nowhere));
+    let empty = said(&grade(class.path(), out.path(), &[]).output().unwrap());
+    assert!(empty.contains("no submission"), "{empty}");
+    let none = raykata().arg("merge").arg(class.path()).arg("--out").arg(out.path()).output().unwrap();
+    assert!(said(&none).contains("holds no grades"), "{}", said(&none));
+}
+
+#[test]
+fn every_option_is_explained() {
+    let text = done({
+        let mut help = raykata();
+        help.args(["grade", "--help"]);
+        help
+    });
+    for option in ["--out", "--jobs", "--stages", "--shard", "--resume", "--seed", "--allow", "--insecure"] {
+        assert!(text.contains(option), "{option} is not explained");
+    }
+}
