@@ -34,3 +34,6 @@ mod surfaces; // nothing to do here
 mod tracer; // nothing to do here
 
 pub use glue::Kit;
+// <solution>
+// canary-answers-9b1f6c52: where this line is, answers have leaked.
+// </solution>

@@ -1,6 +1,6 @@
 //! `raykata check`, `list`, `hint`, and `raykata` alone: where a student stands and what comes next.
 
-use crate::kits::Source;
+use crate::kits::{Source, WITH_EXERCISES};
 use crate::queue;
 use anyhow::{Result, bail};
 use checks::rubric::{self, RUBRIC};
@@ -124,7 +124,7 @@ pub fn status(source: &Source) -> Result<()> {
     println!();
     match graded.iter().find(|one| !one.passed()) {
         None => println!(
-            "Everything passes. `cargo run --release -- render scenes/showcase.toml --kit exercises` shows it."
+            "Everything passes. `cargo run --release -- render scenes/showcase.toml{WITH_EXERCISES}` shows it."
         ),
         Some(next) => {
             let (stage, name) = (next.check.stage, next.check.name);

@@ -2,7 +2,7 @@
 
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result, bail};
-use clap::ValueEnum;
+use clap::{Args, ValueEnum};
 use raykata::kit::{Door, Kit};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,12 +14,57 @@ pub enum Which {
     /// Your code in exercises/, in a process of its own.
     Exercises,
     /// The reference in solutions/.
+    #[cfg(feature = "author")]
     Solutions,
 }
+
+/// Whose code a command uses, where there is a choice.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Choice {
+    /// Whose code to use [default: solutions; for `check`: exercises].
+    #[cfg(feature = "author")]
+    #[arg(long, value_enum)]
+    kit: Option<Which>,
+}
+
+#[cfg(feature = "author")]
+impl Choice {
+    /// The reference, if nothing else was said.
+    pub fn or_reference(self) -> Which {
+        self.kit.unwrap_or(Which::Solutions)
+    }
+
+    /// The exercises, if nothing else was said.
+    pub fn or_exercises(self) -> Which {
+        self.kit.unwrap_or(Which::Exercises)
+    }
+}
+
+#[cfg(not(feature = "author"))]
+impl Choice {
+    /// There is no reference here.
+    pub fn or_reference(self) -> Which {
+        Which::Exercises
+    }
+
+    /// There is nothing else here.
+    pub fn or_exercises(self) -> Which {
+        Which::Exercises
+    }
+}
+
+/// What a command has to be told to use the exercises.
+#[cfg(feature = "author")]
+pub const WITH_EXERCISES: &str = " --kit exercises";
+
+/// What a command has to be told to use the exercises.
+#[cfg(not(feature = "author"))]
+pub const WITH_EXERCISES: &str = "";
 
 /// A source of fresh kits.
 pub enum Source {
     /// Linked.
+    #[cfg(feature = "author")]
     Solutions,
     /// The program of a worker.
     Worker(PathBuf),
@@ -29,6 +74,7 @@ impl Source {
     /// Gets the kit ready; the exercises are those of the folder in which we are, or above it.
     pub fn here(which: Which) -> Result<Source> {
         match which {
+            #[cfg(feature = "author")]
             Which::Solutions => Ok(Source::Solutions),
             Which::Exercises => Source::prepare(which, &root()?),
         }
@@ -37,6 +83,7 @@ impl Source {
     /// Gets the kit ready; builds the exercises if need be.
     pub fn prepare(which: Which, root: &Path) -> Result<Source> {
         match which {
+            #[cfg(feature = "author")]
             Which::Solutions => Ok(Source::Solutions),
             Which::Exercises => build_worker(root, "exercises").map(Source::Worker),
         }
@@ -45,6 +92,7 @@ impl Source {
     /// A kit that no call has touched yet.
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
         match self {
+            #[cfg(feature = "author")]
             Source::Solutions => Arc::new(solutions::Kit),
             Source::Worker(program) => Arc::new(Door(Worker::new(program.clone(), CALL_PATIENCE))),
         }

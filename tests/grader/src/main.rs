@@ -1,21 +1,22 @@
-//! `raykata`: renders scenes, checks exercises, gives hints, and keeps exercises in step with solutions.
+//! `raykata`: renders scenes, checks exercises, gives hints, and grades.
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
+use grader::kits::{Choice, Source, Which, root};
+#[cfg(feature = "author")]
+use grader::{cases, corpus, gaps, gauntlet, generate, handout, jail, mutants, sync};
+use grader::{check, compare, explain, render, strip, tree};
+#[cfg(feature = "author")]
 #[cfg(target_os = "linux")]
-use grader::grade;
-use grader::kits::{Source, Which, root};
-use grader::{
-    cases, check, compare, corpus, explain, gaps, gauntlet, generate, jail, mutants, render, strip, sync,
-    tree,
-};
+use grader::{export, grade};
+#[cfg(feature = "author")]
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Build a ray tracer by making its tests pass. Without a command: where you stand and what comes next.
 ///
-/// You write in exercises/src. `cargo test --test stage1` grades stage 1, `raykata render scenes/stage1.toml --kit
-/// exercises` makes a picture with your code.
+/// You write in exercises/src. `cargo test --test stage1` grades stage 1, `raykata hint CHECK` helps where you are
+/// stuck, `raykata render scenes/stage1.toml` makes a picture.
 ///
 /// Exit codes: 0 all went well; 1 something is wrong: checks failed, files differ, a scene cannot be read; 2 the
 /// command line was not understood.
@@ -39,19 +40,25 @@ enum Command {
     /// Show the rays behind one pixel, for the first of its samples.
     Tree(tree::Options),
     /// Show what accuracy costs: ways to intersect a triangle against hard inputs, judged exactly.
+    #[cfg(feature = "author")]
     Gauntlet(gauntlet::Options),
     /// Grade your exercises and print the scorecard.
     Check {
         /// One stage only.
         stage: Option<u8>,
-        /// Whose code to grade.
-        #[arg(long, value_enum, default_value_t = Which::Exercises)]
-        kit: Which,
+        #[command(flatten)]
+        kit: Choice,
     },
     /// Grade a folder of submissions, each in a jail, and write tables and reports (for instructors).
+    #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Grade(grade::Options),
+    /// Grade one submission for Gradescope or GitHub Classroom (what `export` writes runs this).
+    #[cfg(feature = "author")]
+    #[cfg(target_os = "linux")]
+    GradeOne(grade::OneOptions),
     /// Put together what `grade --shard` has made of the parts of a class (for instructors).
+    #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Merge {
         /// The folders of the parts.
@@ -62,14 +69,17 @@ enum Command {
         out: PathBuf,
     },
     /// Try the grader on submissions that want what they have not earned (for authors).
+    #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Attacks(grade::AttackOptions),
     /// Grade a made-up class whose grades are known, and compare (for authors).
+    #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     Rehearse(grade::RehearsalOptions),
     /// List all checks with their points.
     List {
         /// The hard cases instead, and the checks that see to them.
+        #[cfg(feature = "author")]
         #[arg(long)]
         cases: bool,
     },
@@ -81,7 +91,16 @@ enum Command {
         #[arg(default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=3))]
         level: u8,
     },
+    /// Make the student's repository: no answers, nothing that only instructors need (for instructors).
+    #[cfg(feature = "author")]
+    Handout(handout::Options),
+    /// Write what Gradescope or GitHub Classroom needs to grade (for instructors).
+    #[cfg(feature = "author")]
+    #[cfg(target_os = "linux")]
+    #[command(subcommand)]
+    Export(export::What),
     /// Make exercises/ from solutions/ (for authors). Keeps what you have begun.
+    #[cfg(feature = "author")]
     Sync {
         /// Only say whether anything differs.
         #[arg(long)]
@@ -91,12 +110,16 @@ enum Command {
         force: bool,
     },
     /// Try the checks on known mistakes and on other right solutions (for authors).
+    #[cfg(feature = "author")]
     Corpus(corpus::Options),
     /// Show what pictures lack while a function is not written, for each function (for authors).
+    #[cfg(feature = "author")]
     Gaps(gaps::Options),
     /// Try the checks on changes that cargo-mutants makes to the solutions (for authors).
+    #[cfg(feature = "author")]
     Mutants(mutants::Options),
     /// Make the meshes and images of the scenes (for authors).
+    #[cfg(feature = "author")]
     Generate {
         /// The folder that has, or will have, meshes/ and images/.
         #[arg(default_value = "scenes")]
@@ -106,7 +129,9 @@ enum Command {
 
 fn main() -> ExitCode {
     // As a launcher of what is not trusted, or as the syntax check, this program does nothing else.
+    #[cfg(feature = "author")]
     jail::launch_if_asked();
+    #[cfg(feature = "author")]
     #[cfg(target_os = "linux")]
     grade::lint_if_asked();
     let cli = Cli::parse();
@@ -127,28 +152,48 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Render(options)) => render::run(&options)?,
         Some(Command::Explain(options)) => explain::run(&options)?,
         Some(Command::Compare(options)) => return compare::run(&options),
+        #[cfg(feature = "author")]
         Some(Command::Gauntlet(options)) => return gauntlet::run(&options),
         Some(Command::Strip(options)) => strip::run(&options)?,
         Some(Command::Tree(options)) => tree::run(&options)?,
         Some(Command::Check { stage, kit }) => {
-            return check::scorecard(&Source::prepare(kit, &root()?)?, stage);
+            return check::scorecard(&Source::prepare(kit.or_exercises(), &root()?)?, stage);
         }
+        #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
         Some(Command::Grade(options)) => return grade::run(&root()?, &options),
+        #[cfg(feature = "author")]
+        #[cfg(target_os = "linux")]
+        Some(Command::GradeOne(options)) => return grade::one(root, &options),
+        #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
         Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
+        #[cfg(feature = "author")]
+        #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
         Some(Command::Rehearse(options)) => return grade::rehearse(&root()?, &options),
         #[cfg(target_os = "linux")]
         Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
+        #[cfg(feature = "author")]
         Some(Command::List { cases: true }) => cases::list(&root()?)?,
-        Some(Command::List { cases: false }) => check::list(),
+        Some(Command::List { .. }) => check::list(),
         Some(Command::Hint { check, level }) => check::hint(&check, usize::from(level))?,
+        #[cfg(feature = "author")]
+        Some(Command::Handout(options)) => handout::run(&root()?, &options)?,
+        #[cfg(feature = "author")]
+        #[cfg(target_os = "linux")]
+        Some(Command::Export(what)) => export::run(&root()?, &what)?,
+        #[cfg(feature = "author")]
         Some(Command::Sync { check: true, .. }) => sync::check(&root()?)?,
+        #[cfg(feature = "author")]
         Some(Command::Sync { force, .. }) => sync::sync(&root()?, force)?,
+        #[cfg(feature = "author")]
         Some(Command::Corpus(options)) => return corpus::run(&root()?, &options),
+        #[cfg(feature = "author")]
         Some(Command::Gaps(options)) => return gaps::run(&options),
+        #[cfg(feature = "author")]
         Some(Command::Mutants(options)) => return mutants::run(&root()?, &options),
+        #[cfg(feature = "author")]
         Some(Command::Generate { scenes }) => generate::write(&scenes)?,
     }
     Ok(true)

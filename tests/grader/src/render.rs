@@ -1,6 +1,6 @@
 //! `raykata render`: a scene becomes a picture.
 
-use crate::kits::{Source, Which};
+use crate::kits::{Choice, Source};
 use crate::knobs::Knobs;
 use crate::report::{Bytes, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
@@ -20,9 +20,8 @@ pub struct Options {
     /// Where the picture goes: .png, .hdr or .exr [default: out/NAME.png].
     #[arg(long, short)]
     out: Option<PathBuf>,
-    /// Whose code makes it.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
-    kit: Which,
+    #[command(flatten)]
+    kit: Choice,
     /// Threads; 0 takes one a core.
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     threads: u16,
@@ -73,7 +72,7 @@ pub fn run(options: &Options) -> Result<()> {
     let format = format_of(&out)?;
     make_folder_of(&out)?;
 
-    let source = Source::here(options.kit)?;
+    let source = Source::here(options.kit.or_reference())?;
     let kit = source.fresh();
     let view = if options.normals { View::Normals } else { View::Shaded };
     let job = RenderJob {

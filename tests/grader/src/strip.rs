@@ -1,7 +1,7 @@
 //! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), or
 //! with each way to place samples ("Antialiasing", "Generate pixel samples"), side by side.
 
-use crate::kits::{Source, Which};
+use crate::kits::{Choice, Source};
 use crate::knobs::{Knobs, SamplerName};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene, make_folder_of};
@@ -32,9 +32,8 @@ pub struct Options {
     /// Where the PNG goes [default: out/NAME-strip.png].
     #[arg(long, short)]
     out: Option<PathBuf>,
-    /// Whose code makes it.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
-    kit: Which,
+    #[command(flatten)]
+    kit: Choice,
 }
 
 /// Renders the strip and tells what each picture took.
@@ -44,7 +43,7 @@ pub fn run(options: &Options) -> Result<()> {
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     make_folder_of(&out)?;
-    let source = Source::here(options.kit)?;
+    let source = Source::here(options.kit.or_reference())?;
     let kit = source.fresh();
     let pictures = pictures(options, &scene);
     let (width, height) = (scene.film.width, scene.film.height);

@@ -1,6 +1,6 @@
 //! `raykata tree`: the rays behind the first sample of one pixel, as text, JSON or a graph.
 
-use crate::kits::{Source, Which};
+use crate::kits::{Choice, Source};
 use crate::report::load_scene;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -16,9 +16,8 @@ pub struct Options {
     /// Column and row, from the upper left, such as 320,200.
     #[arg(long, value_parser = parse_pixel)]
     pixel: (u32, u32),
-    /// Whose code traces.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
-    kit: Which,
+    #[command(flatten)]
+    kit: Choice,
     /// How to show the tree.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -52,7 +51,7 @@ pub fn run(options: &Options) -> Result<()> {
             film.height - 1
         );
     }
-    let source = Source::here(options.kit)?;
+    let source = Source::here(options.kit.or_reference())?;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
     let rays = mishap::catch(|| source.fresh().trace(&job, x, y))?;
     print!("{}", show(&rays, options.format)?);

@@ -7,6 +7,7 @@ mod autopsy;
 mod watchdog;
 
 use crate::jail::{self, Jail};
+pub use autopsy::Jailed;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Mishap, Request, Transport, mishap};

@@ -1,5 +1,7 @@
 //! The command `compare` as its users run it.
 
+#![cfg(feature = "author")]
+
 mod program_runs;
 
 use program_runs::{raykata, told};

@@ -1,6 +1,8 @@
 //! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
 //! about just these entries. Building and trying them is `cargo run -- corpus --check`, which takes minutes.
 
+#![cfg(feature = "author")]
+
 use grader::corpus::entry::{Claim, Entry, read_all};
 use grader::corpus::records::{Matrix, message_file};
 use grader::corpus::verdict::check_named;

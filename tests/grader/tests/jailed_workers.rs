@@ -1,4 +1,6 @@
 //! What the judge makes of jailed workers that do everything wrong: one mishap for the call, never a wait without end.
+
+#![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
 use glam::Vec3;

@@ -1,6 +1,8 @@
 //! Small pictures of the scenes of the kit, bit by bit, with what they cost: whoever changes one, looks at it and blesses it
 //! with `INSTA_UPDATE=always cargo test -p grader --test pictures`.
 
+#![cfg(feature = "author")]
+
 use grader::pictures::Scenes;
 use std::path::Path;
 

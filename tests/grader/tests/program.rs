@@ -1,5 +1,7 @@
 //! The program as its users run it.
 
+#![cfg(feature = "author")]
+
 mod program_runs;
 
 use program_runs::{raykata, root, told};

@@ -1,6 +1,8 @@
 //! Code in a worker may panic, loop, overflow its stack or end its process: that costs the call it was asked, with a
 //! message that says what happened, and the next call is answered as if nothing had been.
 
+#![cfg(feature = "author")]
+
 use glam::Vec3;
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};

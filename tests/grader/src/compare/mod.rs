@@ -9,7 +9,7 @@ mod plot;
 mod rows;
 mod table;
 
-use crate::kits::{Source, Which};
+use crate::kits::{Choice, Source};
 use crate::knobs::Knobs;
 use crate::report::{load_scene, make_folder};
 use anyhow::{Context, Result};
@@ -30,9 +30,8 @@ pub struct Options {
     /// Only these accelerators, instead of all.
     #[arg(long, value_delimiter = ',', value_parser = crate::knobs::parse_accelerator, conflicts_with = "of")]
     only: Vec<Accelerator>,
-    /// Whose code builds and searches.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
-    kit: Which,
+    #[command(flatten)]
+    kit: Choice,
     /// How often each picture is timed, by turns; the median counts.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
@@ -59,7 +58,7 @@ pub fn run(options: &Options) -> Result<bool> {
     options.knobs.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
-    let source = Source::here(options.kit)?;
+    let source = Source::here(options.kit.or_reference())?;
     let kit = &*source.fresh();
 
     let rows = rows::rows(options.of, &options.only, &scene);

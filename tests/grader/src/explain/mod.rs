@@ -3,7 +3,7 @@
 mod subsets;
 mod why;
 
-use crate::kits::{Source, Which};
+use crate::kits::{Choice, Source};
 use crate::knobs::Knobs;
 use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
 use anyhow::{Context, Result};
@@ -20,9 +20,8 @@ use std::path::PathBuf;
 pub struct Options {
     /// The scene, a TOML file.
     scene: PathBuf,
-    /// Whose code decides and renders.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
-    kit: Which,
+    #[command(flatten)]
+    kit: Choice,
     /// How often each picture is made: once with everything and once without each effect, by turns.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
@@ -50,7 +49,7 @@ impl Explained<'_> {
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
     options.knobs.apply(&mut scene);
-    let source = Source::here(options.kit)?;
+    let source = Source::here(options.kit.or_reference())?;
     let kit = &*source.fresh();
     let effects = mishap::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
     let explained = Explained { scene: &scene, kit, effects };

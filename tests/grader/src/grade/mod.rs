@@ -9,6 +9,7 @@ mod class;
 mod forge;
 mod judge;
 mod lint;
+mod one;
 mod rehearsal;
 pub mod report;
 pub mod result;
@@ -18,6 +19,7 @@ mod store;
 mod submission;
 
 pub use class::{Grader, lint_if_asked};
+pub use one::{Options as OneOptions, run as one};
 pub use rehearsal::{Options as RehearsalOptions, run as rehearse};
 pub use siege::{Options as AttackOptions, run as attack};
 
@@ -70,9 +72,10 @@ pub struct Options {
 
 /// Numbers of stages, in order.
 #[derive(Clone, Debug, PartialEq)]
-struct Stages(Vec<u8>);
+pub(crate) struct Stages(Vec<u8>);
 
-fn stages(text: &str) -> Result<Stages> {
+/// As people write them.
+pub(crate) fn stages(text: &str) -> Result<Stages> {
     let number =
         |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is no number of a stage"));
     let mut stages = Vec::new();
@@ -194,22 +197,29 @@ fn session(
         );
     }
     let seed = options.seed.or(begun.as_ref().map(|session| session.seed));
-    let all = || STAGES.iter().map(|(number, _)| *number).collect();
     let stages = match (&options.stages, &begun) {
         (Some(Stages(stages)), _) => stages.clone(),
         (None, Some(session)) => session.stages.clone(),
-        (None, None) => all(),
+        (None, None) => all_stages(),
     };
-    // The standard library draws keys for its tables at random.
-    let seed = seed.unwrap_or_else(|| RandomState::new().hash_one("seed"));
-    Ok(Session { kit: kit(root, options, forge)?, stages, seed, isolation })
+    let seed = seed.unwrap_or_else(draw_seed);
+    Ok(Session { kit: kit(root, &options.allow, forge)?, stages, seed, isolation })
+}
+
+fn all_stages() -> Vec<u8> {
+    STAGES.iter().map(|(number, _)| *number).collect()
+}
+
+/// A seed that nobody knows: the standard library draws keys for its tables at random.
+pub(crate) fn draw_seed() -> u64 {
+    RandomState::new().hash_one("seed")
 }
 
 /// Version of the kit, with a fingerprint of all that decides a grade.
-fn kit(root: &Path, options: &Options, forge: &Forge) -> Result<String> {
+fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     let mut hash = Sha256::new();
     hash.update(forge.fingerprint());
-    hash.update(options.allow.join(","));
+    hash.update(allow.join(","));
     let mut waiting =
         vec![root.join("tests/checks/src"), root.join("tests/golden"), root.join("tests/rubric.toml")];
     while let Some(path) = waiting.pop() {

@@ -22,7 +22,7 @@ mod run;
 #[path = "elsewhere.rs"]
 mod run;
 
-pub use ended::{Ended, How};
+pub use ended::{Ended, How, how_it_died};
 pub use probes::{Level, got_through, self_test};
 pub use run::{run, spawn_guarded};
 

@@ -1,7 +1,7 @@
 //! What became of a worker that no longer answers.
 
 use super::lock;
-use crate::jail::{NOT_LAUNCHED, NOT_LAUNCHED_BECAUSE};
+use crate::jail::{NOT_LAUNCHED, NOT_LAUNCHED_BECAUSE, how_it_died};
 use raykata::kit::Mishap;
 use std::io::{self, Read};
 use std::process::{Child, ExitStatus};
@@ -41,7 +41,7 @@ pub(super) fn cause_of_death(
         if status.code() == Some(NOT_LAUNCHED) && stderr.starts_with(NOT_LAUNCHED_BECAUSE) {
             return crashed(&format!("it cannot be started: {}", last_words(stderr).unwrap_or_default()));
         }
-        match in_a_jail(status, stderr) {
+        match how_it_died(status, stderr) {
             Some(Jailed::Time) => return Mishap::TimedOut { seconds: patience.as_secs() },
             Some(Jailed::Memory) => {
                 return crashed(&format!("it took more memory than the {} it was given", size(memory)));
@@ -56,31 +56,14 @@ pub(super) fn cause_of_death(
     }
 }
 
-enum Jailed {
+/// What ended a process in a jail.
+pub enum Jailed {
+    /// It has used up its processor time.
     Time,
+    /// It has used up its memory.
     Memory,
+    /// What this says.
     Other(&'static str),
-}
-
-#[cfg(target_os = "linux")]
-fn in_a_jail(status: ExitStatus, stderr: &str) -> Option<Jailed> {
-    use nix::libc;
-    use std::os::unix::process::ExitStatusExt;
-    Some(match status.signal()? {
-        libc::SIGXCPU => Jailed::Time,
-        libc::SIGABRT if stderr.contains("memory allocation of") => Jailed::Memory,
-        libc::SIGSYS => Jailed::Other("it asked the kernel for what no exercise needs"),
-        // There is no list of its memory in a jail, by which Rust tells one from the other.
-        libc::SIGSEGV => Jailed::Other(
-            "the stack overflowed, or memory was touched that is not its own: a recursion that never ends?",
-        ),
-        _ => return None,
-    })
-}
-
-#[cfg(not(target_os = "linux"))]
-fn in_a_jail(_: ExitStatus, _: &str) -> Option<Jailed> {
-    None
 }
 
 fn size(bytes: u64) -> String {

@@ -1,0 +1,57 @@
+//! The whole kit in a zip.
+
+use anyhow::{Context, Result};
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::Path;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+/// What of the kit is needed to build it and to grade.
+const PARTS: [&str; 11] = [
+    ".cargo",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "exercises",
+    "rustfmt.toml",
+    "scenes",
+    "solutions",
+    "src",
+    "tests",
+];
+
+/// Folders that are made anew, or that only authors need.
+const LEFT_OUT: [&str; 3] = ["target", "tests/corpus", "tests/grader/target"];
+
+/// The kit, and beside it these scripts, which can be run. The same kit gives the same bytes.
+pub(super) fn zip(root: &Path, scripts: &[(&str, String)]) -> Result<Vec<u8>> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, text) in scripts {
+        zip.start_file(*name, SimpleFileOptions::default().unix_permissions(0o755))?;
+        zip.write_all(text.as_bytes())?;
+    }
+    for part in PARTS {
+        add(&mut zip, root, part)?;
+    }
+    Ok(zip.finish()?.into_inner())
+}
+
+fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, root: &Path, path: &str) -> Result<()> {
+    let file = root.join(path);
+    let kind = fs::symlink_metadata(&file).with_context(|| format!("no {path}: is this the whole kit?"))?;
+    if kind.is_dir() && !LEFT_OUT.contains(&path) {
+        let mut names: Vec<String> = fs::read_dir(&file)?
+            .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+            .collect::<Result<_>>()?;
+        names.sort();
+        for name in names {
+            add(zip, root, &format!("{path}/{name}"))?;
+        }
+    } else if kind.is_file() {
+        zip.start_file(path, SimpleFileOptions::default().unix_permissions(0o644))?;
+        zip.write_all(&fs::read(&file).with_context(|| format!("cannot read {path}"))?)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,109 @@
+//! `raykata grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
+
+use super::forge::Forge;
+use super::judge::Judge;
+use super::result::{Graded, Session};
+use super::{Grader, Stages, all_stages, draw_seed, isolation, kit, report, stages};
+use crate::jail::{Jail, Purpose};
+use anyhow::{Context, Result, anyhow};
+use clap::Args;
+use raykata::film::write_atomically;
+use serde_json::Value;
+use std::any::Any;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Which submission, and for whom.
+#[derive(Args)]
+#[command(group(clap::ArgGroup::new("reader").required(true).multiple(true).args(["gradescope", "classroom"])))]
+pub struct Options {
+    /// The submission: a folder, .zip, .tar or .tar.gz.
+    submission: PathBuf,
+    /// Where the results for Gradescope go, as JSON.
+    #[arg(long, value_name = "FILE")]
+    gradescope: Option<PathBuf>,
+    /// Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.
+    #[arg(long, value_name = "FILE")]
+    classroom: Option<PathBuf>,
+    /// The stages, as `3`, `1-4` or `1-4,10`; all if not given.
+    #[arg(long, value_parser = stages)]
+    stages: Option<Stages>,
+    /// Picks the hidden inputs; drawn at random if not given, which is not fair to a class.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Rules of the syntax check that do not apply, as a refusal names them.
+    #[arg(long, value_delimiter = ',')]
+    allow: Vec<String>,
+    /// Grade even where submissions cannot be contained. They can then do what you can.
+    #[arg(long)]
+    insecure: bool,
+}
+
+/// Grades, and writes what came of it, whatever breaks. `Ok(true)` if the submission could be graded.
+pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<bool> {
+    let graded = catch_unwind(AssertUnwindSafe(|| grade(&root()?, options)));
+    let (graded, session) =
+        match graded.unwrap_or_else(|panic| Err(anyhow!("it panicked: {}", said(&*panic)))) {
+            Ok(graded) => graded,
+            Err(error) => {
+                eprintln!("error: {error:#}");
+                broken(options, &format!("the grader broke, tell your instructor: {error:#}"))
+            }
+        };
+    if let Some(file) = &options.gradescope {
+        write(file, &report::gradescope(&graded, &session))?;
+    }
+    if let Some(file) = &options.classroom {
+        write(file, &report::classroom(&graded))?;
+    }
+    let (earned, of) = graded.points();
+    println!("{earned} of {of} points");
+    Ok(graded.trouble.is_empty())
+}
+
+fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
+    let isolation = isolation(options.insecure)?;
+    let forge = Forge::prepare(root)?;
+    let seed = options.seed.unwrap_or_else(draw_seed);
+    let stages = options.stages.as_ref().map_or_else(all_stages, |Stages(stages)| stages.clone());
+    let session = Session { kit: kit(root, &options.allow, &forge)?, stages, seed, isolation };
+    let jail = (!options.insecure).then(|| Jail::new(Purpose::Worker));
+    let judge = Judge::of(&session.stages, seed, jail)?;
+    let grader = Grader { forge: Arc::new(forge), judge: Arc::new(judge), allowed: options.allow.clone() };
+    let graded = grader.grade("submission", grader.take(&options.submission))?;
+    Ok((graded, session))
+}
+
+/// What is told when it was us who failed: no points, and why.
+fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
+    let graded = Graded {
+        student: "submission".into(),
+        content: String::new(),
+        checks: Vec::new(),
+        remarks: Vec::new(),
+        compiler: String::new(),
+        trouble: trouble.into(),
+        cpu_ms: 0,
+    };
+    let session = Session {
+        kit: env!("CARGO_PKG_VERSION").into(),
+        stages: Vec::new(),
+        seed: options.seed.unwrap_or_default(),
+        isolation: String::new(),
+    };
+    (graded, session)
+}
+
+fn said(panic: &(dyn Any + Send)) -> &str {
+    let owned = panic.downcast_ref::<String>().map(String::as_str);
+    owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+}
+
+fn write(file: &Path, results: &Value) -> Result<()> {
+    crate::report::make_folder_of(file)?;
+    let text = serde_json::to_vec_pretty(results)?;
+    write_atomically(file, |out| out.write_all(&text))
+        .with_context(|| format!("{} cannot be written", file.display()))
+}

@@ -1,0 +1,175 @@
+//! `raykata handout`: the student's repository, without the answers and without what only authors and instructors need.
+
+mod leaks;
+mod manifests;
+mod source;
+
+pub use leaks::{CANARY, answers, leaks};
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Where to write it.
+#[derive(Args)]
+pub struct Options {
+    /// The folder: an empty one, or one that is not there yet.
+    folder: PathBuf,
+}
+
+/// Folders that are handed out, and the endings of the files in them that are.
+const FOLDERS: [(&str, &[&str]); 6] = [
+    ("src", &["rs", "md"]),
+    ("tests/checks/src", &["rs"]),
+    // Tests of the laws share its modules.
+    ("tests/checks/examples", &["rs"]),
+    ("scenes", &["toml"]),
+    ("scenes/meshes", &["ply", "obj", "mtl"]),
+    ("scenes/images", &["png", "hdr"]),
+];
+
+/// Files that are handed out as they are.
+const FILES: [&str; 7] = [
+    ".cargo/config.toml",
+    ".gitignore",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "rustfmt.toml",
+    "scenes/showcase.png",
+    "tests/rubric.toml",
+];
+
+/// What a student's README says besides the kit's own.
+const README: &str = include_str!("README.md");
+
+/// Writes the student's repository, whole or not at all.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    let folder = std::path::absolute(&options.folder)?;
+    if fs::read_dir(&folder).is_ok_and(|mut inside| inside.next().is_some()) || folder.is_file() {
+        bail!("{} is not empty: a hand-out wants a folder of its own", options.folder.display());
+    }
+    let parent = folder.parent().context("a hand-out wants a folder of its own")?;
+    crate::report::make_folder(parent)?;
+    let draft = tempfile::tempdir_in(parent)?;
+    let files = files(root)?;
+    for (path, bytes) in &files {
+        let file = draft.path().join(path);
+        fs::create_dir_all(file.parent().unwrap_or(parent))?;
+        fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
+    }
+    let found = leaks(root, draft.path())?;
+    ensure!(found.is_empty(), "answers would be handed out, so nothing is:\n  {}", found.join("\n  "));
+    settle_versions(draft.path());
+    make_readable(draft.path())?;
+    // An empty folder gives way to a folder.
+    let draft = draft.keep();
+    if let Err(error) = fs::rename(&draft, &folder) {
+        let _ = fs::remove_dir_all(&draft);
+        return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
+    }
+    println!(
+        "{}: {} files; `cargo run` in it says what to do first",
+        options.folder.display(),
+        files.len() + 1
+    );
+    Ok(())
+}
+
+/// All files of a hand-out but Cargo.lock, by their paths.
+pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
+    let mut files = BTreeMap::new();
+    for path in FILES {
+        files.insert(path.to_owned(), read(root, path)?);
+    }
+    for (folder, endings) in FOLDERS {
+        gather(root, folder, endings, !folder.starts_with("scenes"), &mut files)?;
+    }
+    for (path, bytes) in
+        named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
+    {
+        files.insert(path, bytes);
+    }
+    for (name, text) in crate::sync::pristine(root)? {
+        files.insert(format!("exercises/src/{name}"), text.into_bytes());
+    }
+    for (path, text) in source::tool(root)? {
+        files.insert(path, text.into_bytes());
+    }
+    for (path, text) in manifests::all(root, &|path| files.contains_key(path))? {
+        files.insert(path, text.into_bytes());
+    }
+    files.insert("Cargo.lock".into(), read(root, "Cargo.lock")?);
+    files.insert("README.md".into(), readme(&text(root, "README.md")?)?.into_bytes());
+    Ok(files)
+}
+
+/// The files with these endings in a folder, and those below it if `deep`.
+fn gather(
+    root: &Path,
+    folder: &str,
+    endings: &[&str],
+    deep: bool,
+    files: &mut BTreeMap<String, Vec<u8>>,
+) -> Result<()> {
+    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
+        let entry = entry?;
+        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
+        if entry.file_type()?.is_dir() {
+            if deep {
+                gather(root, &path, endings, deep, files)?;
+            }
+        } else if endings.iter().any(is) {
+            files.insert(path.clone(), read(root, &path)?);
+        }
+    }
+    Ok(())
+}
+
+/// The files in a folder whose names begin so.
+fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)>> {
+    let mut all = BTreeMap::new();
+    gather(root, folder, &["rs", "snap", "png"], false, &mut all)?;
+    let start = format!("{folder}/{start}");
+    Ok(all.into_iter().filter(|(path, _)| path.starts_with(&start)).collect())
+}
+
+/// What the kit's README says to everybody and to students, with what a student's own repository needs besides.
+fn readme(of_kit: &str) -> Result<String> {
+    let (greeting, rest) = of_kit.split_once("\n```sh\n").context("README.md has no first command")?;
+    let (_, rest) = rest.split_once("\n## As a student\n").context("README.md says nothing to students")?;
+    let (student, _) = rest.split_once("\n## ").context("README.md ends with what it says to students")?;
+    // There is no other kit here.
+    let student = student.replace(" --kit exercises", "");
+    Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
+}
+
+/// Takes out of Cargo.lock what is no longer asked for. Without what cargo keeps of its registry that does not work; then
+/// cargo does it at the first build.
+fn settle_versions(folder: &Path) {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(folder).args(["update", "--workspace", "--offline", "--quiet"]);
+    let _ = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
+}
+
+/// A temporary folder is its maker's alone; a hand-out is for others, too.
+fn make_readable(folder: &Path) -> Result<()> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        fs::set_permissions(folder, fs::Permissions::from_mode(0o755))?;
+    }
+    let _ = folder;
+    Ok(())
+}
+
+fn read(root: &Path, path: &str) -> Result<Vec<u8>> {
+    fs::read(root.join(path)).with_context(|| format!("cannot read {path}: is this the whole kit?"))
+}
+
+fn text(root: &Path, path: &str) -> Result<String> {
+    String::from_utf8(read(root, path)?).with_context(|| format!("{path} is no text"))
+}

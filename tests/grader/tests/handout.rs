@@ -1,0 +1,185 @@
+//! The student's repository: what is in it, and what must not be.
+
+#![cfg(feature = "author")]
+
+mod program_runs;
+
+use grader::handout::{answers, leaks};
+use program_runs::{raykata, root, told};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn handed_out() -> (TempDir, PathBuf) {
+    let around = tempfile::tempdir().expect("a folder");
+    let folder = around.path().join("kit");
+    let output = raykata(&["handout", &folder.to_string_lossy()]);
+    assert!(output.status.success(), "{}", told(&output).1);
+    (around, folder)
+}
+
+fn paths(folder: &Path, below: &str, found: &mut BTreeSet<String>) {
+    for entry in fs::read_dir(folder.join(below)).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let name = entry.file_name().into_string().expect("a name that is text");
+        let path = if below.is_empty() { name } else { format!("{below}/{name}") };
+        match entry.path().is_dir() {
+            true => paths(folder, &path, found),
+            false => _ = found.insert(path),
+        }
+    }
+}
+
+#[test]
+fn nothing_is_handed_out_but_what_is_listed_and_no_answer_is_in_it() {
+    let (around, folder) = handed_out();
+    assert_eq!(fs::read_dir(around.path()).expect("a folder").count(), 1, "no draft is left");
+
+    let mut found = BTreeSet::new();
+    paths(&folder, "", &mut found);
+    let listed: Vec<&str> = found.iter().map(String::as_str).collect();
+    insta::with_settings!({ snapshot_path => "handout", prepend_module_to_snapshot => false, omit_expression => true }, {
+        insta::assert_snapshot!("files", listed.join("\n"));
+    });
+
+    assert_eq!(leaks(&root(), &folder).expect("readable files"), Vec::<String>::new());
+    // Those are looked for by lines that tell them: most of the answers, in every file that has any.
+    let answers = answers(&root()).expect("readable solutions");
+    assert!(answers.len() >= 17, "{:?}", answers.keys());
+    for (file, lines) in answers.iter().filter(|(file, _)| file.starts_with("stage")) {
+        assert!(lines.len() >= 15, "{file}: only {} lines tell its answers", lines.len());
+        let text = fs::read_to_string(folder.join("exercises/src").join(file)).expect("its exercise");
+        assert!(text.contains("todo!("), "{file}");
+    }
+}
+
+#[test]
+fn an_answer_and_the_canary_are_found_wherever_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answers = answers(&root()).expect("readable solutions");
+    let answer = answers["stage1_shapes.rs"].first().expect("an answer");
+    fs::write(folder.path().join("a.bin"), format!("\u{0}x {answer}")).expect("written");
+    fs::copy(root().join("solutions/src/lib.rs"), folder.path().join("b.rs")).expect("copied");
+    let found = leaks(&root(), folder.path()).expect("readable files");
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!(found[0].starts_with("a.bin: ") && found[1] == "b.rs: the canary", "{found:?}");
+}
+
+#[test]
+fn manifests_name_nothing_that_is_missing() {
+    let (_around, folder) = handed_out();
+    let manifest = |path: &str| -> toml::Table {
+        let text = fs::read_to_string(folder.join(path)).unwrap_or_else(|_| panic!("no {path}"));
+        toml::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+    };
+    let workspace = manifest("Cargo.toml");
+    let shared = workspace["workspace"]["dependencies"].as_table().expect("a table");
+    for (name, dependency) in shared {
+        if let Some(path) = dependency.get("path").and_then(|path| path.as_str()) {
+            assert!(folder.join(path).join("Cargo.toml").is_file(), "{name}");
+        }
+    }
+    for name in ["rusqlite", "syn", "landlock", "solutions", "nix", "zip", "maud", "tempfile"] {
+        assert!(!shared.contains_key(name), "{name} is of no use to students");
+    }
+    let members = workspace["workspace"]["members"].as_array().expect("members");
+    assert_eq!(members.len(), 3);
+    for member in members.iter().filter_map(|member| member.as_str()).chain(["."]) {
+        let package = manifest(&Path::new(member).join("Cargo.toml").to_string_lossy());
+        assert!(package.get("features").is_none(), "{member}");
+        for kind in ["bin", "test", "bench", "example"] {
+            for target in package.get(kind).and_then(|targets| targets.as_array()).into_iter().flatten() {
+                let name = target["name"].as_str().expect("a name");
+                let path = target.get("path").and_then(|path| path.as_str()).map(str::to_owned);
+                let path = path.unwrap_or_else(|| format!("{kind}s/{name}.rs"));
+                assert!(folder.join(member).join(&path).is_file(), "{member}: {path}");
+            }
+        }
+        for kind in ["dependencies", "dev-dependencies"] {
+            for (name, _) in package.get(kind).and_then(|table| table.as_table()).into_iter().flatten() {
+                assert!(shared.contains_key(name), "{member}: {name}");
+            }
+        }
+    }
+}
+
+/// Every command that the student's README names is one.
+#[test]
+fn the_readme_names_only_what_is_there() {
+    let (_around, folder) = handed_out();
+    let readme = fs::read_to_string(folder.join("README.md")).expect("a README");
+    let tool = fs::read_to_string(folder.join("tests/grader/src/main.rs")).expect("the tool");
+    assert!(readme.starts_with("# Raykata\n"));
+    for word in ["--kit", "solutions", "corpus", "{student}", "{greeting}", "--workspace"] {
+        assert!(!readme.contains(word), "{word}");
+    }
+    for part in readme.split(" -- ").skip(1) {
+        let command = part.split([' ', '`', '\n']).next().unwrap_or_default();
+        let variant = command[..1].to_uppercase() + &command[1..];
+        let begins = |end: &str| tool.contains(&format!("    {variant}{end}"));
+        assert!(begins("(") || begins(" {"), "`{command}` is no command of the student's tool");
+    }
+    for link in readme.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+        assert!(link.starts_with("https://") || folder.join(link).exists(), "{link}");
+    }
+}
+
+#[test]
+fn what_is_there_is_not_overwritten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("mine"), "").expect("written");
+    let output = raykata(&["handout", &folder.path().to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).1.contains("is not empty"), "{}", told(&output).1);
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
+    // A folder with nothing in it will do.
+    fs::remove_file(folder.path().join("mine")).expect("removed");
+    assert!(raykata(&["handout", &folder.path().to_string_lossy()]).status.success());
+    assert!(folder.path().join("Cargo.toml").is_file());
+}
+
+/// Builds what a student gets, as a student does. Takes minutes, so it waits to be asked: `RAYKATA_HANDOUT_BUILD=1`.
+#[test]
+fn a_student_can_begin() {
+    if std::env::var_os("RAYKATA_HANDOUT_BUILD").is_none() {
+        return;
+    }
+    let (_around, folder) = handed_out();
+    let target = root().join("target/handout");
+    let cargo = |arguments: &[&str]| -> Output {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.current_dir(&folder).env("CARGO_TARGET_DIR", &target).env("CARGO_NET_OFFLINE", "true");
+        cargo.args(arguments).output().expect("cargo starts")
+    };
+    let lock = fs::read(folder.join("Cargo.lock")).expect("a lock");
+    let tested = cargo(&["test", "--test", "stage1"]);
+    let (said, complained) = told(&tested);
+    assert!(
+        said.contains("not written yet") || complained.contains("not written yet"),
+        "{said}\n{complained}"
+    );
+    assert!(!complained.contains("warning"), "{complained}");
+    assert!(!tested.status.success());
+    assert!(lock == fs::read(folder.join("Cargo.lock")).expect("a lock"), "cargo has changed Cargo.lock");
+
+    let check = "sphere_geometric_starts_inside";
+    for (arguments, success, words) in [
+        (&["run"][..], true, "Next: exercises/src/stage1_shapes.rs"),
+        (&["run", "--", "list"], true, check),
+        (&["run", "--", "hint", check], true, "still stuck"),
+        (&["run", "--", "check"], false, "0 passed"),
+        (&["run", "--", "render", "scenes/stage1.toml", "--size", "32x20"], true, "not simulated"),
+        (&["run", "--", "render", "scenes/stage1.toml", "--kit", "solutions"], false, ""),
+        (&["run", "--", "sync"], false, ""),
+        (&["fmt", "--all", "--check"], true, ""),
+        (&["test", "--workspace"], true, "test result: ok"),
+    ] {
+        let output = cargo(arguments);
+        let (said, complained) = told(&output);
+        assert_eq!(output.status.success(), success, "{arguments:?}: {said}\n{complained}");
+        assert!(said.contains(words), "{arguments:?}: {said}\n{complained}");
+        assert!(!complained.contains("warning: "), "{arguments:?}: {complained}");
+    }
+}
