@@ -169,9 +169,9 @@ fn run(cli: Cli) -> Result<bool> {
         #[cfg(target_os = "linux")]
         Some(Command::Attacks(options)) => return grade::attack(&root()?, &options),
         #[cfg(feature = "author")]
-        #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
         Some(Command::Rehearse(options)) => return grade::rehearse(&root()?, &options),
+        #[cfg(feature = "author")]
         #[cfg(target_os = "linux")]
         Some(Command::Merge { parts, out }) => return grade::merge(&parts, &out),
         #[cfg(feature = "author")]
