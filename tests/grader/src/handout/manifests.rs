@@ -62,7 +62,7 @@ fn cut<'a>(text: &'a str, mut choose: impl FnMut(&[&'a str], &mut Vec<&'a str>))
         let mut kept = lines.clone();
         choose(&lines, &mut kept);
         let says = |line: &&str| !line.starts_with('#') && !line.starts_with('[');
-        if kept.len() == lines.len() || kept.iter().any(|line| says(line)) {
+        if kept.len() == lines.len() || kept.iter().any(says) {
             paragraphs.push(kept.join("\n"));
         }
     }

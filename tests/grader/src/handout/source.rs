@@ -48,12 +48,10 @@ fn follow(root: &Path, file: &Path, inside: &Path, files: &mut BTreeMap<String, 
 
 /// `x.rs` of `#[path = "x.rs"]`.
 fn path_of(attribute: &syn::Attribute) -> Option<String> {
-    match &attribute.meta {
-        syn::Meta::NameValue(syn::MetaNameValue { path, value, .. }) if path.is_ident("path") => {
-            match value {
-                syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) => Some(text.value()),
-                _ => None,
-            }
+    let syn::Meta::NameValue(meta) = &attribute.meta else { return None };
+    match &meta.value {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) if meta.path.is_ident("path") => {
+            Some(text.value())
         }
         _ => None,
     }
@@ -134,8 +132,8 @@ fn end_of(tokens: &[TokenTree], at: usize) -> Result<usize> {
     let first = if word(at) == "pub" { word(at + 1) } else { word(at) };
     let is_item = ["enum", "fn", "impl", "mod", "struct", "trait", "type"].contains(&first.as_str());
     let is_long = ["use", "const", "static", "let"].contains(&first.as_str());
-    for index in at..tokens.len() {
-        match &tokens[index] {
+    for (index, token) in tokens.iter().enumerate().skip(at) {
+        match token {
             TokenTree::Punct(mark) if mark.as_char() == ';' => return Ok(index),
             TokenTree::Punct(mark) if mark.as_char() == ',' && !is_item && !is_long => return Ok(index),
             TokenTree::Group(group) if group.delimiter() == Delimiter::Brace && !is_long => {
