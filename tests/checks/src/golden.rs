@@ -2,6 +2,20 @@
 
 use crate::broken::{Broken, Outcome};
 use raykata::kit::mishap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static SEALED: AtomicBool = AtomicBool::new(false);
+
+/// From here on this process writes nothing beside the golden texts and pictures and lets no variable of its environment
+/// change a verdict: for whoever judges code of others.
+pub fn seal() {
+    SEALED.store(true, Ordering::Relaxed);
+}
+
+/// Whether nothing may be written.
+pub(crate) fn is_sealed() -> bool {
+    SEALED.load(Ordering::Relaxed)
+}
 
 /// Compares `text` with the golden text `name`. `INSTA_UPDATE=always cargo test -p solutions` writes it anew.
 pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
@@ -10,12 +24,15 @@ pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
     settings.set_snapshot_path(folder);
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    let same = mishap::catch(|| settings.bind(|| insta::assert_snapshot!(name, text)));
-    if same.is_ok() {
-        return Ok(());
-    }
     let golden = std::fs::read_to_string(format!("{folder}/{name}.snap")).unwrap_or_default();
     let golden = golden.splitn(3, "---\n").nth(2).unwrap_or("(there is no golden text)");
+    let same = match is_sealed() {
+        true => golden.trim_end() == text.trim_end(),
+        false => mishap::catch(|| settings.bind(|| insta::assert_snapshot!(name, text))).is_ok(),
+    };
+    if same {
+        return Ok(());
+    }
     let difference = text
         .lines()
         .chain(std::iter::repeat("(the end)"))

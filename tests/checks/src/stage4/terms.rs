@@ -96,7 +96,7 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
         let cos_phi = cos_phi(query);
         let edge = n.dot(l).abs() < 1e-5 || cos_phi.abs() < 1e-5;
         // The cosine is off by a few roundings, and the power makes n cosⁿ⁻¹ φ times as much of that: for roots more than n.
-        let steep = exponent * cos_phi.max(0.0).powf(exponent - 1.0).max(1.0);
+        let steep = if cos_phi > 0.0 { exponent * cos_phi.powf(exponent - 1.0).max(1.0) } else { exponent };
         if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep) {
             return Ok(());
         }

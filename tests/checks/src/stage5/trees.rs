@@ -141,6 +141,11 @@ fn follow(
 ) {
     let normal = if entering { point } else { -point };
     let limits = Limits { max_depth: 4, min_contribution: 0.001 };
+    // Who forgets the depth has been seen to, and need not be followed to the end of the stack.
+    if depth > 2 * limits.max_depth || text.len() > 10_000 {
+        text.push_str("…\n");
+        return;
+    }
     let query = ChildrenQuery { dir, normal, entering, material: glass.clone(), weight, depth, limits };
     let mut children = trial.kit.children(&[query]).remove(0);
     children.sort_by_key(|child| child.bounce == Bounce::Transmission);

@@ -3,6 +3,7 @@
 use super::forge::Forge;
 use super::judge::Judge;
 use super::lint::{self, Finding};
+use super::report::clean::{clean, clean_line};
 use super::result::{Graded, Outcome, Remark};
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
@@ -27,6 +28,12 @@ pub struct Grader {
     pub allowed: Vec<String>,
 }
 
+/// How many findings in a file are told: the first says what is wrong, and the twentieth nothing new.
+const MOST_FINDINGS: usize = 10;
+
+/// How much of what the compiler says is kept, of all files together.
+const MOST_FROM_COMPILER: usize = 16 * 1024;
+
 /// A file that was not built with, and why.
 type Lost = BTreeMap<String, (Outcome, String)>;
 
@@ -45,7 +52,9 @@ impl Grader {
                 done(&known);
                 return Ok(());
             }
-            let graded = self.grade(&submission.student, taken)?;
+            let empty = self.graded(&submission.student, &taken);
+            let graded =
+                self.grade(&submission.student, taken).unwrap_or_else(|error| self.broken(empty, &error));
             store.keep(&graded)?;
             done(&graded);
             Ok(())
@@ -60,20 +69,11 @@ impl Grader {
 
     /// Grades what was taken of a submission. Fails only if the grader itself does.
     pub fn grade(&self, student: &str, taken: Taken) -> Result<Graded> {
-        let content = taken.content();
-        let Taken { files, mut remarks, trouble } = taken;
-        let mut graded = Graded {
-            student: student.into(),
-            content,
-            checks: Vec::new(),
-            remarks: Vec::new(),
-            compiler: String::new(),
-            trouble: trouble.unwrap_or_default(),
-            cpu_ms: 0,
-        };
+        let mut graded = self.graded(student, &taken);
+        let Taken { files, mut remarks, .. } = taken;
         if !graded.trouble.is_empty() {
             graded.checks = self.judge.all(Outcome::NotWritten, "nothing could be taken of the submission");
-            graded.remarks = remarks;
+            graded.remarks = remarks.into_iter().map(cleaned).collect();
             return Ok(graded);
         }
         // Outside of the folders of the kit and of the submission, and gone afterwards.
@@ -89,12 +89,34 @@ impl Grader {
             remarks.push(Remark { file: name.clone(), what: what.into() });
             graded.compiler += messages;
         }
+        graded.compiler = clean(&graded.compiler, MOST_FROM_COMPILER);
         let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
         let started = Instant::now();
         graded.checks = self.judge.judge(&forged.worker, &lost);
         graded.cpu_ms += started.elapsed().as_millis() as u64;
-        graded.remarks = remarks;
+        graded.remarks = remarks.into_iter().map(cleaned).collect();
         Ok(graded)
+    }
+
+    /// A grade to be filled in.
+    fn graded(&self, student: &str, taken: &Taken) -> Graded {
+        Graded {
+            student: student.into(),
+            content: taken.content(),
+            checks: Vec::new(),
+            remarks: Vec::new(),
+            compiler: String::new(),
+            trouble: taken.trouble.clone().unwrap_or_default(),
+            cpu_ms: 0,
+        }
+    }
+
+    /// The grade where grading itself broke: the class goes on, and the next run tries it again.
+    fn broken(&self, mut graded: Graded, error: &anyhow::Error) -> Graded {
+        graded.content.clear();
+        graded.trouble = format!("could not be graded: {error:#}");
+        graded.checks = self.judge.all(Outcome::NotTried, "grading broke; see what the instructor was told");
+        graded
     }
 
     /// The files that hold what no exercise needs. Each is looked at in a jail: what is meant to confuse a compiler may
@@ -116,13 +138,22 @@ impl Grader {
                 .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
                 .collect();
             if !against.is_empty() {
-                let told = against.join("\n");
+                let more = against.len().saturating_sub(MOST_FINDINGS);
+                let mut told = against[..against.len() - more].join("\n");
+                if more > 0 {
+                    told += &format!("\nand {more} more");
+                }
                 remarks.push(Remark { file: name.clone(), what: format!("was refused:\n{told}") });
                 lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{told}")));
             }
         }
         Ok(lost)
     }
+}
+
+/// A remark that can be printed: names of files may hold anything.
+fn cleaned(remark: Remark) -> Remark {
+    Remark { file: clean_line(&remark.file, 256), what: clean(&remark.what, 4096) }
 }
 
 /// What the syntax check finds; `None` if it broke.

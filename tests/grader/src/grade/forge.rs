@@ -3,17 +3,17 @@
 
 use super::result::Outcome;
 use crate::jail::{self, Ended, How, Jail, Purpose};
-use anyhow::{Context, Result, bail, ensure};
-use serde_json::Value;
+use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
 mod blame;
+mod libraries;
 
 /// A class is compiled in minutes only if nobody takes more than this; the reference takes a second.
 const COMPILER_PATIENCE: Duration = Duration::from_secs(60);
@@ -50,7 +50,7 @@ impl Forge {
         let mut pristine = crate::sync::pristine(root)?;
         let glue = pristine.get_mut("glue.rs").context("no file glue.rs among the exercises")?;
         *glue = without_frames(glue)?;
-        Ok(Forge { libraries: libraries(root)?, rustc, toolchain, pristine })
+        Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine })
     }
 
     /// The names of the files in which students write.
@@ -110,7 +110,24 @@ impl Forge {
         cpu += ended.cpu;
         let worker = scratch.join("out/worker");
         if ended.how != How::Exited(0) {
-            bail!("the worker cannot be linked: {}\n{}", died(&ended), text_of(&ended));
+            let suspects: Vec<&String> =
+                files.keys().filter(|name| !self.is_untouched(name, &files[*name])).collect();
+            ensure!(
+                !suspects.is_empty(),
+                "the worker cannot be linked: {}\n{}",
+                died(&ended),
+                text_of(&ended)
+            );
+            // Nobody knows whose fault it is, so all that was written is left out.
+            let why = format!("what was written compiles and cannot be linked: {}\n", died(&ended));
+            let all: BTreeMap<_, _> = suspects
+                .into_iter()
+                .map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())))
+                .collect();
+            let mut empty = self.build(scratch, &BTreeMap::new())?;
+            empty.replaced.extend(all);
+            empty.cpu += cpu;
+            return Ok(empty);
         }
         Ok(Forged { worker, replaced, cpu })
     }
@@ -227,57 +244,6 @@ fn died(ended: &Ended) -> String {
 
 fn text_of(ended: &Ended) -> String {
     String::from_utf8_lossy(&ended.stderr).chars().take(4000).collect()
-}
-
-/// Builds the scaffold with the crates that it needs, and puts what came of it into a folder of its own.
-fn libraries(root: &Path) -> Result<PathBuf> {
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .current_dir(root)
-        .args(["build", "--quiet", "--package", "raykata", "--lib", "--message-format=json"])
-        .stdin(Stdio::null())
-        .stderr(Stdio::inherit())
-        .output()
-        .context("cargo, which builds the scaffold, cannot be started")?;
-    ensure!(output.status.success(), "the scaffold does not compile: the compiler says above what is wrong");
-    let artifacts: Vec<Value> = String::from_utf8_lossy(&output.stdout)
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| message["reason"] == "compiler-artifact")
-        .collect();
-    let files: BTreeSet<(String, PathBuf)> = artifacts
-        .iter()
-        .flat_map(|artifact| {
-            let name = artifact["target"]["name"].as_str().unwrap_or_default().replace('-', "_");
-            let files = artifact["filenames"].as_array().into_iter().flatten().filter_map(Value::as_str);
-            files.map(move |file| (name.clone(), PathBuf::from(file))).collect::<Vec<_>>()
-        })
-        .filter(|(_, file)| file.extension().is_some_and(|ending| ending == "rlib" || ending == "so"))
-        .collect();
-    let mut hash = Sha256::new();
-    for (_, file) in &files {
-        hash.update(fs::read(file).with_context(|| file.display().to_string())?);
-    }
-    let folder = root.join("target/grade").join(format!("libraries-{}", &hex(&hash.finalize())[..16]));
-    if !folder.exists() {
-        fs::create_dir_all(root.join("target/grade"))?;
-        // Whole or not at all, also if two of us do it at the same time.
-        let draft = tempfile::tempdir_in(root.join("target/grade"))?;
-        for (name, file) in &files {
-            let direct = ["raykata", "glam"].contains(&name.as_str());
-            let to = if direct {
-                format!("lib{name}.rlib").into()
-            } else {
-                file.file_name().unwrap_or_default().to_owned()
-            };
-            fs::copy(file, draft.path().join(to))?;
-        }
-        if let Err(error) = fs::rename(draft.keep(), &folder)
-            && !folder.exists()
-        {
-            return Err(error).with_context(|| format!("cannot make {}", folder.display()));
-        }
-    }
-    Ok(folder)
 }
 
 fn said_by(command: &mut Command) -> Result<String> {

@@ -3,7 +3,7 @@
 //! It is a courtesy and no wall: safe Rust can reach around it, and the jail is there for that. It reads tokens and not
 //! only syntax trees, so that what stands in a macro is seen as well. A file that is no Rust is left to the compiler.
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
@@ -84,7 +84,7 @@ fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
             findings.push(Finding { rule: rule.into(), line, why: format!("{what}: {why}") });
         };
         match token {
-            TokenTree::Ident(word) => match word.to_string().as_str() {
+            TokenTree::Ident(word) => match plain(word).as_str() {
                 "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
                 "extern" => say("linkage", "`extern`".into(), "an exercise calls no foreign code"),
                 root @ ("std" | "core" | "alloc") => {
@@ -131,7 +131,7 @@ fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'stati
         return Vec::new();
     }
     let firsts: Vec<String> = match rest.get(2) {
-        Some(TokenTree::Ident(word)) => vec![word.to_string()],
+        Some(TokenTree::Ident(word)) => vec![plain(word)],
         Some(TokenTree::Group(group)) => firsts(group.stream()),
         Some(TokenTree::Punct(star)) if star.as_char() == '*' => vec!["*".into()],
         _ => Vec::new(),
@@ -141,7 +141,8 @@ fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'stati
             let why = "all of it brings along what no exercise needs";
             return vec![("system", format!("`{root}::{first}`"), why)];
         }
-        let named = MODULES.iter().filter(|(_, module, _)| module == first);
+        // A macro may be imported under another name.
+        let named = MODULES.iter().chain(&MACROS).filter(|(_, module, _)| module == first);
         named.map(|(rule, module, why)| (*rule, format!("`{root}::{module}`"), *why)).collect()
     };
     firsts.iter().flat_map(banned).collect()
@@ -152,7 +153,7 @@ fn firsts(group: TokenStream) -> Vec<String> {
     let (mut firsts, mut at_start) = (Vec::new(), true);
     for token in group {
         match &token {
-            TokenTree::Ident(word) if at_start => firsts.push(word.to_string()),
+            TokenTree::Ident(word) if at_start => firsts.push(plain(word)),
             TokenTree::Punct(mark) if at_start && mark.as_char() == '*' => firsts.push("*".into()),
             TokenTree::Group(inner) if at_start => firsts.extend(self::firsts(inner.stream())),
             _ => {}
@@ -165,11 +166,17 @@ fn firsts(group: TokenStream) -> Vec<String> {
 /// All words, at any depth.
 fn words(tokens: TokenStream) -> Vec<String> {
     let words = tokens.into_iter().flat_map(|token| match token {
-        TokenTree::Ident(word) => vec![word.to_string()],
+        TokenTree::Ident(word) => vec![plain(&word)],
         TokenTree::Group(group) => words(group.stream()),
         _ => Vec::new(),
     });
     words.collect()
+}
+
+/// The word itself: `r#process` is another way to write `process`.
+fn plain(word: &Ident) -> String {
+    let text = word.to_string();
+    text.strip_prefix("r#").map_or(text.clone(), str::to_owned)
 }
 
 fn is(token: Option<&TokenTree>, mark: char) -> bool {
@@ -206,6 +213,8 @@ mod tests {
             ("fn f() {\n\n unsafe {} }", "unsafe", 3),
             ("extern \"C\" { fn exit(code: i32); }", "linkage", 1),
             ("static A: [fn(); 1] = [f]; #[used] static B: u8 = 0;", "linkage", 1),
+            ("fn f() { std::r#process::exit(0) }", "process", 1),
+            ("use core::include_str as text;", "include", 1),
             ("fn f() { std::thread::spawn(|| ()); }", "threads", 1),
             ("fn f() { std::panic::set_hook(todo!()) }", "panics", 1),
         ];

@@ -1,8 +1,8 @@
 //! `raykata grade`: a verdict on each submission of a class, reached outside the students' processes.
 //!
-//! The way of a submission: [`submission`] takes the files in which students write and nothing else, [`lint`] says what no
-//! exercise needs, [`forge`] compiles the rest in a jail, [`judge`] puts the laws to the worker that came of it, [`store`]
-//! writes the grade down, [`report`] tells everybody.
+//! The way of a submission: `submission` takes the files in which students write and nothing else, `lint` says what no
+//! exercise needs, `forge` compiles the rest in a jail, `judge` puts the laws to the worker that came of it, `store`
+//! writes the grade down, `report` tells everybody.
 
 pub mod attacks;
 mod class;

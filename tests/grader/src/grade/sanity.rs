@@ -1,12 +1,14 @@
-//! Whether a structure that came out of a worker is one at all. The checks go through trees with loops and recursion of
+//! Whether an answer that came out of a worker is possible at all. The checks go through trees with loops and recursion of
 //! their own; in a tree whose root is its own child they would go on for ever, or until the judge has no stack left.
 
 use raykata::bvh::Contents;
-use raykata::kit::Answer;
+use raykata::count::Counts;
+use raykata::kit::{Answer, SearchAnswer};
 use raykata::partition::{BspNode, Grid, KdNode, OctreeNode};
 
-/// The checks go down by recursion; with the stack that they have, this is a tenth of what they survive.
-const DEEPEST: usize = 50_000;
+/// The checks go down by recursion, and write trees as text in which each level stands further in. The deepest tree that a
+/// check asks for has 24 levels, one that makes a leaf of each primitive and goes on with the rest 512.
+const DEEPEST: usize = 2_000;
 
 /// The node of a tree, in whatever tree.
 enum Node {
@@ -49,6 +51,10 @@ pub fn fault(answer: &Answer) -> Option<String> {
             fault_of_tree(tree.nodes.len(), tree.items.len(), node)
         }),
         Answer::GridBuild(grids) => grids.iter().find_map(fault_of_grid),
+        Answer::ClosestHit(searches) | Answer::ClosestHitBoth(searches) => {
+            searches.iter().find_map(fault_of_search)
+        }
+        Answer::AnyHit(searches) => searches.iter().find_map(|(_, search)| fault_of_search(search)),
         _ => None,
     }
 }
@@ -78,6 +84,14 @@ fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -
         }
     }
     None
+}
+
+/// What a search has asked is counted where it runs, and there a cheat may wipe it out; then it has found what it never
+/// looked at.
+fn fault_of_search(search: &SearchAnswer) -> Option<String> {
+    let Counts { node_visits, primitive_tests, .. } = search.counts;
+    let nothing = search.hit.is_some() && (node_visits == 0 || primitive_tests == 0);
+    nothing.then(|| format!("a hit after {node_visits} nodes opened and {primitive_tests} primitives tested"))
 }
 
 fn fault_of_grid(grid: &Grid) -> Option<String> {

@@ -48,9 +48,9 @@ fn follow(root: &Path, file: &Path, inside: &Path, files: &mut BTreeMap<String, 
 
 /// `x.rs` of `#[path = "x.rs"]`.
 fn path_of(attribute: &syn::Attribute) -> Option<String> {
-    let syn::Meta::NameValue(meta) = &attribute.meta else { return None };
-    match &meta.value {
-        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) if meta.path.is_ident("path") => {
+    let syn::Meta::NameValue(syn::MetaNameValue { path, value, .. }) = &attribute.meta else { return None };
+    match value {
+        syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) if path.is_ident("path") => {
             Some(text.value())
         }
         _ => None,

@@ -66,7 +66,11 @@ impl Maker<'_> {
         };
         files.retain(|name, _| name.starts_with("stage"));
         for (name, text) in &mut files {
-            let in_question = |stage: &u8| name.starts_with(&format!("stage{stage}_"));
+            let solved = self.attack.base == Base::Solutions;
+            let last = self.attack.stages.iter().max().copied().unwrap_or(0);
+            let is = |stage: &u8| name.starts_with(&format!("stage{stage}_"));
+            // A later stage may use helpers of an earlier one.
+            let in_question = |stage: &u8| is(stage) || solved && (1..=last).any(|earlier| is(&earlier));
             if self.attack.stages.iter().any(in_question) {
                 match self.attack.base {
                     Base::Nothing | Base::Stubs => {}

@@ -5,6 +5,7 @@ use crate::grade::result::Graded;
 use crate::queue;
 use anyhow::{Context, Result};
 use sha2::{Digest, Sha256};
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,9 +20,13 @@ pub fn run_all(
     grade: impl Fn(&Path, &[u8], &[String]) -> Result<Graded> + Sync,
 ) -> Result<Vec<(Attack, Vec<String>)>> {
     let root = root.canonicalize().with_context(|| root.display().to_string())?;
-    let attacks = choose(load(&root)?, names)?;
+    let mut attacks = choose(load(&root)?, names)?;
+    // The longest first, or everybody waits for the last one.
+    attacks.sort_by_key(|attack| Reverse(attack.most_seconds));
     let complaints = queue::run(&queue::one_a_core(), &attacks, |(), attack| try_one(&root, attack, &grade))?;
-    Ok(attacks.into_iter().zip(complaints).collect())
+    let mut tried: Vec<(Attack, Vec<String>)> = attacks.into_iter().zip(complaints).collect();
+    tried.sort_by(|(one, _), (other, _)| one.name.cmp(&other.name));
+    Ok(tried)
 }
 
 fn try_one(

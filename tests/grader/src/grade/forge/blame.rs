@@ -26,7 +26,8 @@ pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
             for name in sign(error, suspects) {
                 let told = blamed.entry(name).or_default();
                 if told.len() < SHOWN {
-                    told.push_str(error["rendered"].as_str().unwrap_or_default());
+                    let rendered = error["rendered"].as_str().unwrap_or_default();
+                    told.extend(rendered.chars().take(SHOWN));
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Reports of a graded class: tables, files for other programs, and pages to read.
 //!
-//! Much of what they show was written by students. Each text is cleaned once, in [`presentable`], before any format sees
+//! Much of what they show was written by students. Each text is cleaned once, in `presentable`, before any format sees
 //! it; escaping is then up to the libraries that write CSV, JSON, XML and HTML.
 
 mod chart;
