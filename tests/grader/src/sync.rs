@@ -124,9 +124,19 @@ pub fn stub(solution: &str, path: &Path) -> Result<String> {
 }
 
 /// A solution file as a student would have written it: without the marks.
-pub fn answer(solution: &str) -> String {
-    let is_mark = |line: &str| line == BEGIN || line == END || line.starts_with(STUB);
-    solution.lines().filter(|line| !is_mark(line.trim_start())).map(|line| format!("{line}\n")).collect()
+pub fn answer(solution: &str, path: &Path) -> Result<String> {
+    let is_mark = |line: &&str| [BEGIN, STUB, END].iter().any(|mark| line.trim_start().starts_with(mark));
+    let mut text = String::new();
+    for block in blocks(solution, path)? {
+        let (Block::Same(lines) | Block::Answer(lines, _)) = block;
+        lines.iter().filter(|line| !is_mark(line)).for_each(|line| text.extend([line, "\n"]));
+    }
+    Ok(text)
+}
+
+/// The stage of an exercise by the name of its file; none for what connects them.
+pub fn stage_of(file: &str) -> Option<u8> {
+    file.strip_prefix("stage")?.split_once('_')?.0.parse().ok()
 }
 
 /// A solution file, cut at its marks.
@@ -196,6 +206,13 @@ mod tests {
 
     fn stub_of(text: &str) -> Result<String> {
         stub(text, Path::new("a.rs"))
+    }
+
+    #[test]
+    fn a_solution_loses_its_marks_and_nothing_else() {
+        let marked = "fn f() {\n    // <solution>\n    1\n    // <stub> todo!()\n    // </solution>\n}\n";
+        assert_eq!(answer(marked, Path::new("a.rs")).unwrap(), "fn f() {\n    1\n}\n");
+        assert!(answer("// <solution>\n", Path::new("a.rs")).is_err());
     }
 
     #[test]

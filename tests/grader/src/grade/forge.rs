@@ -3,6 +3,7 @@
 
 use super::result::Outcome;
 use crate::jail::{self, Ended, How, Jail, Purpose};
+use crate::sync::stage_of;
 use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -55,7 +56,7 @@ impl Forge {
 
     /// The names of the files in which students write.
     pub fn exercises(&self) -> Vec<String> {
-        self.pristine.keys().filter(|name| name.starts_with("stage")).cloned().collect()
+        self.pristine.keys().filter(|name| stage_of(name).is_some()).cloned().collect()
     }
 
     /// Whether this is the exercise as nobody has begun it.
@@ -78,7 +79,7 @@ impl Forge {
         let mut replaced = BTreeMap::new();
         loop {
             self.lay_out(scratch, files, &replaced)?;
-            let ended = self.library(scratch)?;
+            let ended = self.compile_exercises(scratch)?;
             cpu += ended.cpu;
             if ended.how == How::Exited(0) {
                 break;
@@ -96,7 +97,7 @@ impl Forge {
                         .map(|other| (other.clone(), (Outcome::DoesNotCompile, String::new())))
                         .collect();
                     self.lay_out(scratch, files, &alone)?;
-                    let ended = self.library(scratch)?;
+                    let ended = self.compile_exercises(scratch)?;
                     cpu += ended.cpu;
                     if ended.how != How::Exited(0) {
                         replaced.insert(name.clone(), (Outcome::DoesNotCompile, died(&ended)));
@@ -106,7 +107,7 @@ impl Forge {
             }
             replaced.extend(verdict.into_iter().map(|(name, why)| (name, (Outcome::DoesNotCompile, why))));
         }
-        let ended = self.program(scratch)?;
+        let ended = self.link_worker(scratch)?;
         cpu += ended.cpu;
         let worker = scratch.join("out/worker");
         if ended.how != How::Exited(0) {
@@ -142,14 +143,14 @@ impl Forge {
         fs::create_dir_all(&folder)?;
         fs::create_dir_all(scratch.join("out"))?;
         for (name, pristine) in &self.pristine {
-            let text = files.get(name).filter(|_| name.starts_with("stage") && !replaced.contains_key(name));
+            let text = files.get(name).filter(|_| stage_of(name).is_some() && !replaced.contains_key(name));
             fs::write(folder.join(name), text.unwrap_or(pristine))?;
         }
         Ok(())
     }
 
     /// Compiles the exercises.
-    fn library(&self, scratch: &Path) -> Result<Ended> {
+    fn compile_exercises(&self, scratch: &Path) -> Result<Ended> {
         let arguments = [
             "exercises/src/lib.rs",
             "--crate-name=exercises",
@@ -166,7 +167,7 @@ impl Forge {
     }
 
     /// Links the program that answers with the exercises.
-    fn program(&self, scratch: &Path) -> Result<Ended> {
+    fn link_worker(&self, scratch: &Path) -> Result<Ended> {
         let arguments = [
             "exercises/src/worker.rs",
             "--crate-name=worker",

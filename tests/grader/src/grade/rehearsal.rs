@@ -6,6 +6,7 @@ use super::result::{Class, Graded, Outcome};
 use super::{Options as GradeOptions, Stages, store::Store};
 use crate::corpus::entry::{self, Claim, Entry};
 use crate::corpus::records::Matrix;
+use crate::sync::{answer, stage_of};
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use std::collections::BTreeMap;
@@ -158,18 +159,17 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
 /// The files of a student who attacks nobody.
 fn texts(root: &Path, role: &Role) -> Result<BTreeMap<String, String>> {
     let mut texts = crate::sync::pristine(root)?;
-    texts.retain(|name, _| name.starts_with("stage"));
+    texts.retain(|name, _| stage_of(name).is_some());
     let last = if let Role::Begun(last) = role { *last } else { 4 };
-    let of_stage = |name: &str, stage: u8| name.starts_with(&format!("stage{stage}_"));
     for (name, text) in &mut texts {
-        if STAGES_OF_CLASS.iter().any(|&stage| stage <= last && of_stage(name, stage)) {
+        if stage_of(name).is_some_and(|stage| stage <= last) {
             let file = format!("solutions/src/{name}");
             let solution = fs::read_to_string(root.join(&file)).with_context(|| file.clone())?;
             let changed = match role {
                 Role::Entry(entry) if entry.file == file => entry.apply(&solution)?,
                 _ => solution,
             };
-            *text = crate::sync::answer(&changed);
+            *text = answer(&changed, Path::new(&file))?;
         }
     }
     Ok(texts)

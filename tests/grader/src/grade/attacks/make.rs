@@ -1,8 +1,8 @@
 //! Makes the submission of an attack: files first, then one step after the other.
 
-use super::pack::{self, Entry, Format};
-use super::step::{Act, Content, Encoding, Packed, Step, bytes_of, need, path_of};
+use super::step::{Act, Content, Encoding, Step, bytes_of, need, path_of};
 use super::{Attack, Base, remember, source};
+use crate::sync::{answer, stage_of};
 use anyhow::{Context, Result, bail, ensure};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -11,6 +11,8 @@ use std::os::unix::ffi::OsStringExt;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
+
+mod archives;
 
 /// Where students write.
 const SOURCES: &str = "exercises/src";
@@ -64,21 +66,17 @@ impl Maker<'_> {
             Base::Nothing => BTreeMap::new(),
             _ => crate::sync::pristine(self.place.root)?,
         };
-        files.retain(|name, _| name.starts_with("stage"));
+        files.retain(|name, _| stage_of(name).is_some());
+        let last = self.attack.stages.iter().max();
         for (name, text) in &mut files {
-            let solved = self.attack.base == Base::Solutions;
-            let last = self.attack.stages.iter().max().copied().unwrap_or(0);
-            let is = |stage: &u8| name.starts_with(&format!("stage{stage}_"));
-            // A later stage may use helpers of an earlier one.
-            let in_question = |stage: &u8| is(stage) || solved && (1..=last).any(|earlier| is(&earlier));
-            if self.attack.stages.iter().any(in_question) {
-                match self.attack.base {
-                    Base::Nothing | Base::Stubs => {}
-                    Base::Solutions => *text = self.solution(name)?,
-                    Base::Wrong => {
-                        *text = source::with_bodies(&self.solution(name)?, "*", source::wrong_body)?
-                    }
+            let stage = stage_of(name);
+            match self.attack.base {
+                // A later stage may use helpers of an earlier one.
+                Base::Solutions if stage.as_ref() <= last => *text = self.solution(name)?,
+                Base::Wrong if stage.is_some_and(|stage| self.attack.stages.contains(&stage)) => {
+                    *text = source::with_bodies(&self.solution(name)?, "*", source::wrong_body)?;
                 }
+                _ => {}
             }
         }
         Ok(files)
@@ -87,7 +85,7 @@ impl Maker<'_> {
     fn solution(&self, name: &str) -> Result<String> {
         let path = self.place.root.join("solutions/src").join(name);
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        source::solved(&text, &path)
+        answer(&text, &path)
     }
 
     fn take(&mut self, mut step: Step) -> Result<()> {
@@ -184,60 +182,6 @@ impl Maker<'_> {
             Encoding::Utf16 => format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect(),
         };
         self.write(&path, &bytes)
-    }
-
-    fn pack(&mut self, step: &mut Step) -> Result<()> {
-        let format = need(step.format.take(), "format")?;
-        let prefix = step.prefix.take().unwrap_or_default();
-        let mut entries = Vec::new();
-        if !step.alone.take().unwrap_or_default() {
-            let folder = self.submission.join(SOURCES);
-            let mut names: Vec<OsString> =
-                fs::read_dir(&folder)?.map(|entry| Ok(entry?.file_name())).collect::<Result<_>>()?;
-            names.sort();
-            for name in names {
-                let content = fs::read(folder.join(&name))?;
-                let name = [prefix.as_bytes(), SOURCES.as_bytes(), b"/", name.as_encoded_bytes()].concat();
-                entries.push(Entry { name, content, ..Entry::default() });
-            }
-        }
-        for packed in step.entries.take().unwrap_or_default() {
-            entries.extend(self.entries(packed)?);
-        }
-        let mut bytes = Vec::new();
-        pack::write(format, &entries, &mut bytes)?;
-        bytes.truncate(bytes.len() - step.cut.take().unwrap_or_default());
-        self.become_archive(format, &bytes)
-    }
-
-    fn entries(&self, packed: Packed) -> Result<Vec<Entry>> {
-        let content = match packed.to {
-            Some(to) => self.filled(&to).into_bytes(),
-            None => self.bytes(packed.content)?,
-        };
-        let name = |index: usize| match (&packed.name, &packed.name_hex) {
-            (Some(name), None) => Ok(self.filled(name).replace("@n@", &index.to_string()).into_bytes()),
-            (None, Some(hex)) => bytes_of(hex),
-            _ => bail!("an entry has a `name` or a `name_hex`"),
-        };
-        let entry = |index: usize| {
-            Ok(Entry {
-                name: name(index)?,
-                kind: packed.kind,
-                content: content.clone(),
-                zeros: packed.zeros.unwrap_or_default() << 20,
-                stated: packed.stated,
-                encrypted: packed.encrypted,
-            })
-        };
-        (0..packed.times.unwrap_or(1)).map(entry).collect()
-    }
-
-    /// Puts an archive in the place of the folder.
-    fn become_archive(&mut self, format: Format, bytes: &[u8]) -> Result<()> {
-        fs::remove_dir_all(&self.submission)?;
-        self.submission.as_mut_os_string().push(format.ending());
-        fs::write(&self.submission, bytes).context("the archive cannot be written")
     }
 
     fn write(&self, path: &Path, bytes: &[u8]) -> Result<()> {

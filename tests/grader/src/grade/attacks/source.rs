@@ -3,7 +3,6 @@
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::ops::Range;
-use std::path::Path;
 use std::str::FromStr;
 
 /// A function that anybody may call.
@@ -77,15 +76,6 @@ pub(super) fn wrong_body(function: &Function) -> Result<String> {
     }
 }
 
-/// A file of the solutions without the marks around answers.
-pub(super) fn solved(solution: &str, path: &Path) -> Result<String> {
-    const MARKS: [&str; 3] = ["// <solution>", "// <stub>", "// </solution>"];
-    // Marks that do not match up are found here.
-    crate::sync::blocks(solution, path)?;
-    let unmarked = |line: &&str| !MARKS.iter().any(|mark| line.trim_start().starts_with(mark));
-    Ok(solution.lines().filter(unmarked).map(|line| format!("{line}\n")).collect())
-}
-
 /// The file with more text where its first item begins: behind what documents the file as a whole.
 pub(super) fn with_top(text: &str, top: &str) -> String {
     let head = |line: &&str| line.starts_with("//!") || line.starts_with("#![") || line.trim().is_empty();
@@ -125,12 +115,5 @@ mod tests {
     fn the_top_is_behind_the_words_about_the_file() {
         assert!(with_top(FILE, "struct S;").starts_with("//! About {.\n\nstruct S;\nuse a::b;"));
         assert_eq!(with_top("fn f() {}", "struct S;"), "struct S;\nfn f() {}");
-    }
-
-    #[test]
-    fn a_solution_loses_its_marks_and_nothing_else() {
-        let marked = "fn f() {\n    // <solution>\n    1\n    // <stub> todo!()\n    // </solution>\n}\n";
-        assert_eq!(solved(marked, Path::new("a.rs")).unwrap(), "fn f() {\n    1\n}\n");
-        assert!(solved("// <solution>\n", Path::new("a.rs")).is_err());
     }
 }
