@@ -2,12 +2,12 @@
 
 use super::forge::Forge;
 use super::judge::Judge;
-use super::lint::{self, Finding};
+use super::lint::{self, Finding, Reading};
 use super::report::clean::{clean, clean_line};
 use super::result::{Graded, Outcome, Remark};
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
-use crate::jail::{self, How, Jail, Purpose};
+use crate::jail::{self, How, Jail, Purpose, Walls};
 use crate::queue;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
@@ -24,6 +24,8 @@ pub struct Grader {
     pub forge: Arc<Forge>,
     /// Asks them.
     pub judge: Arc<Judge>,
+    /// Between a submission and the machine.
+    pub walls: Walls,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,
 }
@@ -36,6 +38,14 @@ const MOST_FROM_COMPILER: usize = 16 * 1024;
 
 /// A file that was not built with, and why.
 type Lost = BTreeMap<String, (Outcome, String)>;
+
+/// What the syntax check says of a submission.
+struct Read {
+    /// The files that hold what no exercise needs.
+    refused: Lost,
+    /// Whether an answer may depend on what was asked before.
+    may_remember: bool,
+}
 
 impl Grader {
     /// Grades all that `store` does not know yet, on `jobs` threads; tells `done` of each.
@@ -78,7 +88,7 @@ impl Grader {
         }
         // Outside of the folders of the kit and of the submission, and gone afterwards.
         let scratch = tempfile::tempdir().context("cannot make a folder to compile in")?;
-        let refused = self.refused(&files, &mut remarks)?;
+        let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
             files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
         let forged = self.forge.build(scratch.path(), &kept)?;
@@ -92,7 +102,7 @@ impl Grader {
         graded.compiler = clean(&graded.compiler, MOST_FROM_COMPILER);
         let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
         let started = Instant::now();
-        graded.checks = self.judge.judge(&forged.worker, &lost);
+        graded.checks = self.judge.judge(&forged.worker, &lost, may_remember);
         graded.cpu_ms += started.elapsed().as_millis() as u64;
         graded.remarks = remarks.into_iter().map(cleaned).collect();
         Ok(graded)
@@ -119,20 +129,24 @@ impl Grader {
         graded
     }
 
-    /// The files that hold what no exercise needs. Each is looked at in a jail: what is meant to confuse a compiler may
-    /// confuse the check.
-    fn refused(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Lost> {
+    /// Puts the files to the syntax check, each in a jail: what is meant to confuse a compiler may confuse the check.
+    fn read(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Read> {
         let mut lost = Lost::new();
+        // What a rule would have kept out may remember in ways that the check does not know.
+        let mut may_remember = !self.allowed.is_empty();
         for (name, text) in files.iter().filter(|(name, text)| !self.forge.is_untouched(name, text)) {
-            let findings = match findings(text)? {
-                Some(findings) => findings,
+            let reading = match self.reading(text)? {
+                Some(reading) => reading,
                 None => {
                     let why =
                         "the syntax check broke on it: it is nested too deeply for any exercise".to_owned();
-                    vec![Finding { rule: "nesting".into(), line: 1, why }]
+                    let broke = Finding { rule: "nesting".into(), line: 1, why };
+                    Reading { findings: vec![broke], may_remember: true }
                 }
             };
-            let against: Vec<String> = findings
+            may_remember |= reading.may_remember;
+            let against: Vec<String> = reading
+                .findings
                 .iter()
                 .filter(|finding| !self.allowed.contains(&finding.rule))
                 .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
@@ -147,25 +161,25 @@ impl Grader {
                 lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{told}")));
             }
         }
-        Ok(lost)
+        Ok(Read { refused: lost, may_remember })
+    }
+
+    /// What the syntax check reads in a file; `None` if it broke.
+    fn reading(&self, text: &str) -> Result<Option<Reading>> {
+        let mut command = Jail::with(self.walls, Purpose::Reader).command(&own_program()?);
+        command.arg(LINT_WORD);
+        let ended = jail::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
+            .context("the syntax check cannot be started")?;
+        if ended.how != How::Exited(0) {
+            return Ok(None);
+        }
+        Ok(Some(serde_json::from_slice(&ended.stdout).context("the syntax check gave no answer")?))
     }
 }
 
 /// A remark that can be printed: names of files may hold anything.
 fn cleaned(remark: Remark) -> Remark {
     Remark { file: clean_line(&remark.file, 256), what: clean(&remark.what, 4096) }
-}
-
-/// What the syntax check finds; `None` if it broke.
-fn findings(text: &str) -> Result<Option<Vec<Finding>>> {
-    let mut command = Jail::new(Purpose::Reader).command(&own_program()?);
-    command.arg(LINT_WORD);
-    let ended = jail::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
-        .context("the syntax check cannot be started")?;
-    if ended.how != How::Exited(0) {
-        return Ok(None);
-    }
-    Ok(Some(serde_json::from_slice(&ended.stdout).context("the syntax check gave no answer")?))
 }
 
 /// With this word for its first argument the program checks what it reads.
@@ -176,7 +190,7 @@ pub fn lint_if_asked() {
     if std::env::args().nth(1).as_deref() == Some(LINT_WORD) {
         let mut text = String::new();
         let read = std::io::Read::read_to_string(&mut std::io::stdin(), &mut text);
-        let found = lint::findings(&text);
+        let found = lint::read(&text);
         match (read, serde_json::to_string(&found)) {
             (Ok(_), Ok(json)) => println!("{json}"),
             _ => std::process::exit(1),

@@ -18,6 +18,16 @@ pub struct Finding {
     pub why: String,
 }
 
+/// What a file says.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Reading {
+    /// What no exercise needs.
+    pub findings: Vec<Finding>,
+    /// Whether a function may remember, from one call to the next, what it was asked. Of what the findings leave, only
+    /// statics and variables of threads can.
+    pub may_remember: bool,
+}
+
 /// Modules of the standard library that no exercise needs, by rule.
 const MODULES: [(&str, &str, &str); 12] = [
     ("process", "process", "an exercise starts and ends no processes"),
@@ -64,15 +74,34 @@ const ATTRIBUTES: [(&str, &str, &str); 14] = [
     ("linkage", "long_running_const_eval", "what never ends while compiling is stopped early with this lint"),
 ];
 
-/// Everything in a file that no exercise needs, in the order of its lines.
-pub fn findings(text: &str) -> Vec<Finding> {
+/// Everything in a file that no exercise needs, in the order of its lines, and what it may remember.
+pub fn read(text: &str) -> Reading {
     // Tokens that do not match up are the compiler's to explain.
-    let Ok(tokens) = TokenStream::from_str(text) else { return Vec::new() };
+    let Ok(tokens) = TokenStream::from_str(text) else {
+        return Reading { findings: Vec::new(), may_remember: true };
+    };
     let mut findings = Vec::new();
-    look(tokens, &mut findings);
+    look(tokens.clone(), &mut findings);
     findings.sort_by_key(|finding| finding.line);
     findings.dedup();
-    findings
+    Reading { findings, may_remember: keeps(tokens) }
+}
+
+/// Whether there is a static, or a variable of a thread. `'static` is a lifetime.
+fn keeps(tokens: TokenStream) -> bool {
+    let mut after_tick = false;
+    tokens.into_iter().any(|token| {
+        let found = match &token {
+            TokenTree::Ident(word) => {
+                let word = plain(word);
+                word == "thread_local" || word == "static" && !after_tick
+            }
+            TokenTree::Group(group) => keeps(group.stream()),
+            _ => false,
+        };
+        after_tick = is(Some(&token), '\'');
+        found
+    })
 }
 
 fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
@@ -185,10 +214,10 @@ fn is(token: Option<&TokenTree>, mark: char) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::findings;
+    use super::read;
 
     fn rules(text: &str) -> Vec<(String, usize)> {
-        findings(text).into_iter().map(|finding| (finding.rule, finding.line)).collect()
+        read(text).findings.into_iter().map(|finding| (finding.rule, finding.line)).collect()
     }
 
     #[test]
@@ -220,6 +249,27 @@ mod tests {
         ];
         for (text, rule, line) in cases {
             assert!(rules(text).contains(&(rule.into(), line)), "{text}: {:?}", rules(text));
+        }
+    }
+
+    #[test]
+    fn what_may_remember_is_seen() {
+        for remembers in [
+            "static CALLS: AtomicU32 = AtomicU32::new(0);",
+            "fn f() { static mut N: u32 = 0; }",
+            "std::thread_local! { pub static X: u8 = 1 }",
+            "macro_rules! m { () => { static A: u8 = 1; } }",
+            "fn f<'a>(x: &'a u8) { { static A: u8 = 1; } }",
+            "fn broken( {",
+        ] {
+            assert!(read(remembers).may_remember, "{remembers}");
+        }
+        for forgets in [
+            "const NAMES: &'static str = \"static\"; // static",
+            "fn f<T: 'static>(x: &'static T) {}",
+            "fn f() { let r#statics = 1; }",
+        ] {
+            assert!(!read(forgets).may_remember, "{forgets}");
         }
     }
 

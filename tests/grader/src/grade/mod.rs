@@ -17,27 +17,23 @@ mod sanity;
 mod siege;
 mod store;
 mod submission;
+mod terms;
 
 pub use class::{Grader, lint_if_asked};
 pub use one::{Options as OneOptions, run as one};
 pub use rehearsal::{Options as RehearsalOptions, run as rehearse};
 pub use siege::{Options as AttackOptions, run as attack};
+pub(crate) use terms::{draw_seed, stages};
 
-use crate::{jail, queue};
-use anyhow::{Context, Result, bail, ensure};
-use checks::STAGES;
+use crate::queue;
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use forge::Forge;
-use jail::{Jail, Purpose};
-use judge::Judge;
-use result::{Graded, Session};
+use result::Graded;
 use sha2::{Digest, Sha256};
-use std::fs;
-use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use store::Store;
 use submission::Submission;
+use terms::Terms;
 
 /// Grade a folder of submissions.
 #[derive(Args)]
@@ -50,46 +46,14 @@ pub struct Options {
     /// How many submissions are graded at a time; one a core if not given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// The stages, as `3`, `1-4` or `1-4,10`; all if not given.
-    #[arg(long, value_parser = stages)]
-    stages: Option<Stages>,
     /// Only part I of N of the class, as `2/8`; `raykata merge` puts parts together. Needs --seed.
     #[arg(long, value_parser = shard, requires = "seed")]
     shard: Option<Shard>,
     /// Go on with the grades in the folder: only what is new or has changed is graded.
     #[arg(long)]
     resume: bool,
-    /// Picks the hidden inputs; drawn at random if not given, and the same for all students.
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Rules of the syntax check that do not apply, as a refusal names them.
-    #[arg(long, value_delimiter = ',')]
-    allow: Vec<String>,
-    /// Grade even where submissions cannot be contained. They can then do what you can.
-    #[arg(long)]
-    insecure: bool,
-}
-
-/// Numbers of stages, in order.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Stages(Vec<u8>);
-
-/// As people write them.
-pub(crate) fn stages(text: &str) -> Result<Stages> {
-    let number =
-        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is no number of a stage"));
-    let mut stages = Vec::new();
-    for part in text.split(',') {
-        let (first, last) = part.split_once('-').unwrap_or((part, part));
-        stages.extend(number(first)?..=number(last)?);
-    }
-    stages.sort_unstable();
-    stages.dedup();
-    ensure!(!stages.is_empty(), "`{text}` names no stage");
-    for stage in &stages {
-        ensure!(STAGES.iter().any(|(number, _)| number == stage), "there is no stage {stage}");
-    }
-    Ok(Stages(stages))
+    #[command(flatten)]
+    terms: Terms,
 }
 
 /// A part of a class.
@@ -117,7 +81,6 @@ impl Shard {
 
 /// `Ok(true)` if every submission could be graded, whatever its grade is.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    let isolation = isolation(options.insecure)?;
     let (submissions, others) = submission::find(&options.submissions)
         .with_context(|| format!("cannot read the folder {}", options.submissions.display()))?;
     for other in others {
@@ -127,15 +90,17 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
     crate::report::make_folder(&options.out)?;
-    let forge = Forge::prepare(root)?;
     let store = Store::open(&options.out)?;
-    let session = session(root, options, &store, &forge, isolation)?;
+    let begun = store.session()?;
+    ensure!(
+        begun.is_none() || options.resume,
+        "{} holds grades already: --resume goes on with them, or choose another folder",
+        options.out.display()
+    );
+    let (grader, session) = options.terms.begin(root, begun.as_ref())?;
     store.begin(&session)?;
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     store.retain(&names)?;
-    let judge =
-        Judge::of(&session.stages, session.seed, (!options.insecure).then(|| Jail::new(Purpose::Worker)))?;
-    let grader = Grader { forge: Arc::new(forge), judge: Arc::new(judge), allowed: options.allow.clone() };
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;
@@ -167,85 +132,12 @@ fn finish(store: &Store, out: &Path) -> Result<bool> {
     Ok(troubled.is_empty())
 }
 
-/// What contains the submissions, in a line for the reports.
-fn isolation(insecure: bool) -> Result<String> {
-    match jail::self_test() {
-        Ok(level) => Ok(level.to_string()),
-        Err(error) if insecure => {
-            eprintln!("warning: submissions are not contained: {error:#}");
-            Ok("none, on the word of the instructor (--insecure)".into())
-        }
-        Err(error) => Err(error.context(
-            "submissions cannot be contained here, so none is run (--insecure runs them all the same, with your rights)",
-        )),
-    }
-}
-
-/// How the class is graded: as it was begun, or as the options say.
-fn session(
-    root: &Path,
-    options: &Options,
-    store: &Store,
-    forge: &Forge,
-    isolation: String,
-) -> Result<Session> {
-    let begun = store.session()?;
-    if begun.is_some() && !options.resume {
-        bail!(
-            "{} holds grades already: --resume goes on with them, or choose another folder",
-            options.out.display()
-        );
-    }
-    let seed = options.seed.or(begun.as_ref().map(|session| session.seed));
-    let stages = match (&options.stages, &begun) {
-        (Some(Stages(stages)), _) => stages.clone(),
-        (None, Some(session)) => session.stages.clone(),
-        (None, None) => all_stages(),
-    };
-    let seed = seed.unwrap_or_else(draw_seed);
-    Ok(Session { kit: kit(root, &options.allow, forge)?, stages, seed, isolation })
-}
-
-fn all_stages() -> Vec<u8> {
-    STAGES.iter().map(|(number, _)| *number).collect()
-}
-
-/// A seed that nobody knows: the standard library draws keys for its tables at random.
-pub(crate) fn draw_seed() -> u64 {
-    RandomState::new().hash_one("seed")
-}
-
-/// Version of the kit, with a fingerprint of all that decides a grade.
-fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
-    let mut hash = Sha256::new();
-    hash.update(forge.fingerprint());
-    hash.update(allow.join(","));
-    let mut waiting =
-        vec![root.join("tests/checks/src"), root.join("tests/golden"), root.join("tests/rubric.toml")];
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            let mut inside: Vec<PathBuf> =
-                fs::read_dir(&path)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
-            inside.sort();
-            waiting.extend(inside);
-        } else {
-            hash.update(fs::read(&path).with_context(|| path.display().to_string())?);
-        }
-    }
-    Ok(format!("{} ({})", env!("CARGO_PKG_VERSION"), &forge::hex(&hash.finalize())[..12]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn stages_and_parts_are_read_as_people_write_them() {
-        assert_eq!(stages("1-4,10").unwrap(), Stages(vec![1, 2, 3, 4, 10]));
-        assert_eq!(stages("3").unwrap(), Stages(vec![3]));
-        for wrong in ["", "x", "0", "4-2", "1-99"] {
-            assert!(stages(wrong).is_err(), "{wrong}");
-        }
+    fn parts_are_read_as_people_write_them() {
         assert_eq!(shard("2/8").unwrap(), Shard { index: 2, of: 8 });
         for wrong in ["0/8", "9/8", "2", "a/b", "1/0"] {
             assert!(shard(wrong).is_err(), "{wrong}");

@@ -1,10 +1,8 @@
 //! `raykata grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
 
-use super::forge::Forge;
-use super::judge::Judge;
+use super::report;
 use super::result::{Graded, Session};
-use super::{Grader, Stages, all_stages, draw_seed, isolation, kit, report, stages};
-use crate::jail::{Jail, Purpose};
+use super::terms::Terms;
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use raykata::film::write_atomically;
@@ -13,7 +11,6 @@ use std::any::Any;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Which submission, and for whom.
 #[derive(Args)]
@@ -27,18 +24,8 @@ pub struct Options {
     /// Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.
     #[arg(long, value_name = "FILE")]
     classroom: Option<PathBuf>,
-    /// The stages, as `3`, `1-4` or `1-4,10`; all if not given.
-    #[arg(long, value_parser = stages)]
-    stages: Option<Stages>,
-    /// Picks the hidden inputs; drawn at random if not given, which is not fair to a class.
-    #[arg(long)]
-    seed: Option<u64>,
-    /// Rules of the syntax check that do not apply, as a refusal names them.
-    #[arg(long, value_delimiter = ',')]
-    allow: Vec<String>,
-    /// Grade even where submissions cannot be contained. They can then do what you can.
-    #[arg(long)]
-    insecure: bool,
+    #[command(flatten)]
+    terms: Terms,
 }
 
 /// Grades, and writes what came of it, whatever breaks. `Ok(true)` if the submission could be graded.
@@ -64,14 +51,7 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<
 }
 
 fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
-    let isolation = isolation(options.insecure)?;
-    let forge = Forge::prepare(root)?;
-    let seed = options.seed.unwrap_or_else(draw_seed);
-    let stages = options.stages.as_ref().map_or_else(all_stages, |Stages(stages)| stages.clone());
-    let session = Session { kit: kit(root, &options.allow, &forge)?, stages, seed, isolation };
-    let jail = (!options.insecure).then(|| Jail::new(Purpose::Worker));
-    let judge = Judge::of(&session.stages, seed, jail)?;
-    let grader = Grader { forge: Arc::new(forge), judge: Arc::new(judge), allowed: options.allow.clone() };
+    let (grader, session) = options.terms.begin(root, None)?;
     let graded = grader.grade("submission", grader.take(&options.submission))?;
     Ok((graded, session))
 }
@@ -90,7 +70,7 @@ fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
         stages: Vec::new(),
-        seed: options.seed.unwrap_or_default(),
+        seed: options.terms.seed.unwrap_or_default(),
         isolation: String::new(),
     };
     (graded, session)

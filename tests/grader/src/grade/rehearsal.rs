@@ -1,9 +1,11 @@
 //! `raykata rehearse`: a class that is made up of what is known (right ways and mistakes of the corpus, attacks, files that
 //! nobody has begun) is graded, and every grade is compared with what it must be.
 
+use super::Options as GradeOptions;
 use super::attacks::{self, Attack, Place};
 use super::result::{Class, Graded, Outcome};
-use super::{Options as GradeOptions, Stages, store::Store};
+use super::store::Store;
+use super::terms::{Stages, Terms};
 use crate::corpus::entry::{self, Claim, Entry};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
@@ -89,12 +91,9 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         submissions: class.to_owned(),
         out: out.to_owned(),
         jobs: options.jobs,
-        stages: Some(Stages(STAGES_OF_CLASS.to_vec())),
         shard: None,
         resume: false,
-        seed: None,
-        allow: Vec::new(),
-        insecure: false,
+        terms: Terms { stages: Some(Stages(STAGES_OF_CLASS.to_vec())), ..Terms::default() },
     }
 }
 

@@ -1,10 +1,11 @@
 //! `raykata attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
 
-use super::attacks::{self, Attack};
+use super::attacks::{self, Tried};
 use super::class::Grader;
 use super::forge::Forge;
 use super::judge::Judge;
-use crate::jail::{self, Jail, Purpose};
+use super::result::Outcome;
+use crate::jail::{self, Walls};
 use crate::report::bar_of_steps;
 use anyhow::Result;
 use clap::Args;
@@ -17,7 +18,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Options {
     /// Names of attacks; all if none is given.
     names: Vec<String>,
-    /// Print what each is and what a grader that trusts it makes of it.
+    /// Print, of each attack that was tried on `cargo test`, what that made of it and what this grader does.
     #[arg(long)]
     table: bool,
 }
@@ -29,39 +30,55 @@ const SEED: u64 = 20_26;
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let level = jail::self_test()?;
     println!("contained by {level}");
-    let forge = Arc::new(Forge::prepare(root)?);
+    let forge = Arc::new(Forge::prepare(root, Walls::Closed)?);
     let judges: Mutex<BTreeMap<Vec<u8>, Arc<Judge>>> = Mutex::default();
     let judge = |stages: &[u8]| -> Result<Arc<Judge>> {
         let mut judges = judges.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(judge) = judges.get(stages) {
             return Ok(judge.clone());
         }
-        let judge = Arc::new(Judge::of(stages, SEED, Some(Jail::new(Purpose::Worker)))?);
+        let judge = Arc::new(Judge::of(stages, SEED, Walls::Closed)?);
         judges.insert(stages.to_owned(), judge.clone());
         Ok(judge)
     };
-    let bar = bar_of_steps(attacks::choose(attacks::load(root)?, &options.names)?.len());
-    let tried = attacks::run_all(root, &options.names, |submission, stages, allowed| {
-        let grader = Grader { forge: forge.clone(), judge: judge(stages)?, allowed: allowed.to_owned() };
+    let grade = |submission: &Path, stages: &[u8], allowed: &[String]| {
+        let (forge, judge, allowed) = (forge.clone(), judge(stages)?, allowed.to_owned());
+        let grader = Grader { forge, judge, walls: Walls::Closed, allowed };
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let graded = grader.grade(&student, grader.take(submission));
+        grader.grade(&student, grader.take(submission))
+    };
+    let chosen = attacks::choose(attacks::load(root)?, &options.names)?;
+    let bar = bar_of_steps(chosen.len());
+    let tried = attacks::run_all(root, chosen, grade, |tried| {
+        let told = tried.complaints.iter().map(|complaint| format!("{}: {complaint}", tried.attack.name));
+        bar.suspend(|| told.for_each(|line| println!("{line}")));
         bar.inc(1);
-        graded
     })?;
     bar.finish_and_clear();
     if options.table {
-        tried.iter().for_each(|(attack, _)| println!("{}", row(attack)));
+        println!("| attack | `cargo test` | this grader |\n|---|---|---|");
+        tried.iter().filter_map(row).for_each(|row| println!("{row}"));
     }
-    let repelled = tried.iter().filter(|(_, complaints)| complaints.is_empty()).count();
-    for (attack, complaints) in &tried {
-        for complaint in complaints {
-            println!("{}: {complaint}", attack.name);
-        }
-    }
+    let repelled = tried.iter().filter(|tried| tried.complaints.is_empty()).count();
     println!("{repelled} of {} attacks got what they should", tried.len());
     Ok(repelled == tried.len())
 }
 
-fn row(attack: &Attack) -> String {
-    format!("| {} | {} |", attack.title, attack.naive.as_deref().unwrap_or("-"))
+fn row(tried: &Tried) -> Option<String> {
+    let naive = tried.attack.naive.as_ref()?;
+    let ours = match &tried.graded {
+        Err(error) => format!("gave up: {error:#}"),
+        Ok(graded) if !graded.trouble.is_empty() => format!("not graded: {}", graded.trouble),
+        Ok(graded) => {
+            let (earned, of) = graded.points();
+            let count = |outcome| graded.checks.iter().filter(|check| check.outcome == outcome).count();
+            let others = Outcome::ALL.into_iter().filter(|outcome| *outcome != Outcome::Passed);
+            let others: Vec<String> = others
+                .filter(|outcome| count(*outcome) > 0)
+                .map(|outcome| format!(", {} {}", count(outcome), outcome.words()))
+                .collect();
+            format!("{earned} of {of} points{}", others.concat())
+        }
+    };
+    Some(format!("| {} | {naive} | {} |", tried.attack.title, ours.replace(['\n', '|'], " ")))
 }

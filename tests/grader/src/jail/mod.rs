@@ -121,11 +121,37 @@ impl Purpose {
     }
 }
 
+/// How closed a jail is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Walls {
+    /// Nothing gets through that is not allowed, or nothing runs.
+    Closed,
+    /// On the instructor's own word, where the kernel has no walls: limits on resources hold, files, networks and other
+    /// processes are open.
+    Open,
+}
+
+impl Walls {
+    fn word(self) -> &'static str {
+        match self {
+            Walls::Closed => "closed",
+            Walls::Open => "open",
+        }
+    }
+
+    #[cfg(target_os = "linux")]
+    fn of_word(word: &std::ffi::OsStr) -> Option<Walls> {
+        [Walls::Closed, Walls::Open].into_iter().find(|walls| word == walls.word())
+    }
+}
+
 /// Walls around a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Jail {
     /// What it is for.
     pub purpose: Purpose,
+    /// How closed it is.
+    pub walls: Walls,
     /// What it may use.
     pub limits: Limits,
     /// Files and folders that it may read, besides itself and the libraries of the system.
@@ -136,9 +162,14 @@ pub struct Jail {
 }
 
 impl Jail {
-    /// With the usual limits, and nothing to read or write.
+    /// Closed, with the usual limits, and nothing to read or write.
     pub fn new(purpose: Purpose) -> Jail {
-        Jail { purpose, limits: purpose.limits(), readable: vec![], writable: vec![] }
+        Jail::with(Walls::Closed, purpose)
+    }
+
+    /// The same with other walls.
+    pub fn with(walls: Walls, purpose: Purpose) -> Jail {
+        Jail { purpose, walls, limits: purpose.limits(), readable: vec![], writable: vec![] }
     }
 
     /// The command that runs `program` in here. Its environment is empty, but for where a linker looks for tools and
@@ -146,7 +177,7 @@ impl Jail {
     pub fn command(&self, program: &Path) -> Command {
         let limits = &self.limits;
         let mut command = Command::new(launcher());
-        command.arg(LAUNCH).arg(self.purpose.word()).arg(std::process::id().to_string());
+        command.args([LAUNCH, self.walls.word(), self.purpose.word()]).arg(std::process::id().to_string());
         for limit in
             [limits.cpu_seconds, limits.memory_bytes, limits.file_bytes, limits.open_files, limits.processes]
         {
@@ -173,9 +204,9 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Where the processor time is among the arguments of a launcher; 1 and 2 are the purpose and the parent.
+/// Where the processor time is among the arguments of a launcher; before it come walls, purpose and parent.
 #[cfg(target_os = "linux")]
-const CPU_SECONDS_AT: usize = 3;
+const CPU_SECONDS_AT: usize = 4;
 
 static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
 

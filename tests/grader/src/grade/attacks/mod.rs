@@ -15,7 +15,7 @@ mod step;
 mod verdict;
 
 pub use make::{CANARY, Place, make};
-pub use run::run_all;
+pub use run::{Tried, run_all};
 pub use verdict::{Earned, Expectation, complaints};
 
 use anyhow::{Context, Result, ensure};

@@ -1,6 +1,6 @@
 //! Hands all attacks to a grader.
 
-use super::{Attack, Expectation, Place, choose, complaints, load, make};
+use super::{Attack, Expectation, Place, complaints, make};
 use crate::grade::result::Graded;
 use crate::queue;
 use anyhow::{Context, Result};
@@ -11,21 +11,34 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Makes the attacks of these names, all if none is named, hands each to `grade` (submission, stages, rules of the syntax
-/// check that are switched off), and says what is not as it must be. Those that also name what must come of them without
-/// the syntax check are graded twice.
+/// An attack, and what came of it.
+pub struct Tried {
+    /// The attack.
+    pub attack: Attack,
+    /// Its grade with everything switched on; the error if the grader gave up.
+    pub graded: Result<Graded>,
+    /// What is not as it must be, a sentence each.
+    pub complaints: Vec<String>,
+}
+
+/// Makes these attacks, hands each to `grade` (submission, stages, rules of the syntax check that are switched off), and
+/// tells `done` of each. Those that also name what must come of them without the syntax check are graded twice. The
+/// result is sorted by name.
 pub fn run_all(
     root: &Path,
-    names: &[String],
+    mut attacks: Vec<Attack>,
     grade: impl Fn(&Path, &[u8], &[String]) -> Result<Graded> + Sync,
-) -> Result<Vec<(Attack, Vec<String>)>> {
+    done: impl Fn(&Tried) + Sync,
+) -> Result<Vec<Tried>> {
     let root = root.canonicalize().with_context(|| root.display().to_string())?;
-    let mut attacks = choose(load(&root)?, names)?;
     // The longest first, or everybody waits for the last one.
     attacks.sort_by_key(|attack| Reverse(attack.most_seconds));
-    let complaints = queue::run(&queue::one_a_core(), &attacks, |(), attack| try_one(&root, attack, &grade))?;
-    let mut tried: Vec<(Attack, Vec<String>)> = attacks.into_iter().zip(complaints).collect();
-    tried.sort_by(|(one, _), (other, _)| one.name.cmp(&other.name));
+    let mut tried = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
+        let tried = try_one(&root, attack, &grade)?;
+        done(&tried);
+        Ok(tried)
+    })?;
+    tried.sort_by(|one, other| one.attack.name.cmp(&other.attack.name));
     Ok(tried)
 }
 
@@ -33,29 +46,31 @@ fn try_one(
     root: &Path,
     attack: &Attack,
     grade: &impl Fn(&Path, &[u8], &[String]) -> Result<Graded>,
-) -> Result<Vec<String>> {
+) -> Result<Tried> {
     let folder = tempfile::tempdir()?;
     let submission = make(attack, &Place { root, folder: folder.path() })?;
     let before = fingerprints(folder.path())?;
-    let graded = |expected: &Expectation| {
+    let try_it = |expected: &Expectation| {
         let begin = Instant::now();
-        let mut found = match grade(&submission, &attack.stages, &expected.allow) {
-            Ok(graded) => complaints(&attack.stages, expected, &graded),
+        let graded = grade(&submission, &attack.stages, &expected.allow);
+        let mut found = match &graded {
+            Ok(graded) => complaints(&attack.stages, expected, graded),
             Err(error) => vec![format!("the grader gave up: {error:#}")],
         };
         let seconds = begin.elapsed().as_secs();
         if seconds > attack.most_seconds {
             found.push(format!("it took {seconds} s, and {} should do", attack.most_seconds));
         }
-        found
+        (graded, found)
     };
-    let mut all = graded(&attack.expect);
+    let (graded, mut all) = try_it(&attack.expect);
     if let Some(expected) = &attack.without_lint {
-        all.extend(graded(expected).into_iter().map(|what| format!("without the syntax check: {what}")));
+        let (_, found) = try_it(expected);
+        all.extend(found.into_iter().map(|what| format!("without the syntax check: {what}")));
     }
     let changed = changes(&before, &fingerprints(folder.path())?);
     all.extend(changed.into_iter().map(|path| format!("it changed {}", path.display())));
-    Ok(all)
+    Ok(Tried { attack: attack.clone(), graded, complaints: all })
 }
 
 /// What lies in a folder: kind, size and content of everything, links not followed.
