@@ -46,7 +46,7 @@ fn check(name: &str) -> &'static Check {
 /// The seeds with which `check` rejects `kit`.
 fn rejections(check: &'static Check, kit: &(dyn Kit + Sync)) -> usize {
     let half = |seeds: std::ops::Range<u64>| {
-        seeds.filter(|&seed| (check.law)(&Trial { kit, name: check.name, seed }).is_err()).count()
+        seeds.filter(|&seed| (check.law)(&Trial::new(kit, check.name, seed)).is_err()).count()
     };
     thread::scope(|scope| {
         let first = scope.spawn(move || half(0..SEEDS / 2));

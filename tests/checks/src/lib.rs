@@ -5,6 +5,7 @@
 
 pub mod broken;
 pub mod double;
+mod drawn;
 pub mod exact;
 pub mod gauntlet;
 pub mod generate;
@@ -29,7 +30,8 @@ pub mod tree;
 pub mod trial;
 
 pub use broken::{Broken, Outcome};
-pub use trial::{Check, Trial, Verdict, examine, grade, run, verdict};
+pub use drawn::Drawn;
+pub use trial::{Check, Trial, Verdict, examine, examine_with, grade, run, verdict};
 
 /// All checks of all stages that are built, in order.
 pub const STAGES: &[(u8, &[Check])] = &[

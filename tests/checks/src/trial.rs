@@ -2,10 +2,13 @@
 //! every time.
 
 use crate::broken::{self, Broken, Outcome};
+use crate::drawn::Drawn;
 use crate::rubric;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use raykata::kit::{Kit, Mishap, mishap};
+use std::cell::Cell;
+use std::panic::Location;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
@@ -34,6 +37,10 @@ pub struct Trial<'a> {
     pub name: &'static str,
     /// Picks the random inputs.
     pub seed: u64,
+    /// How often inputs were drawn.
+    draws: Cell<u32>,
+    /// Those that were drawn before.
+    drawn: Option<Arc<Drawn>>,
 }
 
 /// How a check ended.
@@ -52,8 +59,14 @@ pub enum Verdict {
     Failed(String),
 }
 
-impl Trial<'_> {
+impl<'a> Trial<'a> {
+    /// Of `kit` by the check `name`, with the inputs of `seed`.
+    pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
+        Trial { kit, name, seed, draws: Cell::new(0), drawn: None }
+    }
+
     /// Draws `cases` inputs, has `judge` look at all of them at once, and shrinks the first that breaks the law.
+    #[track_caller]
     pub fn forall<S: Strategy>(
         &self,
         cases: usize,
@@ -61,17 +74,14 @@ impl Trial<'_> {
         judge: impl Fn(&[S::Value]) -> Vec<Outcome>,
     ) -> Outcome
     where
-        S::Value: Clone,
+        S::Value: Clone + Send + Sync + 'static,
     {
-        let mut seed = [0; 32];
-        seed[..8].copy_from_slice(&self.seed.to_le_bytes());
-        seed[8..16].copy_from_slice(&fingerprint(self.name).to_le_bytes());
-        let config = Config { failure_persistence: None, ..Config::default() };
-        let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-        let mut runner = TestRunner::new_with_rng(config, random);
-        let mut trees: Vec<S::Tree> = (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).collect();
-
-        let values: Vec<S::Value> = trees.iter().map(ValueTree::current).collect();
+        let draw = || -> Vec<S::Value> { self.draw(cases, &inputs).iter().map(ValueTree::current).collect() };
+        let key = (self.name, self.seed, Location::caller(), self.draws.replace(self.draws.get() + 1));
+        let values = match &self.drawn {
+            Some(drawn) => drawn.get(key, draw),
+            None => Arc::new(draw()),
+        };
         let broken = match mishap::catch(|| judge(&values)) {
             Ok(outcomes) => {
                 outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
@@ -84,10 +94,24 @@ impl Trial<'_> {
         };
         match broken {
             None => Ok(()),
+            // What an input can shrink to is only needed here, so it is drawn again.
             Some((index, broken)) => {
-                Err(shrink(trees.swap_remove(index), broken, |value| judge_one(&judge, &value)))
+                Err(shrink(self.draw(cases, &inputs).swap_remove(index), broken, |value| {
+                    judge_one(&judge, &value)
+                }))
             }
         }
+    }
+
+    /// Inputs with all that they can shrink to: the same whenever it is asked.
+    fn draw<S: Strategy>(&self, cases: usize, inputs: &S) -> Vec<S::Tree> {
+        let mut seed = [0; 32];
+        seed[..8].copy_from_slice(&self.seed.to_le_bytes());
+        seed[8..16].copy_from_slice(&fingerprint(self.name).to_le_bytes());
+        let config = Config { failure_persistence: None, ..Config::default() };
+        let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
+        let mut runner = TestRunner::new_with_rng(config, random);
+        (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).collect()
     }
 }
 
@@ -137,6 +161,16 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
 
 /// Whether the law holds, or why nobody can say.
 pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, Mishap> {
+    examine_with(check, kit, seed, None)
+}
+
+/// The same with inputs that may have been `drawn` before.
+pub fn examine_with(
+    check: &Check,
+    kit: &Arc<dyn Kit + Send + Sync>,
+    seed: u64,
+    drawn: Option<Arc<Drawn>>,
+) -> Result<Outcome, Mishap> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
     // The thread is left behind if it hangs: it ends with the process.
@@ -144,7 +178,7 @@ pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Re
         .name(check.name.into())
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
-            let trial = Trial { kit: &*kit, name: check.name, seed };
+            let trial = Trial { drawn, ..Trial::new(&*kit, check.name, seed) };
             let _ = send.send(mishap::catch(|| (check.law)(&trial)));
         });
     if let Err(error) = spawned {
@@ -197,7 +231,7 @@ mod tests {
                 mishap::unwind(Mishap::Crashed { how: "nobody is there".into() })
             }
         }
-        check(&Trial { kit: &raykata::kit::Door(Silent), name: "a_check", seed: 1 })
+        check(&Trial::new(&raykata::kit::Door(Silent), "a_check", 1))
     }
 
     fn refuse_above(limit: i32) -> impl Fn(&[i32]) -> Vec<Outcome> {

@@ -8,7 +8,7 @@ use crate::queue;
 use crate::worker::Worker;
 use anyhow::{Result, ensure};
 use checks::rubric;
-use checks::{Check, STAGES, Verdict};
+use checks::{Check, Drawn, STAGES, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
 use sha2::{Digest, Sha256};
@@ -41,6 +41,8 @@ pub struct Judge {
     seed: u64,
     /// Between a worker and the machine.
     walls: Walls,
+    /// The inputs of all checks, which are the same for all submissions.
+    drawn: Arc<Drawn>,
 }
 
 /// A check, and what is known of it from putting it to the reference.
@@ -72,7 +74,7 @@ impl Judge {
             Ok(Put { check, hides: passes_hidden && known != hidden, asks })
         };
         let checks = queue::run(&queue::one_a_core(), &checks, hides)?;
-        Ok(Judge { checks, seed, walls })
+        Ok(Judge { checks, seed, walls, drawn: Arc::default() })
     }
 
     /// Puts all checks to the program `worker`; those of the files in `replaced` have their outcome already.
@@ -144,12 +146,13 @@ impl Judge {
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
         // With the inputs that students have, so that they can see again what they are told.
-        let known = checks::examine(check, &kit, 0);
+        let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
+        let known = examine(0);
         let mut special = false;
         let (outcome, message) = match outcome(&known) {
             Outcome::Passed if !put.hides => (Outcome::Passed, String::new()),
             Outcome::Passed => {
-                let hidden = outcome(&checks::examine(check, &kit, self.seed));
+                let hidden = outcome(&examine(self.seed));
                 match hidden {
                     Outcome::Wrong | Outcome::NotWritten => {
                         let seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
