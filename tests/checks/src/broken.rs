@@ -19,7 +19,14 @@ pub struct Broken {
     pub source: &'static str,
     /// The mistake that makes just this answer, if it is a known one.
     pub diagnosis: Option<String>,
+    /// Reference, yours and difference side by side, as a PNG file, if pictures were compared by somebody who
+    /// [writes nothing](crate::golden::seal).
+    pub picture: Option<Box<Png>>,
 }
+
+/// The bytes of a PNG file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Png(pub Vec<u8>);
 
 impl Broken {
     /// `yours` came back for `input` where `expected` should have, according to `source`.
@@ -45,6 +52,7 @@ impl Broken {
             expected: expected.into(),
             source,
             diagnosis: None,
+            picture: None,
         }
     }
 

@@ -3,7 +3,7 @@
 //! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Up to the stated
 //! share of pixels may differ, because correct methods round differently along outlines; the rest may not.
 
-use crate::broken::{Broken, Outcome};
+use crate::broken::{Broken, Outcome, Png};
 use crate::golden as golden_texts;
 use crate::paste::Paste;
 use glam::Vec3;
@@ -11,6 +11,7 @@ use image::RgbImage;
 use raykata::camera::Camera;
 use raykata::film::{Film, write_atomically};
 use raykata::ray::Ray;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 /// How far a channel may be off: four steps of a screen that shows 6 bits.
@@ -76,16 +77,17 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
     }
     let worst = (0..off.len()).max_by_key(|&pixel| off[pixel]).unwrap_or(0);
     let (x, y) = (worst as u32 % film.width, worst as u32 / film.width);
-    let side_by_side = match golden_texts::is_sealed() {
-        true => String::new(),
-        false => write_side_by_side(name, &yours.rgb, &golden, film.width, film.height),
+    let wide = side_by_side(&yours.rgb, &golden);
+    let (picture, written) = match golden_texts::is_sealed() {
+        true => (png(&wide).ok().map(|bytes| Box::new(Png(bytes))), String::new()),
+        false => (None, write_side_by_side(name, &wide)),
     };
     let not_a_number = match yours.not_a_number {
         0 => String::new(),
         n => format!(", and {n} are not numbers"),
     };
-    Err(Broken::told(
-        format!("{input}\n{side_by_side}the ray of the worst pixel: {}", rays[worst].paste()),
+    let broken = Broken::told(
+        format!("{input}\n{written}the ray of the worst pixel: {}", rays[worst].paste()),
         format!(
             "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
             off.len(),
@@ -93,7 +95,8 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
         ),
         format!("at most {:.0} differ; there: {:?}", may_differ * off.len() as f64, linear(&golden, x, y)),
         "the golden picture",
-    ))
+    );
+    Err(Broken { picture, ..broken })
 }
 
 fn gamma(linear: f32) -> u8 {
@@ -104,10 +107,9 @@ fn linear(picture: &RgbImage, x: u32, y: u32) -> Vec3 {
     Vec3::from_array(picture.get_pixel(x, y).0.map(|byte| (f32::from(byte) / 255.0).powi(2)))
 }
 
-/// Writes reference | yours | difference as one picture and says where.
-fn write_side_by_side(name: &str, yours: &[u8], golden: &RgbImage, width: u32, height: u32) -> String {
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../out"));
-    let file = folder.join(format!("{name}.png"));
+/// Reference | yours | difference.
+fn side_by_side(yours: &[u8], golden: &RgbImage) -> RgbImage {
+    let (width, height) = golden.dimensions();
     let mut wide = RgbImage::new(3 * width + 8, height);
     for y in 0..height {
         for x in 0..width {
@@ -121,11 +123,23 @@ fn write_side_by_side(name: &str, yours: &[u8], golden: &RgbImage, width: u32, h
             }
         }
     }
-    let written = std::fs::create_dir_all(&folder).and_then(|()| {
-        write_atomically(&file, |out| {
-            let encoder = image::codecs::png::PngEncoder::new(out);
-            wide.write_with_encoder(encoder).map_err(std::io::Error::other)
-        })
+    wide
+}
+
+fn png(picture: &RgbImage) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    picture.write_with_encoder(encoder).map_err(io::Error::other)?;
+    Ok(bytes)
+}
+
+/// Writes the pictures side by side and says where.
+fn write_side_by_side(name: &str, wide: &RgbImage) -> String {
+    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../out"));
+    let file = folder.join(format!("{name}.png"));
+    let written = png(wide).and_then(|bytes| {
+        std::fs::create_dir_all(&folder)?;
+        write_atomically(&file, |out| out.write_all(&bytes))
     });
     match written {
         Ok(()) => format!("reference | yours | difference: out/{name}.png\n"),

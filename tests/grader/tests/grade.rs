@@ -8,7 +8,7 @@ use grader::sync;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 const SEED: &str = "11";
 
@@ -162,6 +162,41 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
         &fs::read_to_string(root().unwrap().join("exercises/src/stage1_shapes.rs")).unwrap(),
     );
     assert_eq!(files(class.path()), handed_in, "a submission was changed");
+}
+
+/// Cargo takes files of one age for the same, and a target folder that two share then holds the program of the other.
+#[test]
+fn submissions_of_one_age_are_not_taken_for_each_other() {
+    let (class, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let right = right();
+    let wrong = right.replace(
+        "pub fn plane(",
+        "pub fn plane(_: &Ray, _: Vec3, _: Vec3) -> Option<f32> {\n    None\n}\n\nfn unused(",
+    );
+    assert_ne!(right, wrong);
+    // Before and behind each other, whichever comes first.
+    for (student, text) in [("a", &right), ("b", &wrong), ("c", &right), ("d", &wrong)] {
+        hand_in(class.path(), student, text);
+        let file = class.path().join(student).join("exercises/src/stage1_shapes.rs");
+        fs::File::options().append(true).open(file).unwrap().set_modified(SystemTime::UNIX_EPOCH).unwrap();
+    }
+    done(grade(class.path(), out.path(), &["--jobs", "1"]));
+    let points: Vec<u32> = points(out.path()).into_iter().map(|(_, points)| points).collect();
+    assert!(points[1] < points[0] && points[1] > 0, "{points:?}");
+    assert_eq!(points, [points[0], points[1], points[0], points[1]]);
+
+    // What submissions are compiled against: whatever lies beside it can be linked.
+    let folders = fs::read_dir(root().unwrap().join("target/grade")).unwrap();
+    let folders = folders.map(|entry| entry.unwrap().path());
+    let libraries: Vec<PathBuf> = folders
+        .filter(|path| path.file_name().unwrap().to_string_lossy().starts_with("libraries-"))
+        .flat_map(|folder| files(&folder).into_iter().map(|(file, _)| file))
+        .collect();
+    assert!(libraries.iter().any(|file| file.ends_with("libraykata.rlib")), "{libraries:?}");
+    for secret in ["solutions", "exercises", "checks", "grader"] {
+        let named = |file: &&PathBuf| file.file_name().unwrap().to_string_lossy().contains(secret);
+        assert_eq!(libraries.iter().find(named), None);
+    }
 }
 
 #[test]

@@ -1,14 +1,16 @@
 //! The verdict on a submission: the laws are put to its worker, over a pipe, by a process that holds no code of it.
 
-use super::result::{CheckResult, Outcome};
+use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
 use crate::jail::{Jail, Purpose, Walls};
 use crate::queue;
 use crate::worker::Worker;
 use anyhow::{Result, ensure};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric;
-use checks::{Check, Drawn, STAGES, Verdict};
+use checks::{Broken, Check, Drawn, STAGES, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
 use sha2::{Digest, Sha256};
@@ -54,8 +56,20 @@ struct Put {
     asks: HashSet<Discriminant<Request>>,
 }
 
-/// What came of a check, what is told about it, and whether the known inputs are the only ones on which it is right.
-type Answered = (Outcome, String, bool);
+/// What came of a check.
+struct Answered {
+    outcome: Outcome,
+    message: String,
+    picture: Option<Picture>,
+    /// Whether the known inputs are the only ones on which it is right.
+    special: bool,
+}
+
+impl Answered {
+    fn new(outcome: Outcome, message: impl Into<String>) -> Answered {
+        Answered { outcome, message: message.into(), picture: None, special: false }
+    }
+}
 
 impl Judge {
     /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
@@ -95,45 +109,48 @@ impl Judge {
         let mut seasoned: Option<Arc<Worker>> = None;
         let until = Instant::now() + BUDGET;
         let mut by_heart = HashSet::new();
-        let judged: Vec<(Outcome, String)> = self
+        let judged: Vec<Answered> = self
             .checks
             .iter()
             .map(|put| {
                 let asked = seasoned.take().map(|worker| (self.ask(put, worker.clone(), until), worker));
                 // Nothing that was asked before makes an exercise empty, or a call endless.
                 let settled = |asked: &(Answered, Arc<Worker>)| {
-                    matches!(asked.0.0, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
+                    matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
                 };
-                let ((outcome, message, special), worker) = asked.filter(settled).unwrap_or_else(|| {
+                let (answered, worker) = asked.filter(settled).unwrap_or_else(|| {
                     let worker = fresh();
                     (self.ask(put, worker.clone(), until), worker)
                 });
                 // Behind a check that has not come to an end its thread may still ask.
-                let alone = outcome != Outcome::TooLong;
+                let alone = answered.outcome != Outcome::TooLong;
                 seasoned = (alone && !may_remember).then_some(worker);
                 // A check of several functions does not say which of them it was.
-                if special && put.asks.len() == 1 {
+                if answered.special && put.asks.len() == 1 {
                     by_heart.extend(&put.asks);
                 }
                 // The empty exercise says which file it is, and why it is empty is known.
-                let mut lost = replaced.iter().filter(|_| outcome == Outcome::NotWritten);
-                let lost = lost.find(|(file, _)| message.contains(file.as_str()));
-                lost.map_or((outcome, message), |(_, lost)| lost.clone())
+                let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
+                let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
+                match lost {
+                    Some((_, (outcome, message))) => Answered::new(*outcome, message),
+                    None => answered,
+                }
             })
             .collect();
-        let results = self.checks.iter().zip(judged).map(|(put, (outcome, message))| {
+        let results = self.checks.iter().zip(judged).map(|(put, answered)| {
             // Whose inputs everybody knows proves nothing of a function that knows its inputs.
-            if outcome == Outcome::Passed && !put.hides && !put.asks.is_disjoint(&by_heart) {
-                return result(put.check, Outcome::WrongOnHidden, &hidden_message(put.check));
+            if answered.outcome == Outcome::Passed && !put.hides && !put.asks.is_disjoint(&by_heart) {
+                return result(put.check, Answered::new(Outcome::WrongOnHidden, hidden_message(put.check)));
             }
-            result(put.check, outcome, &message)
+            result(put.check, answered)
         });
         results.collect()
     }
 
     /// The same outcome for every check.
     pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
-        self.checks.iter().map(|put| result(put.check, outcome, message)).collect()
+        self.checks.iter().map(|put| result(put.check, Answered::new(outcome, message))).collect()
     }
 
     /// Puts one check to a worker.
@@ -141,39 +158,41 @@ impl Judge {
         let check = put.check;
         if Instant::now() > until {
             let message = "not tried: the checks before this one have used up the time of the submission";
-            return (Outcome::NotTried, message.into(), false);
+            return Answered::new(Outcome::NotTried, message);
         }
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
         // With the inputs that students have, so that they can see again what they are told.
         let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
         let known = examine(0);
-        let mut special = false;
-        let (outcome, message) = match outcome(&known) {
-            Outcome::Passed if !put.hides => (Outcome::Passed, String::new()),
-            Outcome::Passed => {
-                let hidden = outcome(&examine(self.seed));
-                match hidden {
-                    Outcome::Wrong | Outcome::NotWritten => {
-                        let seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
-                        special = seeds
-                            .map(|seed| outcome(&checks::examine(check, &kit, seed)))
-                            .all(|outcome| matches!(outcome, Outcome::Wrong | Outcome::NotWritten));
-                        (Outcome::WrongOnHidden, hidden_message(check))
+        let answered = match outcome(&known) {
+            Outcome::Passed if !put.hides => Answered::new(Outcome::Passed, ""),
+            Outcome::Passed => match outcome(&examine(self.seed)) {
+                Outcome::Wrong | Outcome::NotWritten => {
+                    let mut seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
+                    let special = seeds.all(|seed| {
+                        let again = outcome(&checks::examine(check, &kit, seed));
+                        matches!(again, Outcome::Wrong | Outcome::NotWritten)
+                    });
+                    Answered { special, ..Answered::new(Outcome::WrongOnHidden, hidden_message(check)) }
+                }
+                Outcome::Passed => Answered::new(Outcome::Passed, ""),
+                other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
+            },
+            other => {
+                let picture = picture(&known);
+                match checks::verdict(check, known) {
+                    Verdict::Passed => Answered::new(Outcome::Passed, ""),
+                    Verdict::Failed(message) => Answered { picture, ..Answered::new(other, message) },
+                    Verdict::NotWritten { task, place } => {
+                        Answered::new(other, format!("not written yet: {place}\n  {task}"))
                     }
-                    Outcome::Passed => (Outcome::Passed, String::new()),
-                    other => (other, format!("{}\n  on hidden inputs", other.words())),
                 }
             }
-            other => match checks::verdict(check, known) {
-                Verdict::Passed => (Outcome::Passed, String::new()),
-                Verdict::Failed(message) => (other, message),
-                Verdict::NotWritten { task, place } => (other, format!("not written yet: {place}\n  {task}")),
-            },
         };
         // A check that hangs is left behind on a thread of its own: without answers it comes to an end.
         over.store(true, Ordering::Relaxed);
-        (outcome, message, special)
+        answered
     }
 }
 
@@ -194,19 +213,19 @@ fn outcome(examined: &Result<checks::Outcome, Mishap>) -> Outcome {
     }
 }
 
-fn result(check: &Check, outcome: Outcome, message: &str) -> CheckResult {
+/// What was compared, where pictures were.
+fn picture(examined: &Result<checks::Outcome, Mishap>) -> Option<Picture> {
+    let Ok(Err(Broken { picture: Some(png), .. })) = examined else { return None };
+    let caption = "reference | yours | four times the difference".into();
+    Some(Picture { caption, png: BASE64.encode(&png.0) })
+}
+
+fn result(check: &Check, answered: Answered) -> CheckResult {
+    let Answered { outcome, message, picture, .. } = answered;
     let points = rubric::entry(check.stage, check.name).points;
     let earned = if outcome == Outcome::Passed { points } else { 0 };
     let message = clean::clean(message.trim_end(), MOST_SAID);
-    CheckResult {
-        stage: check.stage,
-        name: check.name.into(),
-        outcome,
-        points,
-        earned,
-        message,
-        picture: None,
-    }
+    CheckResult { stage: check.stage, name: check.name.into(), outcome, points, earned, message, picture }
 }
 
 /// What the reference is asked by a check: a fingerprint of the questions, and to which functions; and whether it passes.
