@@ -62,7 +62,8 @@ fn what_is_not_asked_for_is_not_there() {
 fn an_open_file_of_the_judge_is_not_inherited() {
     // A redirection of the shell is not closed on exec, unlike what Rust opens. The shell is the launcher's parent.
     let script = "exec 7</etc/passwd 9</etc/passwd
-        launcher=$1 word=$2 purpose=$3; shift 4; \"$launcher\" \"$word\" \"$purpose\" $$ \"$@\"; exit $?";
+        launcher=$1 word=$2 walls=$3 purpose=$4; shift 5
+        \"$launcher\" \"$word\" \"$walls\" \"$purpose\" $$ \"$@\"; exit $?";
     let jailed = Jail::new(Purpose::Worker).command(&this_program());
     let mut command = Command::new("/bin/sh");
     command.args(["-c", script, "sh"]).arg(jailed.get_program()).args(jailed.get_args());
