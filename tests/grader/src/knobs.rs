@@ -43,6 +43,11 @@ pub struct Knobs {
 }
 
 impl Knobs {
+    /// Whether the picture has a size that somebody asked for.
+    pub fn names_a_size(&self) -> bool {
+        self.size.is_some()
+    }
+
     /// Turns the knobs of the scene that were named.
     pub fn apply(&self, scene: &mut Scene) {
         if let Some((width, height)) = self.size {

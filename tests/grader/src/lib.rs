@@ -6,6 +6,7 @@ pub mod check;
 pub mod compare;
 #[cfg(feature = "author")]
 pub mod corpus;
+pub mod cost;
 pub mod explain;
 #[cfg(feature = "author")]
 #[cfg(target_os = "linux")]

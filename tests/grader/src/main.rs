@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use grader::kits::{Choice, Source, Which, root};
 #[cfg(feature = "author")]
 use grader::{cases, corpus, gaps, gauntlet, generate, handout, jail, mutants, sync};
-use grader::{check, compare, explain, render, strip, tree};
+use grader::{check, compare, cost, explain, render, strip, tree};
 #[cfg(feature = "author")]
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
@@ -35,6 +35,8 @@ enum Command {
     Explain(explain::Options),
     /// Compare the structures that find what rays meet, side by side on one scene.
     Compare(compare::Options),
+    /// Show which knob buys how much accuracy for how much time, and propose the best settings for a time or an error.
+    Cost(cost::Options),
     /// Render a scene at growing depths of recursion, or with each sampler, side by side.
     Strip(strip::Options),
     /// Show the rays behind one pixel, for the first of its samples.
@@ -152,6 +154,7 @@ fn run(cli: Cli) -> Result<bool> {
         Some(Command::Render(options)) => render::run(&options)?,
         Some(Command::Explain(options)) => explain::run(&options)?,
         Some(Command::Compare(options)) => return compare::run(&options),
+        Some(Command::Cost(options)) => return cost::run(&options),
         #[cfg(feature = "author")]
         Some(Command::Gauntlet(options)) => return gauntlet::run(&options),
         Some(Command::Strip(options)) => strip::run(&options)?,

@@ -28,6 +28,14 @@ pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<()> {
     Ok(())
 }
 
+/// Leaks of one row in a million rays, over all meshes and both aims.
+pub fn per_million(row: &Row<'_>, seed: u64, rays: u64) -> f64 {
+    let meshes = closed();
+    let pairs = || meshes.iter().flat_map(|mesh| Aim::ALL.map(|aim| (mesh, aim)));
+    let leaks: u64 = pairs().map(|(mesh, aim)| in_batches(mesh, aim, seed, rays, &row.answer)).sum();
+    1e6 * leaks as f64 / (rays * pairs().count() as u64) as f64
+}
+
 fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> String {
     let cell = |mesh: &Closed| {
         let [edges, vertices] = Aim::ALL.map(|aim| count(mesh, aim));

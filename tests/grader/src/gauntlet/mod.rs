@@ -19,6 +19,7 @@ use glam::Vec3;
 use raykata::kit::{Kit, TriangleQuery, mishap};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
+use serde::Serialize;
 use std::hint::black_box;
 use std::path::PathBuf;
 
@@ -90,6 +91,48 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
         }
     }
     rows
+}
+
+/// A method in three numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// What it is called.
+    pub name: String,
+    /// Of one call, with the answer stored.
+    pub nanoseconds: f64,
+    /// Verdicts that are not the exact one, mean over all distributions.
+    pub wrong_per_million: f64,
+    /// Rays from inside closed meshes, at edges and vertices, that meet nothing.
+    pub leaks_per_million: f64,
+}
+
+/// Inputs of each distribution, and rays at the edges and at the vertices of each mesh, for a [`summary`].
+const INPUTS_OF_SUMMARY: usize = 10_000;
+
+/// All methods and the functions of the kit in short.
+pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
+    const SEED: u64 = 1;
+    let rows = rows(kit);
+    let bar = bar_of_steps(rows.len());
+    bar.set_message("ray/triangle tests");
+    let judged: Vec<Judged> =
+        DISTRIBUTIONS.iter().map(|distribution| judge(distribution, SEED, INPUTS_OF_SUMMARY)).collect();
+    let summaries = rows.into_iter().map(|row| {
+        let wrong = judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs)).wrong);
+        let summary = Summary {
+            nanoseconds: nanoseconds(&judged[0], |inputs| {
+                black_box((row.answer)(black_box(inputs)));
+            }),
+            wrong_per_million: 1e4 * wrong.sum::<f64>() / judged.len() as f64,
+            leaks_per_million: leak_table::per_million(&row, SEED, INPUTS_OF_SUMMARY as u64),
+            name: row.name,
+        };
+        bar.inc(1);
+        summary
+    });
+    let summaries = summaries.collect();
+    bar.finish_and_clear();
+    summaries
 }
 
 fn tables(options: &Options) -> Result<bool> {

@@ -1,0 +1,132 @@
+//! What machines and slides read: JSON, a table with commas, plots.
+
+use super::Told;
+use super::ladder::Knob;
+use super::measure::Series;
+use super::plot::{Line, Plot, svg};
+use super::slope::theory;
+use anyhow::{Context, Result};
+use raykata::film::write_atomically;
+use serde::Serialize;
+use std::io::Write;
+use std::path::Path;
+
+/// A line of the table.
+#[derive(Serialize)]
+struct Row<'a> {
+    knob: &'a str,
+    ladder: &'a str,
+    value: &'a str,
+    rmse: f64,
+    relative_mse: f64,
+    similarity: f64,
+    seconds: f64,
+    spread: f64,
+    rays: u64,
+    box_tests: u64,
+    primitive_tests: u64,
+    unbeaten: bool,
+}
+
+/// Writes `cost.json`, `cost.csv` and the plots into a folder.
+pub fn write(out: &Path, told: &Told<'_>) -> Result<()> {
+    write_whole(&out.join("cost.json"), &serde_json::to_vec_pretty(told)?)?;
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for series in &told.measured.series {
+        for (value, index) in &series.rungs {
+            let point = &told.measured.points[*index];
+            table.serialize(Row {
+                knob: series.knob.name(),
+                ladder: &series.name,
+                value,
+                rmse: point.error(),
+                relative_mse: point.errors.relative_mse,
+                similarity: point.errors.similarity,
+                seconds: point.seconds,
+                spread: point.spread,
+                rays: point.counts.rays(),
+                box_tests: point.counts.box_tests,
+                primitive_tests: point.counts.primitive_tests,
+                unbeaten: told.front.contains(index),
+            })?;
+        }
+    }
+    write_whole(&out.join("cost.csv"), &table.into_inner().context("the table cannot be put together")?)?;
+    for (name, plot) in plots(told) {
+        write_whole(&out.join(name), plot.as_bytes())?;
+    }
+    Ok(())
+}
+
+fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(file, |out| out.write_all(bytes))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
+
+/// File names and pictures: all knobs, and the samplers if they were compared.
+pub fn plots(told: &Told<'_>) -> Vec<(&'static str, String)> {
+    let series = &told.measured.series;
+    let knobs: Vec<&Series> =
+        series.iter().filter(|one| one.knob != Knob::Sampler && !one.knob.is_geometric()).collect();
+    let samplers: Vec<&Series> = series.iter().filter(|one| one.knob == Knob::Sampler).collect();
+    let geometric: Vec<&Series> = series.iter().filter(|one| one.knob.is_geometric()).collect();
+    let mut plots = Vec::new();
+    if !knobs.is_empty() {
+        let title = format!("{}: error over time, one knob turned at a time", told.scene);
+        plots.push(("cost.svg", draw(told, &title, &knobs, Vec::new())));
+    }
+    if !samplers.is_empty() {
+        let title = format!("{}: samplers, 1 to {} samples a pixel", told.scene, most(&samplers));
+        let guides =
+            [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
+        plots.push(("samplers.svg", draw(told, &title, &samplers, guides.to_vec())));
+    }
+    if !geometric.is_empty() {
+        let title = format!("{}: how hits are found", told.scene);
+        plots.push(("geometry.svg", draw(told, &title, &geometric, Vec::new())));
+    }
+    plots
+}
+
+fn most(samplers: &[&Series]) -> String {
+    samplers.first().and_then(|series| series.rungs.last()).map_or(String::new(), |(name, _)| name.clone())
+}
+
+fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
+    let points = &told.measured.points;
+    let line = |one: &&Series| {
+        let slope = told.slopes.iter().find(|(name, _)| *name == one.name);
+        let name = match slope {
+            Some((name, slope)) => format!("{name} ({:.2} ± {:.2})", slope.mean, slope.half_interval),
+            None => one.name.clone(),
+        };
+        let place = |(_, index): &(String, usize)| {
+            let point = &points[*index];
+            let least = point.rmse.iter().copied().fold(f64::INFINITY, f64::min);
+            let greatest = point.rmse.iter().copied().fold(0.0, f64::max);
+            [point.seconds, point.error(), least, greatest]
+        };
+        let mut places: Vec<[f64; 4]> = one.rungs.iter().map(place).collect();
+        if one.knob.is_geometric() {
+            places.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        }
+        Line { name, points: places }
+    };
+    let samplers_only = series.iter().all(|one| one.knob == Knob::Sampler);
+    let front = told.front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    svg(&Plot {
+        title,
+        x_axis: "seconds a picture, logarithmic",
+        y_axis: "root mean square error in linear light, logarithmic",
+        lines: series.iter().map(line).collect(),
+        guides,
+        front: if samplers_only { Vec::new() } else { front.collect() },
+        // Below that it is the reference that is off.
+        floor: told.reference_error.max(1e-9),
+    })
+}
+
+/// What theory says of a ladder of samples.
+pub fn expected_slope(told: &Told<'_>, name: &str) -> Option<f64> {
+    theory(if name == Knob::Samples.name() { told.own_sampler } else { name })
+}

@@ -1,0 +1,211 @@
+//! Measuring: errors and counts, which do not wobble, and times by turns, which do.
+
+use super::error::{Errors, errors};
+use super::ladder::{Knob, Ladder, Setting};
+use super::reference::Reference;
+use crate::report::{bar_of_steps, quartiles};
+use anyhow::Result;
+use raykata::count::Counts;
+use raykata::film::Film;
+use raykata::frame::Watch;
+use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
+use raykata::scene::Scene;
+use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// A small picture that takes longer is left out: in all rounds together it would take minutes.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Who is measured, and how.
+pub struct Bench<'a> {
+    pub kit: &'a dyn Kit,
+    pub rounds: u32,
+    pub threads: usize,
+    /// Picks the random numbers of the first round; each round has others.
+    pub seed: u64,
+    /// Set once nobody wants to go on.
+    pub stop: &'a AtomicBool,
+}
+
+/// A setting, measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Point {
+    #[serde(skip)]
+    pub setting: Setting,
+    /// Of the first round.
+    pub errors: Errors,
+    /// Root mean square error of each round.
+    pub rmse: Vec<f64>,
+    pub counts: Counts,
+    /// Seconds for the pixels, the median over all rounds.
+    pub seconds: f64,
+    /// Half the distance between the quartiles of those seconds.
+    pub spread: f64,
+    /// Of the first round.
+    #[serde(skip)]
+    pub film: Film,
+    #[serde(skip)]
+    times: Vec<f64>,
+}
+
+impl Point {
+    /// The mean over all rounds.
+    pub fn error(&self) -> f64 {
+        self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
+    }
+}
+
+/// A ladder, measured: its rungs that could be.
+#[derive(Clone, Debug, Serialize)]
+pub struct Series {
+    pub knob: Knob,
+    pub name: String,
+    /// What each value is called, and its place among the points.
+    pub rungs: Vec<(String, usize)>,
+}
+
+/// What came of it.
+#[derive(Default)]
+pub struct Measured {
+    pub points: Vec<Point>,
+    pub series: Vec<Series>,
+    /// Values that were left out, and why.
+    pub left_out: Vec<String>,
+    /// How many rounds there were.
+    pub rounds: u32,
+}
+
+/// Ends a frame that takes too long, or that nobody wants.
+struct Patience<'a> {
+    stop: &'a AtomicBool,
+    until: Instant,
+}
+
+impl Watch for Patience<'_> {
+    fn progress(&self, _: u64, _: u64) {}
+
+    fn cancelled(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || Instant::now() > self.until
+    }
+}
+
+impl Bench<'_> {
+    pub fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// A picture; `None` if nobody wants it any more.
+    pub fn frame(&self, scene: &Scene, seed: u64, count: bool) -> Result<Option<Rendering>> {
+        // A reference is worth waiting for.
+        self.frame_until(scene, seed, count, Instant::now() + 100 * PATIENCE)
+    }
+
+    fn frame_until(
+        &self,
+        scene: &Scene,
+        seed: u64,
+        count: bool,
+        until: Instant,
+    ) -> Result<Option<Rendering>> {
+        let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count };
+        Ok(mishap::catch(|| self.kit.render(&job, &Patience { stop: self.stop, until }))?)
+    }
+
+    /// Measures one setting without regard to others: errors, counts, and one time. `None` if it takes too long.
+    pub fn point(&self, scene: &Scene, setting: &Setting, right: &Reference) -> Result<Option<Point>> {
+        let until = Instant::now() + PATIENCE;
+        let Some(frame) = self.frame_until(&setting.apply(scene), self.seed, true, until)? else {
+            return Ok(None);
+        };
+        let errors = errors(&frame.film, &right.film)?;
+        Ok(Some(Point {
+            setting: setting.clone(),
+            rmse: vec![errors.rmse],
+            errors,
+            counts: frame.counts,
+            seconds: frame.render_seconds,
+            spread: 0.0,
+            film: frame.film,
+            times: Vec::new(),
+        }))
+    }
+
+    /// Measures all ladders: each setting once with counts, then all by turns, with other random numbers each round.
+    pub fn measure(&self, scene: &Scene, ladders: Vec<Ladder>, right: &Reference) -> Result<Measured> {
+        let n_rungs: usize = ladders.iter().map(|ladder| ladder.rungs.len()).sum();
+        let bar = bar_of_steps(n_rungs * (1 + self.rounds as usize));
+        let mut measured = Measured::default();
+        for ladder in ladders {
+            bar.set_message(format!("{}: counting", ladder.name));
+            let mut rungs = Vec::new();
+            for (name, setting) in ladder.rungs {
+                let known = measured.points.iter().position(|point| point.setting == setting);
+                let index = match known {
+                    Some(known) => Some(known),
+                    None => self.point(scene, &setting, right)?.map(|point| {
+                        measured.points.push(point);
+                        measured.points.len() - 1
+                    }),
+                };
+                match index {
+                    Some(index) => rungs.push((name, index)),
+                    None if self.stopped() => {}
+                    None => measured.left_out.push(format!(
+                        "{} {name}: a small picture takes more than {} s",
+                        ladder.name,
+                        PATIENCE.as_secs()
+                    )),
+                }
+                bar.inc(1);
+            }
+            measured.series.push(Series { knob: ladder.knob, name: ladder.name, rungs });
+        }
+        bar.set_length((n_rungs + measured.points.len() * self.rounds as usize) as u64);
+        for round in 0..self.rounds {
+            bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
+            for point in &mut measured.points {
+                let seed = self.seed + u64::from(round);
+                let until = Instant::now() + 2 * PATIENCE;
+                let Some(frame) = self.frame_until(&point.setting.apply(scene), seed, false, until)? else {
+                    break;
+                };
+                point.times.push(frame.render_seconds);
+                if round > 0 {
+                    point.rmse.push(errors(&frame.film, &right.film)?.rmse);
+                }
+                bar.inc(1);
+            }
+            if self.stopped() {
+                break;
+            }
+            measured.rounds += 1;
+        }
+        bar.finish_and_clear();
+        for point in &mut measured.points {
+            // A round that was broken off counts for those that it came to.
+            if !point.times.is_empty() {
+                let [low, median, high] = quartiles(std::mem::take(&mut point.times));
+                (point.seconds, point.spread) = (median, (high - low) / 2.0);
+            }
+            point.rmse.truncate(measured.rounds.max(1) as usize);
+        }
+        Ok(measured)
+    }
+}
+
+/// The points that no other beats in both error and time, from the fastest to the most accurate.
+pub fn front(points: &[Point]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| {
+        let (a, b) = (&points[a], &points[b]);
+        a.seconds.total_cmp(&b.seconds).then(a.error().total_cmp(&b.error()))
+    });
+    let mut least = f64::INFINITY;
+    order.retain(|&index| {
+        let better = points[index].error() < least;
+        least = least.min(points[index].error());
+        better
+    });
+    order
+}
