@@ -129,13 +129,15 @@ pub fn advise(
     for series in &ladders {
         setting = turned(&measured.points[series.rungs[0].1].setting, series.knob, &setting);
     }
+    let turns_samples = ladders.iter().any(|series| series.knob == Knob::Samples);
     let bar = bar_of_steps(ladders.iter().map(|series| series.rungs.len()).sum());
     bar.set_message("looking for the best settings");
     let mut known: Vec<Point> = Vec::new();
     let Some(mut now) = point(bench, scene, &setting, right, &mut known)? else { return Ok(None) };
     let mut steps = Vec::new();
+    let in_full = |point: &Point| point.seconds * full + point.build_seconds;
     let fits = |point: &Point| match goal {
-        Goal::Seconds(budget) => point.seconds * full <= SHARE * budget,
+        Goal::Seconds(budget) => in_full(point) <= SHARE * budget,
         Goal::Error(_) => true,
     };
     let reached = |point: &Point| matches!(goal, Goal::Error(target) if point.error() <= target);
@@ -172,8 +174,24 @@ pub fn advise(
         setting = next.setting.clone();
         now = next;
         let (knob, to) = (ladders[index].knob, ladders[index].rungs[rung].0.clone());
-        steps.push(Step { knob, to, error: now.error(), seconds: now.seconds * full });
+        steps.push(Step { knob, to, error: now.error(), seconds: in_full(&now) });
         bar.inc(1);
+    }
+    if let Goal::Seconds(budget) = goal {
+        // Rungs are a factor of two apart; what is left of the budget goes to as many samples as it pays for.
+        let times = (SHARE * budget - now.build_seconds) / (now.seconds * full).max(1e-9);
+        let samples = (f64::from(now.setting.quality.samples_per_pixel) * times) as u32;
+        if turns_samples && samples > now.setting.quality.samples_per_pixel {
+            let mut more = now.setting.clone();
+            more.quality.samples_per_pixel = samples.min(65_536);
+            if let Some(candidate) =
+                point(bench, scene, &more, right, &mut known)?.filter(|more| more.error() < now.error())
+            {
+                let (knob, to) = (Knob::Samples, more.quality.samples_per_pixel.to_string());
+                steps.push(Step { knob, to, error: candidate.error(), seconds: in_full(&candidate) });
+                (setting, now) = (more, candidate);
+            }
+        }
     }
     let mut left = Vec::new();
     for (index, series) in ladders.iter().enumerate() {
@@ -190,6 +208,9 @@ pub fn advise(
     }
     let mut values: Vec<(Knob, String)> =
         ladders.iter().zip(&at).map(|(series, &rung)| (series.knob, series.rungs[rung].0.clone())).collect();
+    for (_, value) in values.iter_mut().filter(|(knob, _)| *knob == Knob::Samples) {
+        *value = setting.quality.samples_per_pixel.to_string();
+    }
     values.extend(names_of_chosen(measured, &setting));
     let Some(own) = point(bench, scene, &own, right, &mut known)? else { return Ok(None) };
     bar.finish_and_clear();
@@ -199,9 +220,9 @@ pub fn advise(
         steps,
         left,
         own_error: own.error(),
-        own_seconds: own.seconds * full,
+        own_seconds: in_full(&own),
         expected_error: now.error(),
-        expected_seconds: now.seconds * full,
+        expected_seconds: in_full(&now),
         verified_error: None,
         verified_seconds: None,
         setting,
@@ -219,7 +240,7 @@ pub fn verify(
     let others = Bench { seed: bench.seed + (1 << 20), ..*bench };
     advice.verified_error = others.point(small, &advice.setting, right)?.map(|point| point.error());
     let frame = others.frame(&advice.setting.apply(full), others.seed, false)?;
-    advice.verified_seconds = frame.map(|frame| frame.render_seconds);
+    advice.verified_seconds = frame.map(|frame| frame.build_seconds + frame.render_seconds);
     Ok(())
 }
 

@@ -69,7 +69,6 @@ pub fn plots(told: &Told<'_>) -> Vec<(&'static str, String)> {
     let knobs: Vec<&Series> =
         series.iter().filter(|one| one.knob != Knob::Sampler && !one.knob.is_geometric()).collect();
     let samplers: Vec<&Series> = series.iter().filter(|one| one.knob == Knob::Sampler).collect();
-    let geometric: Vec<&Series> = series.iter().filter(|one| one.knob.is_geometric()).collect();
     let mut plots = Vec::new();
     if !knobs.is_empty() {
         let title = format!("{}: error over time, one knob turned at a time", told.scene);
@@ -81,9 +80,9 @@ pub fn plots(told: &Told<'_>) -> Vec<(&'static str, String)> {
             [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
         plots.push(("samplers.svg", draw(told, &title, &samplers, guides.to_vec())));
     }
-    if !geometric.is_empty() {
-        let title = format!("{}: how hits are found", told.scene);
-        plots.push(("geometry.svg", draw(told, &title, &geometric, Vec::new())));
+    #[cfg(feature = "author")]
+    if !told.numerics.is_empty() {
+        plots.push(("numerics.svg", numerics(&told.numerics)));
     }
     plots
 }
@@ -106,11 +105,7 @@ fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, Stri
             let greatest = point.rmse.iter().copied().fold(0.0, f64::max);
             [point.seconds, point.error(), least, greatest]
         };
-        let mut places: Vec<[f64; 4]> = one.rungs.iter().map(place).collect();
-        if one.knob.is_geometric() {
-            places.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        }
-        Line { name, points: places }
+        Line { name, points: one.rungs.iter().map(place).collect() }
     };
     let samplers_only = series.iter().all(|one| one.knob == Knob::Sampler);
     let front = told.front.iter().map(|&index| (points[index].seconds, points[index].error()));
@@ -123,6 +118,31 @@ fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, Stri
         front: if samplers_only { Vec::new() } else { front.collect() },
         // Below that it is the reference that is off.
         floor: told.reference_error.max(1e-9),
+    })
+}
+
+/// Nanoseconds against wrong verdicts: each method in single and in double precision, and the functions of the kit.
+#[cfg(feature = "author")]
+fn numerics(all: &[crate::gauntlet::Summary]) -> String {
+    let mut lines: Vec<Line> = Vec::new();
+    for one in all {
+        let place = [one.nanoseconds, one.wrong_per_million, one.wrong_per_million, one.wrong_per_million];
+        match lines.last_mut() {
+            // Under its method.
+            Some(line) if one.name.trim() == "in double" => line.points.push(place),
+            _ if one.name.starts_with(' ') => {}
+            _ => lines.push(Line { name: one.name.clone(), points: vec![place] }),
+        }
+    }
+    svg(&Plot {
+        title: "ray/triangle tests: from single to double precision",
+        x_axis: "nanoseconds a test, logarithmic",
+        y_axis: "wrong in a million hard inputs, logarithmic",
+        lines,
+        guides: Vec::new(),
+        front: Vec::new(),
+        // None at all is drawn as one.
+        floor: 1.0,
     })
 }
 

@@ -40,7 +40,9 @@ pub struct Point {
     pub counts: Counts,
     /// Seconds for the pixels, the median over all rounds.
     pub seconds: f64,
-    /// Half the distance between the quartiles of those seconds.
+    /// Seconds to build what finds hits.
+    pub build_seconds: f64,
+    /// Half the distance between the quartiles of those seconds for the pixels.
     pub spread: f64,
     /// Of the first round.
     #[serde(skip)]
@@ -125,6 +127,7 @@ impl Bench<'_> {
             errors,
             counts: frame.counts,
             seconds: frame.render_seconds,
+            build_seconds: frame.build_seconds,
             spread: 0.0,
             film: frame.film,
             times: Vec::new(),

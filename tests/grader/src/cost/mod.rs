@@ -1,11 +1,12 @@
 //! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
 //!
 //! `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
-//! `slope` (how fast error falls) · `advice` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told)
+//! `slope` (how fast error falls) · `headline` (brute force against a hierarchy) · `advice` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told)
 
 mod advice;
 mod error;
 mod files;
+mod headline;
 mod ladder;
 mod measure;
 mod page;
@@ -37,7 +38,14 @@ use std::time::Instant;
 #[derive(Args)]
 pub struct Options {
     /// The scene, a TOML file.
-    scene: PathBuf,
+    #[arg(required_unless_present = "headline")]
+    scene: Option<PathBuf>,
+    /// Instead: brute force against the hierarchy on a landscape of more and more triangles, on 3840 × 2160 pixels.
+    #[arg(long, conflicts_with = "scene")]
+    headline: bool,
+    /// How many triangles the largest landscape has.
+    #[arg(long, default_value_t = 12_000_000, requires = "headline", value_parser = clap::value_parser!(u64).range(2..=16_000_000))]
+    most: u64,
     /// The knobs to turn [default: all that the scene calls for].
     #[arg(long = "knob", value_enum, value_delimiter = ',')]
     turned: Vec<Knob>,
@@ -91,6 +99,8 @@ pub struct Told<'a> {
     measured: &'a Measured,
     /// Places of the points that no other beats, from the fastest on.
     front: Vec<usize>,
+    /// The place of the scene's own settings.
+    own: Option<usize>,
     /// Slopes of error over samples, by the name of the ladder.
     slopes: Vec<(String, Slope)>,
     /// Knobs that buy nothing here, and why.
@@ -121,11 +131,6 @@ struct Counted<'a> {
 /// Measures, prints a table and writes the report. `Ok(false)` if it was stopped.
 pub fn run(options: &Options) -> Result<bool> {
     let began = Instant::now();
-    let mut full = load_scene(&options.scene)?;
-    options.knobs.apply(&mut full);
-    let small = if options.knobs.names_a_size() { full.clone() } else { shrunk(&full) };
-    let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
-    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
     let which = options.kit.or_reference();
     let source = Source::here(which)?;
     let kit = &*source.fresh();
@@ -137,6 +142,16 @@ pub fn run(options: &Options) -> Result<bool> {
         seed: options.seed,
         stop: &stop,
     };
+
+    let Some(file) = &options.scene else {
+        let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
+        return headline::run(&bench, options.most, &out);
+    };
+    let mut full = load_scene(file)?;
+    options.knobs.apply(&mut full);
+    let small = if options.knobs.names_a_size() { full.clone() } else { shrunk(&full) };
+    let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
     let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
     for (knob, why) in &not_offered {
@@ -184,6 +199,7 @@ pub fn run(options: &Options) -> Result<bool> {
         },
         measured: &measured,
         front: front(&measured.points),
+        own: measured.points.iter().position(|point| point.setting == ladder::Setting::of(&small)),
         slopes: slopes(&measured),
         not_offered,
         advice,

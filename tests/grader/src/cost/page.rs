@@ -6,7 +6,7 @@ use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
 use super::ladder::Knob;
 use super::measure::Series;
-use super::table::{goal, verdict, waste};
+use super::table::{goal, named, verdict, waste};
 use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -123,7 +123,7 @@ fn rung(told: &Told<'_>, value: &str, index: usize) -> Markup {
     let unbeaten = told.front.contains(&index);
     html! {
         tr.front[unbeaten] {
-            th scope="row" { (value) @if unbeaten { " •" } }
+            th scope="row" { (named(told, value, index)) @if unbeaten { " •" } }
             td { (format!("{:.5}", point.error())) }
             td { (format!("{:.2e}", point.errors.relative_mse)) }
             td { (format!("{:.4}", point.errors.similarity)) }

@@ -5,6 +5,7 @@ use super::advice::{Advice, Goal};
 use super::files::expected_slope;
 use super::ladder::Knob;
 use super::measure::Series;
+#[cfg(feature = "author")]
 use crate::report::Thousands;
 
 /// Prints it.
@@ -28,7 +29,8 @@ pub fn print(told: &Told<'_>) {
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             println!(
-                "  {name:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}",
+                "  {:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}",
+                named(told, name, *index),
                 if told.front.contains(index) { "•" } else { " " },
                 point.error(),
                 point.errors.relative_mse,
@@ -54,6 +56,11 @@ pub fn print(told: &Told<'_>) {
     if told.partial {
         println!("\nstopped before the end: what is above is what had been measured by then");
     }
+}
+
+/// The scene's own value is marked.
+pub fn named(told: &Told<'_>, name: &str, index: usize) -> String {
+    if told.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
 }
 
 fn heading(series: &Series) -> String {
@@ -84,11 +91,13 @@ pub fn waste(told: &Told<'_>, series: &Series) -> Option<String> {
     let end = point(last);
     let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
     let times = end.seconds / point(enough).seconds;
-    Some(format!(
-        "beyond {} it gives less than {:.0} % more accuracy, and takes up to {times:.2} times as long",
-        series.rungs[enough].0,
-        100.0 * SAME
-    ))
+    let takes = match times {
+        // A fiftieth is within what times wobble by.
+        times if times < 1.0 + SAME => "and takes no more time that could be measured".into(),
+        times => format!("and takes up to {times:.2} times as long"),
+    };
+    let (rung, same) = (&series.rungs[enough].0, 100.0 * SAME);
+    Some(format!("beyond {rung} it gives less than {same:.0} % more accuracy, {takes}"))
 }
 
 #[cfg(feature = "author")]

@@ -1,0 +1,309 @@
+//! The lecture's headline, measured: n triangles and a screen full of rays, with a hierarchy and without.
+//!
+//! Nobody waits days for brute force: it is timed on a slice of so many rays that it takes a second or so, and the rest is
+//! multiplication, which is shown.
+
+use super::measure::Bench;
+use crate::report::{Thousands, make_folder};
+use anyhow::{Context, Result};
+use glam::{Affine3A, Vec3, vec3};
+use indicatif::{ProgressBar, ProgressStyle};
+use raykata::camera::Camera;
+use raykata::frame::Unwatched;
+use raykata::kit::{RenderJob, Rendering, View, mishap};
+use raykata::mesh::Mesh;
+use raykata::scene::{Accelerator, Node, Scene, SceneMesh, Split};
+use raykata::shape::Shape;
+use serde::Serialize;
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The screen of the lecture notes.
+const SCREEN: (u32, u32) = (3840, 2160);
+
+/// Tests of the slice that brute force is timed on: a second or two.
+const TESTS_OF_SLICE: u64 = 200_000_000;
+
+/// Counting is slower than not counting, and a sixteenth of the rays have the same means.
+const SHARE_COUNTED: u32 = 4;
+
+/// What came of one size.
+#[derive(Clone, Debug, Serialize)]
+struct Row {
+    triangles: u64,
+    build_seconds: f64,
+    structure_bytes: u64,
+    /// A ray, on average.
+    node_visits: f64,
+    box_tests: f64,
+    triangle_tests: f64,
+    /// For the whole screen.
+    frame_seconds: f64,
+    /// Rays of the slice, and how long brute force took for them.
+    slice_rays: u64,
+    slice_seconds: f64,
+    /// Pixels of the slice that differ between the two ways.
+    different_pixels: usize,
+}
+
+impl Row {
+    fn rays() -> f64 {
+        f64::from(SCREEN.0) * f64::from(SCREEN.1)
+    }
+
+    fn nanoseconds_a_ray(&self) -> f64 {
+        1e9 * self.frame_seconds / Row::rays()
+    }
+
+    fn nanoseconds_a_test(&self) -> f64 {
+        1e9 * self.slice_seconds / (self.slice_rays as f64 * self.triangles as f64)
+    }
+
+    /// Seconds of brute force for the whole screen.
+    fn brute_seconds(&self) -> f64 {
+        self.slice_seconds / self.slice_rays as f64 * Row::rays()
+    }
+}
+
+/// Measures sizes from 12 times a power of ten up to `most`, prints the table, and keeps it.
+pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
+    println!(
+        "A landscape of n triangles on {} × {} pixels: one ray a pixel, shown by its normals. Brute force is timed on a \
+         slice,\nmeans are over a sixteenth of the rays.\n",
+        SCREEN.0, SCREEN.1
+    );
+    println!(
+        "{:>12} {:>7} {:>9} {:>9} {:>9} {:>9} {:>11} {:>11} {:>13} {:>11} {:>11}",
+        "n",
+        "log2 n",
+        "build s",
+        "visits",
+        "boxes",
+        "triangles",
+        "ns a ray",
+        "frame s",
+        "brute ns/ray",
+        "brute frame",
+        "times"
+    );
+    let mut rows: Vec<Row> = Vec::new();
+    for triangles in sizes(most) {
+        let Some(row) = measure(bench, triangles, rows.last())? else { break };
+        println!(
+            "{:>12} {:>7.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2} {:>11.0} {:>11.2} {:>13} {:>11} {:>11}",
+            Thousands(row.triangles).to_string(),
+            (row.triangles as f64).log2(),
+            row.build_seconds,
+            row.node_visits,
+            row.box_tests,
+            row.triangle_tests,
+            row.nanoseconds_a_ray(),
+            row.frame_seconds,
+            Thousands((1e9 * row.slice_seconds / row.slice_rays as f64) as u64).to_string(),
+            duration(row.brute_seconds()),
+            Thousands((row.brute_seconds() / row.frame_seconds) as u64).to_string(),
+        );
+        rows.push(row);
+        if bench.stopped() {
+            break;
+        }
+    }
+    let Some(last) = rows.last() else { return Ok(false) };
+    arithmetic(last);
+    make_folder(out)?;
+    let file = out.join("headline.json");
+    let json = serde_json::to_vec_pretty(&rows)?;
+    raykata::film::write_atomically(&file, |file| file.write_all(&json))
+        .with_context(|| format!("cannot write {}", file.display()))?;
+    println!("the numbers: {}", file.display());
+    Ok(rows.iter().all(|row| row.different_pixels == 0) && !bench.stopped())
+}
+
+fn arithmetic(row: &Row) {
+    let rays = u64::from(SCREEN.0) * u64::from(SCREEN.1);
+    println!(
+        "\n  brute force: {} triangles × {} rays = {} tests\n               × {:.2} ns a test ({} rays of a slice took {:.2} s) = {}",
+        Thousands(row.triangles),
+        Thousands(rays),
+        Thousands(row.triangles * rays),
+        row.nanoseconds_a_test(),
+        Thousands(row.slice_rays),
+        row.slice_seconds,
+        duration(row.brute_seconds())
+    );
+    println!(
+        "  hierarchy:   {:.1} box tests and {:.2} triangle tests a ray, where log2 n is {:.1}\n               {} for the \
+         frame, and {} to build first ({:.0} bytes a triangle)\n  so the frame is {} times as fast, {} times with the \
+         build",
+        row.box_tests,
+        row.triangle_tests,
+        (row.triangles as f64).log2(),
+        duration(row.frame_seconds),
+        duration(row.build_seconds),
+        row.structure_bytes as f64 / row.triangles as f64,
+        Thousands((row.brute_seconds() / row.frame_seconds) as u64),
+        Thousands((row.brute_seconds() / (row.frame_seconds + row.build_seconds)) as u64)
+    );
+}
+
+/// 12 times the powers of ten, and the largest.
+fn sizes(most: u64) -> Vec<u64> {
+    let powers = (2..).map(|power| 12 * 10u64.pow(power));
+    let mut sizes: Vec<u64> = powers.take_while(|size| *size < most).collect();
+    sizes.push(most);
+    sizes
+}
+
+/// `None` if nobody wants it any more.
+fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
+    // The next larger landscape of squares that are two triangles each.
+    let side = (triangles as f64 / 2.0).sqrt().round().max(1.0) as u32;
+    let exact = 2 * u64::from(side) * u64::from(side);
+    let bar = ProgressBar::new_spinner();
+    let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let about = |seconds: fn(&Row) -> f64| {
+        // Sorting makes it n log n.
+        let ratio = |row: &Row| {
+            let (n, before) = (exact as f64, row.triangles as f64);
+            seconds(row) * (n * n.ln()) / (before * before.ln())
+        };
+        smaller.map_or(String::new(), |row| format!(", about {:.0} s", ratio(row).max(1.0)))
+    };
+    let say = |what: &str| bar.set_message(format!("{} triangles: {what}", Thousands(exact)));
+    say("making the landscape");
+    let scene = scene(side)?;
+
+    say(&format!("building the hierarchy, then counting{}", about(|row| row.build_seconds)));
+    let (width, height) = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
+    let counted = frame(bench, &scene, Accelerator::Bvh, (width, height), true)?;
+    say(&format!("building it again, then the whole frame{}", about(|row| row.build_seconds)));
+    let whole = frame(bench, &scene, Accelerator::Bvh, SCREEN, false)?;
+    if bench.stopped() {
+        return Ok(None);
+    }
+    // A slice of the same shape: 16 × 9 times so much.
+    let across = ((TESTS_OF_SLICE as f64 / (144.0 * exact as f64)).sqrt() * 16.0).clamp(4.0, 960.0) as u32;
+    let slice = (across, (across * 9 / 16).max(1));
+    say("brute force on a slice");
+    let brute = frame(bench, &scene, Accelerator::BruteForce, slice, false)?;
+    let same = frame(bench, &scene, Accelerator::Bvh, slice, false)?;
+    bar.finish_and_clear();
+    let rays = counted.counts.primary.max(1) as f64;
+    let different =
+        brute.film.pixels.iter().zip(&same.film.pixels).filter(|(one, other)| one != other).count();
+    Ok(Some(Row {
+        triangles: exact,
+        build_seconds: whole.build_seconds,
+        structure_bytes: whole.structure.map_or(0, |size| size.bytes),
+        node_visits: counted.counts.node_visits as f64 / rays,
+        box_tests: counted.counts.box_tests as f64 / rays,
+        triangle_tests: counted.counts.primitive_tests as f64 / rays,
+        frame_seconds: whole.render_seconds,
+        slice_rays: u64::from(slice.0) * u64::from(slice.1),
+        slice_seconds: brute.render_seconds,
+        different_pixels: different,
+    }))
+}
+
+fn frame(
+    bench: &Bench<'_>,
+    scene: &Scene,
+    accelerator: Accelerator,
+    (width, height): (u32, u32),
+    count: bool,
+) -> Result<Rendering> {
+    let mut scene = scene.clone();
+    (scene.film.width, scene.film.height) = (width, height);
+    scene.quality.accelerator = accelerator;
+    let job = RenderJob { scene, view: View::Normals, seed: bench.seed, threads: bench.threads, count };
+    mishap::catch(|| bench.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
+}
+
+/// A landscape of `side` × `side` squares, seen from above one of its edges: it fills the lower two thirds.
+fn scene(side: u32) -> Result<Scene> {
+    let eye = vec3(0.0, 0.55, 1.25);
+    let aspect = SCREEN.0 as f32 / SCREEN.1 as f32;
+    let camera = Camera::new(eye, vec3(0.0, -0.42, -1.0), Vec3::Y, 45.0, aspect)?;
+    let mut scene = Scene::empty(camera);
+    let mesh = Arc::new(landscape(side));
+    scene.meshes.push(SceneMesh { mesh, smooth: false, subdivisions: 0, materials: Vec::new() });
+    scene.nodes.push(Node {
+        name: "landscape".into(),
+        transform: Affine3A::IDENTITY,
+        shape: Some(Shape::Mesh(0)),
+        ..Node::default()
+    });
+    scene.roots.push(0);
+    scene.quality.split = Split::SurfaceArea;
+    Ok(scene)
+}
+
+fn landscape(side: u32) -> Mesh {
+    let points = side + 1;
+    let coordinate = |i: u32| 2.0 * i as f32 / side as f32 - 1.0;
+    let corner = |i: u32, j: u32| {
+        let (x, z) = (coordinate(i), coordinate(j));
+        vec3(x, height(x, z), z)
+    };
+    let positions = (0..points).flat_map(|j| (0..points).map(move |i| corner(i, j))).collect();
+    let square = |i: u32, j: u32| {
+        let [a, b] = [j * points + i, j * points + i + 1];
+        let [c, d] = [a + points, b + points];
+        [[a, c, b], [b, c, d]]
+    };
+    let triangles = (0..side).flat_map(|j| (0..side).flat_map(move |i| square(i, j))).collect();
+    Mesh { positions, triangles, ..Mesh::default() }
+}
+
+/// Hills on hills: each octave half as high and twice as narrow.
+fn height(x: f32, z: f32) -> f32 {
+    let octave = |k: i32| {
+        let (frequency, k) = (2.0 * 2f32.powi(k), k as f32);
+        let (u, v) = (frequency * (x + 0.31 * k), frequency * (z - 0.17 * k));
+        ((1.7 * u + 0.6 * v).sin() * (1.3 * v - 0.8 * u).cos()) / frequency
+    };
+    0.28 * (0..7).map(octave).sum::<f32>()
+}
+
+/// As people say it.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.01 => format!("{:.1} ms", 1e3 * s),
+        s if s < 120.0 => format!("{s:.2} s"),
+        s if s < 7200.0 => format!("{:.1} min", s / 60.0),
+        s if s < 48.0 * 3600.0 => format!("{:.1} h", s / 3600.0),
+        s => format!("{:.1} days", s / 86400.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_go_up_to_the_one_that_was_asked_for() {
+        assert_eq!(sizes(12_000_000), [1_200, 12_000, 120_000, 1_200_000, 12_000_000]);
+        assert_eq!(sizes(1_000), [1_000]);
+        assert_eq!(sizes(5_000), [1_200, 5_000]);
+    }
+
+    #[test]
+    fn a_landscape_has_two_triangles_a_square_that_face_up() {
+        let mesh = landscape(5);
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (36, 50));
+        for index in 0..mesh.triangles.len() {
+            let [a, b, c] = mesh.corners(index);
+            assert!((b - a).cross(c - a).y > 0.0, "{index}");
+        }
+    }
+
+    #[test]
+    fn durations_are_said_as_people_say_them() {
+        let said = [0.0012, 5.0, 600.0, 10_000.0, 1e6].map(duration);
+        assert_eq!(said, ["1.2 ms", "5.00 s", "10.0 min", "2.8 h", "11.6 days"]);
+    }
+}
