@@ -3,13 +3,14 @@
 #![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
-use glam::Vec3;
+#[path = "misbehaving/asking.rs"]
+mod asking;
+
+use asking::{ask, how_it_crashed, query};
 use grader::jail::{Jail, Purpose};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
 use std::path::Path;
 use std::time::Duration;
 
@@ -21,22 +22,8 @@ fn door() -> Door<Worker> {
     jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 1)
 }
 
-fn query(radius: f32) -> SphereQuery {
-    SphereQuery {
-        ray: Ray::new(Vec3::new(-20.0, 0.0, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius },
-    }
-}
-
-fn ask(door: &Door<Worker>, radius: f32) -> Result<Vec<Option<f32>>, Mishap> {
-    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
-}
-
 fn crash(door: &Door<Worker>, radius: f32) -> String {
-    match ask(door, radius) {
-        Err(Mishap::Crashed { how }) => how,
-        other => panic!("not a crash: {other:?}"),
-    }
+    how_it_crashed(ask(door, radius))
 }
 
 #[test]

@@ -3,36 +3,19 @@
 
 #![cfg(feature = "author")]
 
-use glam::Vec3;
+#[path = "misbehaving/asking.rs"]
+mod asking;
+
+use asking::{ask, how_it_crashed, query};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
-use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
-use raykata::ray::Ray;
-use raykata::shape::Sphere;
+use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, View, mishap};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 fn door() -> Door<Worker> {
     Door(Worker::new(env!("CARGO_BIN_EXE_misbehaving-worker").into(), Duration::from_secs(2)))
-}
-
-fn query(radius: f32) -> SphereQuery {
-    SphereQuery {
-        ray: Ray::new(Vec3::new(-20.0, 0.0, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius },
-    }
-}
-
-fn ask(door: &Door<Worker>, radius: f32) -> Result<Vec<Option<f32>>, Mishap> {
-    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
-}
-
-fn how_it_crashed(result: Result<Vec<Option<f32>>, Mishap>) -> String {
-    match result {
-        Err(Mishap::Crashed { how }) => how,
-        other => panic!("not a crash: {other:?}"),
-    }
 }
 
 #[test]

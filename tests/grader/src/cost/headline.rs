@@ -70,9 +70,11 @@ impl Row {
 /// Measures sizes from 12 times a power of ten up to `most`, prints the table, and keeps it.
 pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     println!(
-        "A landscape of n triangles on {} × {} pixels: one ray a pixel, shown by its normals. Brute force is timed on a \
-         slice,\nmeans are over a sixteenth of the rays.\n",
-        SCREEN.0, SCREEN.1
+        "A landscape of n triangles on {} × {} pixels: one ray a pixel, shown by its normals, on {} threads.\nBrute force is timed \
+         on a slice, means are over a sixteenth of the rays.\n",
+        SCREEN.0,
+        SCREEN.1,
+        if bench.threads == 0 { crate::queue::cores() } else { bench.threads }
     );
     println!(
         "{:>12} {:>7} {:>9} {:>9} {:>9} {:>9} {:>11} {:>11} {:>13} {:>11} {:>11}",
@@ -158,9 +160,8 @@ fn sizes(most: u64) -> Vec<u64> {
 
 /// `None` if nobody wants it any more.
 fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
-    // The next larger landscape of squares that are two triangles each.
-    let side = (triangles as f64 / 2.0).sqrt().round().max(1.0) as u32;
-    let exact = 2 * u64::from(side) * u64::from(side);
+    let sides = sides(triangles);
+    let exact = 2 * u64::from(sides.0) * u64::from(sides.1);
     let bar = ProgressBar::new_spinner();
     let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
@@ -175,7 +176,7 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
     };
     let say = |what: &str| bar.set_message(format!("{} triangles: {what}", Thousands(exact)));
     say("making the landscape");
-    let scene = scene(side)?;
+    let scene = scene(sides)?;
 
     say(&format!("building the hierarchy, then counting{}", about(|row| row.build_seconds)));
     let (width, height) = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
@@ -223,13 +224,25 @@ fn frame(
     mishap::catch(|| bench.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
 }
 
-/// A landscape of `side` × `side` squares, seen from above one of its edges: it fills the lower two thirds.
-fn scene(side: u32) -> Result<Scene> {
+/// How many squares a landscape has on either side, two triangles each: just as many as asked for if some pair of numbers
+/// gives them that is not too long, and about as many otherwise.
+fn sides(triangles: u64) -> (u32, u32) {
+    let squares = (triangles / 2).max(1);
+    let root = (squares as f64).sqrt();
+    let divides = |side: &u64| squares.is_multiple_of(*side);
+    match (1..=root as u64).rev().find(divides) {
+        Some(side) if squares / side <= 2 * side => (side as u32, (squares / side) as u32),
+        _ => (root.round() as u32, root.round() as u32),
+    }
+}
+
+/// A landscape of so many squares, seen from above one of its edges: it fills the lower two thirds.
+fn scene(sides: (u32, u32)) -> Result<Scene> {
     let eye = vec3(0.0, 0.55, 1.25);
     let aspect = SCREEN.0 as f32 / SCREEN.1 as f32;
     let camera = Camera::new(eye, vec3(0.0, -0.42, -1.0), Vec3::Y, 45.0, aspect)?;
     let mut scene = Scene::empty(camera);
-    let mesh = Arc::new(landscape(side));
+    let mesh = Arc::new(landscape(sides));
     scene.meshes.push(SceneMesh { mesh, smooth: false, subdivisions: 0, materials: Vec::new() });
     scene.nodes.push(Node {
         name: "landscape".into(),
@@ -242,20 +255,20 @@ fn scene(side: u32) -> Result<Scene> {
     Ok(scene)
 }
 
-fn landscape(side: u32) -> Mesh {
-    let points = side + 1;
-    let coordinate = |i: u32| 2.0 * i as f32 / side as f32 - 1.0;
+fn landscape((across, along): (u32, u32)) -> Mesh {
+    let coordinate = |i: u32, of: u32| 2.0 * i as f32 / of as f32 - 1.0;
     let corner = |i: u32, j: u32| {
-        let (x, z) = (coordinate(i), coordinate(j));
+        let (x, z) = (coordinate(i, across), coordinate(j, along));
         vec3(x, height(x, z), z)
     };
-    let positions = (0..points).flat_map(|j| (0..points).map(move |i| corner(i, j))).collect();
+    let positions = (0..=along).flat_map(|j| (0..=across).map(move |i| corner(i, j))).collect();
     let square = |i: u32, j: u32| {
-        let [a, b] = [j * points + i, j * points + i + 1];
-        let [c, d] = [a + points, b + points];
+        let row = across + 1;
+        let [a, b] = [j * row + i, j * row + i + 1];
+        let [c, d] = [a + row, b + row];
         [[a, c, b], [b, c, d]]
     };
-    let triangles = (0..side).flat_map(|j| (0..side).flat_map(move |i| square(i, j))).collect();
+    let triangles = (0..along).flat_map(|j| (0..across).flat_map(move |i| square(i, j))).collect();
     Mesh { positions, triangles, ..Mesh::default() }
 }
 
@@ -293,8 +306,9 @@ mod tests {
 
     #[test]
     fn a_landscape_has_two_triangles_a_square_that_face_up() {
-        let mesh = landscape(5);
-        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (36, 50));
+        assert_eq!([12_000_000, 1_200, 50, 14].map(sides), [(2400, 2500), (24, 25), (5, 5), (3, 3)]);
+        let mesh = landscape((5, 6));
+        assert_eq!((mesh.positions.len(), mesh.triangles.len()), (42, 60));
         for index in 0..mesh.triangles.len() {
             let [a, b, c] = mesh.corners(index);
             assert!((b - a).cross(c - a).y > 0.0, "{index}");

@@ -164,6 +164,7 @@ fn front(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64
 
 fn guides(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
+    let y0 = y0.max(plot.floor);
     for (slope, name) in &plot.guides {
         // To the right end, or to where it leaves below.
         let to_bottom = (y.low - y0.log10()) / slope;
