@@ -3,7 +3,7 @@
 #![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
-use grader::jail::{self, Ended, How, Jail, Limits, Purpose, got_through, run, this_program};
+use grader::jail::{self, Ended, How, Jail, Limits, Purpose, Walls, got_through, run, this_program};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -56,6 +56,19 @@ fn what_is_not_asked_for_is_not_there() {
     let environment = said(&probe(&compiler, "environment"));
     assert_eq!(environment, format!("Exited(0): [(\"TMPDIR\", {:?})]\n", scratch.path()));
     assert_eq!(said(&probe(&worker, "descriptors")), "Exited(0): 0\n");
+}
+
+/// What an instructor gets who says `--insecure` where the kernel has no walls.
+#[test]
+fn without_walls_limits_still_hold() {
+    let open = Jail::with(Walls::Open, Purpose::Worker);
+    let all = probe(&open, "all");
+    let said = String::from_utf8_lossy(&all.stdout).into_owned();
+    assert!(said.contains("through: read a file of the system"), "{said}");
+    // A worker's files may have no byte: the probe that writes one is its last (SIGXFSZ).
+    assert_eq!(all.how, How::Signalled(25), "{said}");
+    let brief = Jail { limits: Limits { cpu_seconds: 1, ..open.limits }, ..open };
+    assert_eq!(probe(&brief, "spin").how, How::UsedUpCpu);
 }
 
 #[test]

@@ -184,8 +184,8 @@ pub fn advise(
         if turns_samples && samples > now.setting.quality.samples_per_pixel {
             let mut more = now.setting.clone();
             more.quality.samples_per_pixel = samples.min(65_536);
-            if let Some(candidate) =
-                point(bench, scene, &more, right, &mut known)?.filter(|more| more.error() < now.error())
+            if let Some(candidate) = point(bench, scene, &more, right, &mut known)?
+                .filter(|more| fits(more) && more.error() < now.error())
             {
                 let (knob, to) = (Knob::Samples, more.quality.samples_per_pixel.to_string());
                 steps.push(Step { knob, to, error: candidate.error(), seconds: in_full(&candidate) });
@@ -197,6 +197,10 @@ pub fn advise(
     for (index, series) in ladders.iter().enumerate() {
         let Some((_, next)) = series.rungs.get(at[index] + 1) else { continue };
         let more = turned(&measured.points[*next].setting, series.knob, &setting);
+        // Samples may have been turned to between two rungs, or to the next.
+        if more.quality.samples_per_pixel < setting.quality.samples_per_pixel || more == setting {
+            continue;
+        }
         if let Some(more) = point(bench, scene, &more, right, &mut known)? {
             left.push(Left {
                 knob: series.knob,

@@ -17,6 +17,9 @@ use std::time::{Duration, Instant};
 /// A small picture that takes longer is left out: in all rounds together it would take minutes.
 const PATIENCE: Duration = Duration::from_secs(30);
 
+/// The same for what has to be built before: nothing can break that off.
+const PATIENCE_TO_BUILD: f64 = 3.0;
+
 /// Who is measured, and how.
 pub struct Bench<'a> {
     pub kit: &'a dyn Kit,
@@ -144,17 +147,24 @@ impl Bench<'_> {
             let mut rungs = Vec::new();
             for (name, setting) in ladder.rungs {
                 let known = measured.points.iter().position(|point| point.setting == setting);
-                let index = match known {
-                    Some(known) => Some(known),
-                    None => self.point(scene, &setting, right)?.map(|point| {
-                        measured.points.push(point);
-                        measured.points.len() - 1
-                    }),
+                let point = match known {
+                    Some(_) => None,
+                    None => self.point(scene, &setting, right)?,
                 };
-                match index {
-                    Some(index) => rungs.push((name, index)),
-                    None if self.stopped() => {}
-                    None => measured.left_out.push(format!(
+                match (known, point) {
+                    (Some(known), _) => rungs.push((name, known)),
+                    (None, Some(point)) if point.build_seconds > PATIENCE_TO_BUILD => {
+                        measured.left_out.push(format!(
+                            "{} {name}: takes {:.0} s to build each time (`raykata compare` shows it)",
+                            ladder.name, point.build_seconds
+                        ));
+                    }
+                    (None, Some(point)) => {
+                        rungs.push((name, measured.points.len()));
+                        measured.points.push(point);
+                    }
+                    (None, None) if self.stopped() => {}
+                    (None, None) => measured.left_out.push(format!(
                         "{} {name}: a small picture takes more than {} s",
                         ladder.name,
                         PATIENCE.as_secs()

@@ -65,7 +65,7 @@ fn proposal(told: &Told<'_>, advice: &Advice) -> Markup {
     html! {
         section.advice {
             h2 { (goal(told, advice)) }
-            table {
+            table.values {
                 @for (knob, value) in &advice.values { tr { th scope="row" { (knob.name()) } td { (value) } } }
             }
             @for line in verdict(advice) { p { (line) } }
