@@ -109,3 +109,26 @@ fn what_buys_nothing_is_said() {
         assert!(!output.status.success() && said(&output).contains(says), "{}", said(&output));
     }
 }
+
+/// As when somebody presses Ctrl-C.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_is_stopped_leaves_a_report() {
+    use std::io::{BufRead, BufReader};
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = grader::kits::root().unwrap().join("scenes");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
+    command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
+    command.args(["--size", "16x12", "--rounds", "1000", "--reference", "128", "--knob", "samples,sampler"]);
+    let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
+    lines.find(|line| line.starts_with("its own error")).expect("it has begun");
+    nix::sys::signal::kill(nix::unistd::Pid::from_raw(child.id() as i32), nix::sys::signal::SIGINT).unwrap();
+    let told: Vec<String> = lines.collect();
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+    assert!(told.iter().any(|line| line.starts_with("stopped before the end")), "{told:?}");
+    let json = fs::read(folder.path().join("out/stage1-cost/cost.json")).unwrap();
+    let json: Value = serde_json::from_slice(&json).unwrap();
+    assert_eq!(json["partial"], true);
+    assert!(json["rounds"].as_u64().unwrap() < 1000);
+}
