@@ -23,7 +23,8 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use ladder::{Called, Knob, Ladder};
 use measure::{Bench, Measured, front};
-use raykata::kit::{Kit, mishap};
+use raykata::effects::Effects;
+use raykata::kit::{Kit, Mishap, mishap};
 use raykata::scene::Scene;
 use reference::Reference;
 use serde::Serialize;
@@ -224,7 +225,14 @@ fn ladders(
     scene: &Scene,
     turned: &[Knob],
 ) -> Result<(Vec<Ladder>, NotOffered)> {
-    let effects = mishap::catch(|| kit.effects(std::slice::from_ref(scene)))?.remove(0);
+    let effects = match mishap::catch(|| kit.effects(std::slice::from_ref(scene))) {
+        Ok(mut effects) => effects.remove(0),
+        Err(Mishap::NotWritten { place, .. }) => {
+            println!("what a scene calls for is not written yet ({place}), so every knob is offered");
+            Effects::everything(scene)
+        }
+        Err(mishap) => return Err(mishap.into()),
+    };
     let mut pixel = scene.clone();
     (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);
     let primitives = bench.frame(&pixel, 0, true)?.map_or(0, |frame| frame.primitives);
