@@ -3,6 +3,21 @@
 use clap::{Args, ValueEnum};
 use raykata::scene::{Accelerator, Sampler, Scene, Split, TriangleMethod};
 
+/// How many threads render, the same for all commands.
+#[derive(Args)]
+pub struct Threads {
+    /// Threads; 0 takes one a core.
+    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
+}
+
+impl Threads {
+    /// As a job takes it.
+    pub fn count(&self) -> usize {
+        usize::from(self.threads)
+    }
+}
+
 /// Accuracy against time; what is not named stays as the scene says.
 #[derive(Args)]
 pub struct Knobs {

@@ -1,7 +1,7 @@
 //! `raykata render`: a scene becomes a picture.
 
 use crate::kits::{Choice, Source};
-use crate::knobs::Knobs;
+use crate::knobs::{Knobs, Threads};
 use crate::report::{Bytes, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use clap::Args;
@@ -22,9 +22,8 @@ pub struct Options {
     out: Option<PathBuf>,
     #[command(flatten)]
     kit: Choice,
-    /// Threads; 0 takes one a core.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
+    #[command(flatten)]
+    threads: Threads,
     /// Picks the random numbers.
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -79,7 +78,7 @@ pub fn run(options: &Options) -> Result<()> {
         scene,
         view,
         seed: options.seed,
-        threads: usize::from(options.threads),
+        threads: options.threads.count(),
         count: !options.no_counts,
     };
     let bar = Bar::new();

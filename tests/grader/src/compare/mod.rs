@@ -10,7 +10,7 @@ mod rows;
 mod table;
 
 use crate::kits::{Choice, Source};
-use crate::knobs::Knobs;
+use crate::knobs::{Knobs, Threads};
 use crate::report::{load_scene, make_folder};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -35,9 +35,8 @@ pub struct Options {
     /// How often each picture is timed, by turns; the median counts.
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
-    /// Threads; 0 takes one a core.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
+    #[command(flatten)]
+    threads: Threads,
     /// How deep the boxes and cells lie that are drawn, the root being at level 0.
     #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(0..=64))]
     level: u32,
@@ -62,7 +61,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let kit = &*source.fresh();
 
     let rows = rows::rows(options.of, &options.only, &scene);
-    let bench = Bench { kit, rounds: options.rounds, threads: usize::from(options.threads) };
+    let bench = Bench { kit, rounds: options.rounds, threads: options.threads.count() };
     let measured = bench.measure(&scene, &rows)?;
     let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
     table::print(&title, &measured);

@@ -242,7 +242,7 @@ pub fn verify(
     advice: &mut Advice,
 ) -> Result<()> {
     let others = Bench { seed: bench.seed + (1 << 20), ..*bench };
-    advice.verified_error = others.point(small, &advice.setting, right)?.map(|point| point.error());
+    advice.verified_error = others.point(small, &advice.setting, right, false)?.map(|point| point.error());
     let frame = others.frame(&advice.setting.apply(full), others.seed, false)?;
     advice.verified_seconds = frame.map(|frame| frame.build_seconds + frame.render_seconds);
     Ok(())
@@ -273,7 +273,7 @@ fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)
     measured.series.iter().filter(|series| chosen(series.knob)).filter_map(of_series).collect()
 }
 
-/// Measured once, with two rounds for its time.
+/// Measured once, however often it is asked for.
 fn point(
     bench: &Bench<'_>,
     scene: &Scene,
@@ -284,10 +284,7 @@ fn point(
     if let Some(point) = known.iter().find(|point| point.setting == *setting) {
         return Ok(Some(point.clone()));
     }
-    let Some(mut point) = bench.point(scene, setting, right)? else { return Ok(None) };
-    // That one was counted, which takes time.
-    let Some(frame) = bench.frame(&setting.apply(scene), bench.seed, false)? else { return Ok(None) };
-    point.seconds = frame.render_seconds;
-    known.push(point.clone());
-    Ok(Some(point))
+    let point = bench.point(scene, setting, right, false)?;
+    known.extend(point.clone());
+    Ok(point)
 }

@@ -71,7 +71,7 @@ pub struct Series {
 }
 
 /// What came of it.
-#[derive(Default)]
+#[derive(Default, Serialize)]
 pub struct Measured {
     pub points: Vec<Point>,
     pub series: Vec<Series>,
@@ -117,10 +117,17 @@ impl Bench<'_> {
         Ok(mishap::catch(|| self.kit.render(&job, &Patience { stop: self.stop, until }))?)
     }
 
-    /// Measures one setting without regard to others: errors, counts, and one time. `None` if it takes too long.
-    pub fn point(&self, scene: &Scene, setting: &Setting, right: &Reference) -> Result<Option<Point>> {
+    /// Measures one setting without regard to others: errors, one time, and counts, if it is to count, which takes time.
+    /// `None` if it takes too long.
+    pub fn point(
+        &self,
+        scene: &Scene,
+        setting: &Setting,
+        right: &Reference,
+        count: bool,
+    ) -> Result<Option<Point>> {
         let until = Instant::now() + PATIENCE;
-        let Some(frame) = self.frame_until(&setting.apply(scene), self.seed, true, until)? else {
+        let Some(frame) = self.frame_until(&setting.apply(scene), self.seed, count, until)? else {
             return Ok(None);
         };
         let errors = errors(&frame.film, &right.film)?;
@@ -149,7 +156,7 @@ impl Bench<'_> {
                 let known = measured.points.iter().position(|point| point.setting == setting);
                 let point = match known {
                     Some(_) => None,
-                    None => self.point(scene, &setting, right)?,
+                    None => self.point(scene, &setting, right, true)?,
                 };
                 match (known, point) {
                     (Some(known), _) => rungs.push((name, known)),

@@ -1,28 +1,31 @@
 //! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
 //!
-//! `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
-//! `slope` (how fast error falls) · `headline` (brute force against a hierarchy) · `advice` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told)
+//! `options` (what can be asked) · `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
+//! `slope` (how fast error falls) · `headline` and `landscape` (brute force against a
+//! hierarchy) · `advice` (the best for your time) · `table`,
+//! `page`, `plot`, `files` (how it is told)
 
 mod advice;
 mod error;
 mod files;
 mod headline;
 mod ladder;
+mod landscape;
 mod measure;
+mod options;
 mod page;
 mod plot;
 mod reference;
 mod slope;
 mod table;
 
-use crate::kits::{Choice, Source, Which};
-use crate::knobs::Knobs;
+use crate::kits::{Source, Which};
 use crate::report::{load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
-use clap::Args;
 use ladder::{Called, Knob, Ladder};
 use measure::{Bench, Measured, front};
+pub use options::Options;
 use raykata::effects::Effects;
 use raykata::kit::{Kit, Mishap, mishap};
 use raykata::scene::Scene;
@@ -30,52 +33,10 @@ use reference::Reference;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use slope::Slope;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-/// Which scene, which knobs, and how long.
-#[derive(Args)]
-pub struct Options {
-    /// The scene, a TOML file.
-    #[arg(required_unless_present = "headline")]
-    scene: Option<PathBuf>,
-    /// Instead: brute force against the hierarchy on a landscape of more and more triangles, on 3840 × 2160 pixels.
-    #[arg(long, conflicts_with = "scene")]
-    headline: bool,
-    /// How many triangles the largest landscape has.
-    #[arg(long, default_value_t = 12_000_000, requires = "headline", value_parser = clap::value_parser!(u64).range(2..=16_000_000))]
-    most: u64,
-    /// The knobs to turn [default: all that the scene calls for].
-    #[arg(long = "knob", value_enum, value_delimiter = ',')]
-    turned: Vec<Knob>,
-    #[command(flatten)]
-    kit: Choice,
-    /// Propose the settings with the least error for so much time, such as 60s or 1500ms, in the scene's own size.
-    #[arg(long, value_parser = parse_seconds, conflicts_with = "error")]
-    budget: Option<f64>,
-    /// Propose the fastest settings with no more root mean square error than this.
-    #[arg(long, value_parser = parse_error)]
-    error: Option<f64>,
-    /// Samples a pixel of the reference; more make its own error smaller.
-    #[arg(long, default_value_t = 1024, value_parser = clap::value_parser!(u32).range(128..=1_048_576))]
-    reference: u32,
-    /// How often each picture is made, by turns and with other random numbers; medians and means count.
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
-    rounds: u32,
-    /// Threads; 0 takes one a core.
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
-    /// Picks the random numbers.
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
-    #[command(flatten)]
-    knobs: Knobs,
-    /// The folder for the report, plots and tables [default: out/NAME-cost].
-    #[arg(long, short)]
-    out: Option<PathBuf>,
-}
 
 /// Pictures that are measured have at most so many pixels, unless a size was given: some hundred of them are made.
 const MOST_PIXELS: f64 = 10_000.0;
@@ -95,8 +56,6 @@ pub struct Told<'a> {
     reference_samples: u32,
     reference_error: f64,
     #[serde(flatten)]
-    told_of: Counted<'a>,
-    #[serde(skip)]
     measured: &'a Measured,
     /// Places of the points that no other beats, from the fastest on.
     front: Vec<usize>,
@@ -120,15 +79,6 @@ pub struct Told<'a> {
 /// Knobs, and why they buy nothing.
 type NotOffered = Vec<(Knob, String)>;
 
-/// What was measured, for machines.
-#[derive(Serialize)]
-struct Counted<'a> {
-    series: &'a [measure::Series],
-    points: &'a [measure::Point],
-    left_out: &'a [String],
-    rounds: u32,
-}
-
 /// Measures, prints a table and writes the report. `Ok(false)` if it was stopped.
 pub fn run(options: &Options) -> Result<bool> {
     let began = Instant::now();
@@ -139,7 +89,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let bench = Bench {
         kit,
         rounds: options.rounds,
-        threads: usize::from(options.threads),
+        threads: options.threads.count(),
         seed: options.seed,
         stop: &stop,
     };
@@ -192,12 +142,6 @@ pub fn run(options: &Options) -> Result<bool> {
         own_sampler: ladder::sampler_name(full.quality.sampler),
         reference_samples: right.samples,
         reference_error: right.own_error,
-        told_of: Counted {
-            series: &measured.series,
-            points: &measured.points,
-            left_out: &measured.left_out,
-            rounds: measured.rounds,
-        },
         measured: &measured,
         front: front(&measured.points),
         own: measured.points.iter().position(|point| point.setting == ladder::Setting::of(&small)),
@@ -328,36 +272,4 @@ fn stopped_by_ctrl_c() -> Result<Arc<AtomicBool>> {
     })
     .context("Ctrl-C cannot be listened to")?;
     Ok(stop)
-}
-
-/// `60s`, `1500ms`, `2m` or a number of seconds.
-fn parse_seconds(text: &str) -> Result<f64, String> {
-    let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("", 1.0)];
-    let number =
-        |(unit, scale): (&str, f64)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * scale);
-    match units.into_iter().find_map(number) {
-        Some(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("a time is a number above 0 with s, ms or m behind it, such as 60s".into()),
-    }
-}
-
-fn parse_error(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(error) if error > 0.0 && error.is_finite() => Ok(error),
-        _ => Err("an error is a number above 0, such as 0.01".into()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_read_as_people_write_them() {
-        let read = ["60s", "1500ms", "2m", "7", "0.5 s"].map(parse_seconds);
-        assert_eq!(read, [60.0, 1.5, 120.0, 7.0, 0.5].map(Ok));
-        for wrong in ["", "s", "-1s", "0", "inf", "soon"] {
-            assert!(parse_seconds(wrong).is_err(), "{wrong}");
-        }
-    }
 }

@@ -37,7 +37,7 @@ fn page(told: &Told<'_>) -> Result<Markup> {
             body {
                 h1 { (title) }
                 p.about {
-                    (told.width) " × " (told.height) " pixels by " (told.kit) ", " (told.told_of.rounds)
+                    (told.width) " × " (told.height) " pixels by " (told.kit) ", " (told.measured.rounds)
                     " rounds by turns, each with other random numbers. Errors are root mean squares in linear light, against "
                     (told.reference_samples) " samples a pixel, which are off by " (format!("{:.1e}", told.reference_error))
                     " themselves. Times are medians. Made by " code { (told.command) } " in " (format!("{:.0}", told.took)) " s."
@@ -53,7 +53,7 @@ fn page(told: &Told<'_>) -> Result<Markup> {
                 h2 { "Not measured" }
                 ul {
                     @for (knob, why) in &told.not_offered { li { (knob.name()) ": " (why) } }
-                    @for left_out in told.told_of.left_out { li { (left_out) } }
+                    @for left_out in &told.measured.left_out { li { (left_out) } }
                     li { "Lens and time have no samples of their own: each sample of a pixel has its own place on the lens and its own moment." }
                 }
             }

@@ -15,8 +15,8 @@ pub fn print(told: &Told<'_>) {
         told.scene,
         told.width,
         told.height,
-        told.told_of.rounds,
-        if told.told_of.rounds == 1 { "round" } else { "rounds" }
+        told.measured.rounds,
+        if told.measured.rounds == 1 { "round" } else { "rounds" }
     );
     println!(
         "{:<24}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}",

@@ -21,7 +21,7 @@ pub struct Options {
 }
 
 /// Folders that are handed out, and the endings of the files in them that are.
-const FOLDERS: [(&str, &[&str]); 8] = [
+const FOLDERS: [(&str, &[&str]); 7] = [
     ("src", &["rs", "md"]),
     ("tests/checks/src", &["rs"]),
     // Tests of the laws share its modules.
@@ -29,8 +29,7 @@ const FOLDERS: [(&str, &[&str]); 8] = [
     ("scenes", &["toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
-    // What the tool's report looks like, and a plot that a test knows.
-    ("tests/grader/src/cost", &["css"]),
+    // A plot that a test of the tool knows.
     ("tests/grader/src/cost/snapshots", &["snap"]),
 ];
 

@@ -23,7 +23,7 @@ pub(super) fn tool(root: &Path) -> Result<BTreeMap<String, String>> {
     Ok(files)
 }
 
-/// Takes a file and the modules that it names; `inside` is the folder in which they are.
+/// Takes a file, what it includes and the modules that it names; `inside` is the folder in which they are.
 fn follow(root: &Path, file: &Path, inside: &Path, files: &mut BTreeMap<String, String>) -> Result<()> {
     let shown = file.display().to_string();
     let text = cut(&super::text(root, &shown)?).with_context(|| shown.clone())?;
@@ -41,6 +41,11 @@ fn follow(root: &Path, file: &Path, inside: &Path, files: &mut BTreeMap<String, 
         let found: Option<&PathBuf> = candidates.iter().find(|candidate| root.join(candidate).is_file());
         let found = found.with_context(|| format!("{shown}: no file for `mod {name}`"))?;
         follow(root, found, &inside.join(&name), files)?;
+    }
+    for part in text.split("include_str!(\"").skip(1) {
+        let name = part.split('"').next().unwrap_or_default();
+        let included = file.with_file_name(name).display().to_string();
+        files.insert(included.clone(), super::text(root, &included)?);
     }
     files.insert(shown, text);
     Ok(())
