@@ -83,6 +83,7 @@ impl Bvh {
 
     /// Makes `node` a leaf that holds `primitives`.
     pub fn set_leaf(&mut self, node: u32, primitives: &[PrimitiveRef]) {
+        crate::building::placed(primitives.len());
         let first = self.order.len() as u32;
         self.order.extend(primitives.iter().map(|primitive| primitive.id));
         self.nodes[node as usize].contents = Contents::Leaf { first, count: primitives.len() as u32 };

@@ -19,6 +19,9 @@ pub trait Watch: Sync {
     /// `done` of `total` pixels are finished. Called from any thread.
     fn progress(&self, done: u64, total: u64);
 
+    /// Before the first pixel: `placed` of `total` primitives are in leaves. Called from any thread.
+    fn building(&self, _placed: u64, _total: u64) {}
+
     /// Whether the frame is no longer wanted.
     fn cancelled(&self) -> bool {
         false

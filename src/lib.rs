@@ -1,6 +1,7 @@
 //! The scaffold of Raykata: everything around the exercises and nothing that answers one.
 
 pub mod aabb;
+pub mod building;
 pub mod bvh;
 pub mod camera;
 pub mod count;

@@ -26,6 +26,13 @@ pub enum Reply {
         /// All pixels.
         total: u64,
     },
+    /// What a frame needs before its first pixel has got this far.
+    Building {
+        /// Primitives that are in leaves.
+        placed: u64,
+        /// All primitives.
+        total: u64,
+    },
     /// The answer.
     Answer(Box<Answer>),
     /// There is none.
@@ -120,6 +127,10 @@ impl Watch for Relay<'_> {
     fn progress(&self, done: u64, total: u64) {
         // If nobody listens any more, the next answer will find out.
         let _ = (self.0)(&Reply::Progress { done, total });
+    }
+
+    fn building(&self, placed: u64, total: u64) {
+        let _ = (self.0)(&Reply::Building { placed, total });
     }
 }
 

@@ -20,8 +20,8 @@ use raykata::shape::{Disk, Sphere, Triangle};
 /// The code in this folder, as the kit sees it.
 pub struct Kit;
 
-/// A plain loop: with `map` and `collect`, which the compiler has to write out for each of a hundred functions, all that is
-/// in this folder takes a third longer to compile (0.54 s and 0.40 s of processor time).
+/// A plain loop: iterators that are mapped and collected the compiler would have to write out for each of a hundred
+/// functions, and it compiles this file for every submission that is graded.
 pub fn each<Q, A>(queries: &[Q], mut answer: impl FnMut(&Q) -> A) -> Vec<A> {
     let mut answers = Vec::with_capacity(queries.len());
     for query in queries {
@@ -309,5 +309,8 @@ impl Frames for Kit {
     }
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
         tracer::outlines(job, depth)
+    }
+    fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
+        tracer::first_hits(job, rays)
     }
 }

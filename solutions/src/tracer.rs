@@ -7,19 +7,22 @@ use crate::finder::Finder;
 use crate::outlines;
 use crate::plan::Plan;
 use crate::radiance::Desk;
-use crate::surfaces::Looks;
+use crate::surfaces::{Hit, Looks};
 use glam::{Vec3, uvec2};
+use raykata::building;
+use raykata::bvh::PrimitiveHit;
 use raykata::count::{Counts, Event, Tally, Uncounted};
 use raykata::film::Film;
-use raykata::frame::{self, CameraSample, FrameSettings, Watch};
+use raykata::frame::{self, CameraSample, FrameSettings, Unwatched, Watch};
 use raykata::kit::{Limits, RenderJob, Rendering, TracedRay, View, WeightedColor};
+use raykata::ray::Ray;
 use raykata::scene::Quality;
 use raykata::world::{World, camera_for};
 use std::time::Instant;
 
 pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
     let started = Instant::now();
-    let tracer = Tracer::new(job);
+    let tracer = Tracer::new(job, watch);
     let build_seconds = started.elapsed().as_secs_f64();
     let started = Instant::now();
     let (film, counts) =
@@ -37,7 +40,7 @@ pub fn render(job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
 }
 
 pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-    let tracer = Tracer::new(job);
+    let tracer = Tracer::new(job, &Unwatched);
     let sample = CameraSample::draw(&tracer.settings(), x, y, 0);
     let ray = tracer.eye.ray(&sample);
     let mut rays = Vec::new();
@@ -53,7 +56,29 @@ pub fn trace(job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
 }
 
 pub fn outlines(job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
-    outlines::outlines(&Tracer::new(job).finder.structure, depth as usize)
+    outlines::outlines(&Tracer::new(job, &Unwatched).finder.structure, depth as usize)
+}
+
+/// Rays that go on together through a structure that likes them so.
+const PACKET: usize = 16;
+
+pub fn first_hits(job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
+    let plan = Plan::new(job);
+    let finder = Finder::new(World::plain(&job.scene), &plan, &job.scene.quality);
+    let n_primitives = finder.world.primitives.len() as u32;
+    let named = |hit: Hit| match hit {
+        Hit::Plane { t, index } => PrimitiveHit { t, primitive: n_primitives + index as u32 },
+        Hit::Primitive(hit) => hit,
+        Hit::Inner { t, outer, .. } => PrimitiveHit { t, primitive: outer },
+    };
+    let tally = &mut Uncounted;
+    let hits: Vec<Option<Hit>> = if finder.likes_packets() {
+        rays.chunks(PACKET).flat_map(|rays| finder.closest_hits(rays, tally)).collect()
+    } else {
+        let mut last = None;
+        rays.iter().map(|ray| finder.closest_hit(ray, tally, &mut last)).collect()
+    };
+    hits.into_iter().map(|hit| hit.map(named)).collect()
 }
 
 pub struct Tracer<'a> {
@@ -66,12 +91,13 @@ pub struct Tracer<'a> {
 }
 
 impl<'a> Tracer<'a> {
-    fn new(job: &'a RenderJob) -> Self {
+    fn new(job: &'a RenderJob, watch: &dyn Watch) -> Self {
         let scene = &job.scene;
         let quality = &scene.quality;
         let plan = Plan::new(job);
         let world = World::new(scene, &plan.effects, &plan.crafts);
-        let finder = Finder::new(world, &plan, quality);
+        let n_primitives = world.primitives.len() as u64;
+        let finder = building::watched(watch, n_primitives, || Finder::new(world, &plan, quality));
         let eye = Eye {
             camera: camera_for(scene),
             sampler: quality.sampler,

@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::aabb::Aabb;
-use crate::bvh::Bvh;
+use crate::bvh::{Bvh, PrimitiveHit};
 use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
 use crate::graph::Placement;
@@ -71,6 +71,10 @@ pub trait Frames {
     /// The edges of the boxes or cells of the structure over the scene at this depth, the root being at depth 0, and of
     /// the leaves above it.
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]>;
+
+    /// What each ray meets first in [`World::plain`](crate::world::World::plain) of the scene of `job`, found as its
+    /// quality says. Primitives have their numbers there; planes are counted after them.
+    fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>;
 }
 
 macro_rules! door {
@@ -91,6 +95,8 @@ macro_rules! door {
             Trace(Box<RenderJob>, u32, u32),
             /// Edges of the structure at a depth.
             Outlines(Box<RenderJob>, u32),
+            /// What rays meet first in a scene.
+            FirstHits(Box<RenderJob>, Vec<Ray>),
         }
 
         /// An answer as a message.
@@ -103,6 +109,8 @@ macro_rules! door {
             Trace(Vec<TracedRay>),
             /// Edges of the structure at a depth.
             Outlines(Vec<[Vec3; 2]>),
+            /// What rays meet first in a scene.
+            FirstHits(Vec<Option<PrimitiveHit>>),
         }
 
         impl Request {
@@ -113,6 +121,7 @@ macro_rules! door {
                     Request::Render(job) => Answer::Render(kit.render(job, watch).map(Box::new)),
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
                     Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
+                    Request::FirstHits(job, rays) => Answer::FirstHits(kit.first_hits(job, rays)),
                 }
             }
         }
@@ -150,6 +159,14 @@ impl<T: Transport> Frames for Door<T> {
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
         match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
             Answer::Outlines(edges) => edges,
+            answer => mishap::wrong_answer(&answer),
+        }
+    }
+
+    fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
+        let request = Request::FirstHits(Box::new(job.clone()), rays.to_vec());
+        match self.0.call(request, &crate::frame::Unwatched) {
+            Answer::FirstHits(hits) if hits.len() == rays.len() => hits,
             answer => mishap::wrong_answer(&answer),
         }
     }

@@ -160,6 +160,12 @@ impl World {
     pub fn new(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
         flatten::flatten(scene, effects, crafts)
     }
+
+    /// The same scene of triangles, spheres and planes alone, all where they stand when the shutter opens, whatever is
+    /// written: what searches and tests of different kits can be compared on.
+    pub fn plain(scene: &Scene) -> World {
+        World::new(scene, &Effects::default(), &Crafts::default())
+    }
 }
 
 /// What the scene asks for and no built stage simulates.

@@ -1,7 +1,7 @@
 //! The knobs of a scene on the command line, the same for all commands that render.
 
 use clap::{Args, ValueEnum};
-use raykata::scene::{Accelerator, Sampler, Scene, Split, TriangleMethod};
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
 
 /// How many threads render, the same for all commands.
 #[derive(Args)]
@@ -55,6 +55,12 @@ pub struct Knobs {
     /// Ray/triangle test [default: the scene's].
     #[arg(long, value_enum)]
     triangles: Option<TriangleName>,
+    /// Digits of ray/shape tests [default: the scene's].
+    #[arg(long, value_enum)]
+    precision: Option<PrecisionName>,
+    /// Rays of less weight are not traced, 0 to 1 [default: the scene's].
+    #[arg(long, value_parser = parse_share)]
+    min_contribution: Option<f32>,
 }
 
 impl Knobs {
@@ -87,7 +93,38 @@ impl Knobs {
             TriangleName::Gram => TriangleMethod::Gram,
             TriangleName::Watertight => TriangleMethod::Watertight,
         });
+        quality.precision = self.precision.map_or(quality.precision, |precision| match precision {
+            PrecisionName::Single => Precision::Single,
+            PrecisionName::Double => Precision::Double,
+        });
+        quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
     }
+}
+
+/// The arguments that turn the knobs of `own` to where `wanted` has them, as far as they differ.
+pub fn arguments(own: &Quality, wanted: &Quality) -> String {
+    let values = |quality: &Quality| {
+        let named = |value: serde_json::Result<serde_json::Value>| {
+            let value = value.unwrap_or_default();
+            value.as_str().map_or_else(|| value.to_string(), |name| name.replace('_', "-"))
+        };
+        [
+            ("--spp", quality.samples_per_pixel.to_string()),
+            ("--sampler", named(serde_json::to_value(quality.sampler))),
+            ("--light-samples", quality.light_samples.to_string()),
+            ("--gloss-samples", quality.gloss_samples.to_string()),
+            ("--depth", quality.max_depth.to_string()),
+            ("--min-contribution", quality.min_contribution.to_string()),
+            ("--triangles", named(serde_json::to_value(quality.triangle_method))),
+            ("--precision", named(serde_json::to_value(quality.precision))),
+            ("--accelerator", named(serde_json::to_value(quality.accelerator))),
+            ("--split", named(serde_json::to_value(quality.split))),
+            ("--leaf-size", quality.leaf_size.to_string()),
+            ("--grid-resolution", quality.grid_resolution.to_string()),
+        ]
+    };
+    let differ = values(own).into_iter().zip(values(wanted)).filter(|(own, wanted)| own != wanted);
+    differ.map(|(_, (name, value))| format!(" {name} {value}")).collect()
 }
 
 /// A sampler by the name that scene files use, with `-` for `_`.
@@ -129,6 +166,17 @@ pub(crate) fn parse_accelerator(text: &str) -> Result<Accelerator, String> {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
+enum PrecisionName {
+    Single,
+    Double,
+}
+
+fn parse_share(text: &str) -> Result<f32, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "a weight is a number from 0 to 1, such as 0.001".into())
+}
+
+#[derive(Clone, Copy, ValueEnum)]
 enum TriangleName {
     Cramer,
     Gram,
@@ -146,5 +194,44 @@ pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
             Ok((width, height))
         }
         _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        knobs: Knobs,
+    }
+
+    #[test]
+    fn arguments_turn_every_knob() {
+        let mut scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let own = scene.quality;
+        let wanted = Quality {
+            samples_per_pixel: 343,
+            sampler: Sampler::Jittered,
+            light_samples: 7,
+            gloss_samples: 3,
+            max_depth: 9,
+            min_contribution: 0.03,
+            triangle_method: TriangleMethod::Gram,
+            precision: Precision::Double,
+            accelerator: Accelerator::OctreeByCells,
+            split: Split::SpatialMedian,
+            leaf_size: 8,
+            grid_resolution: 64,
+            ..own
+        };
+        let line = arguments(&own, &wanted);
+        assert!(line.starts_with(" --spp 343 --sampler jittered --light-samples 7"), "{line}");
+        Line::try_parse_from(format!("render{line}").split(' ')).unwrap().knobs.apply(&mut scene);
+        assert_eq!(scene.quality, wanted);
+        assert_eq!(arguments(&own, &own), "");
+        assert!(parse_share("1.5").is_err() && parse_share("NaN").is_err() && parse_share("some").is_err());
     }
 }

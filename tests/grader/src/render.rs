@@ -2,12 +2,10 @@
 
 use crate::kits::{Choice, Source};
 use crate::knobs::{Knobs, Threads};
-use crate::report::{Bytes, Thousands, load_scene, make_folder_of};
+use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use raykata::film::{Film, encode_srgb};
-use raykata::frame::Watch;
 use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
 use raykata::scene::{Accelerator, Encoding};
 use std::path::{Path, PathBuf};
@@ -81,9 +79,9 @@ pub fn run(options: &Options) -> Result<()> {
         threads: options.threads.count(),
         count: !options.no_counts,
     };
-    let bar = Bar::new();
+    let bar = FrameBar::new("");
     let rendering = mishap::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
-    bar.0.finish_and_clear();
+    bar.finish();
 
     let write = match format {
         Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
@@ -119,25 +117,6 @@ fn write_exr(film: &Film, out: &Path) -> Result<()> {
     picture.write().to_buffered(&mut bytes)?;
     raykata::film::write_atomically(out, |file| std::io::Write::write_all(file, bytes.get_ref()))?;
     Ok(())
-}
-
-/// A progress bar; draws nothing when nobody sees it.
-struct Bar(ProgressBar);
-
-impl Bar {
-    fn new() -> Self {
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go");
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Bar(bar)
-    }
-}
-
-impl Watch for Bar {
-    fn progress(&self, done: u64, total: u64) {
-        self.0.set_length(total);
-        self.0.set_position(done);
-    }
 }
 
 fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {

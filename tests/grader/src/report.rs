@@ -3,11 +3,13 @@
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
 use indicatif::{ProgressBar, ProgressStyle};
+use raykata::frame::Watch;
 use raykata::scene::error::LoadError;
 use raykata::scene::{Scene, load};
 use std::fmt;
 use std::io::IsTerminal;
 use std::path::Path;
+use std::time::Duration;
 
 /// A number with a comma between thousands.
 pub struct Thousands(pub u64);
@@ -81,6 +83,55 @@ pub fn make_folder_of(file: &Path) -> Result<()> {
 pub fn bar_of_steps(n: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}");
     ProgressBar::new(n as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+/// How far a frame is: what is built first, then its pixels. Draws nothing when nobody sees it.
+pub struct FrameBar(ProgressBar);
+
+impl FrameBar {
+    /// `what` is being made; it may be said later.
+    pub fn new(what: &str) -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template(
+            "{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix}{msg}",
+        );
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.set_prefix(what.to_owned());
+        // Time goes on where nothing can be counted.
+        bar.enable_steady_tick(Duration::from_millis(500));
+        FrameBar(bar)
+    }
+
+    /// Something else begins.
+    pub fn begin(&self, what: String) {
+        self.0.reset();
+        self.0.set_length(0);
+        self.0.set_message("");
+        self.0.set_prefix(what);
+    }
+
+    /// Nothing more to show.
+    pub fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Watch for FrameBar {
+    fn building(&self, placed: u64, total: u64) {
+        self.0.set_message("building");
+        self.0.set_length(total);
+        self.0.set_position(placed);
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        if self.0.length() != Some(total) {
+            // Pixels go at another pace than primitives.
+            self.0.reset();
+            self.0.set_message("");
+            self.0.set_length(total);
+        }
+        self.0.set_position(done);
+    }
 }
 
 /// The lower quartile, the median and the upper quartile; of an even number the median is the lower of the middle two.

@@ -153,11 +153,15 @@ impl Process {
         worker::send(&mut self.to_worker, request)?;
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
-                Reply::Progress { .. } if !matches!(request, Request::Render(_)) => {
+                Reply::Progress { .. } | Reply::Building { .. } if !matches!(request, Request::Render(_)) => {
                     return Err(io::Error::other("it says how far a frame is, and was asked for none"));
                 }
-                Reply::Progress { done, total } => {
-                    watch.progress(done, total);
+                told @ (Reply::Progress { .. } | Reply::Building { .. }) => {
+                    match told {
+                        Reply::Building { placed, total } => watch.building(placed, total),
+                        Reply::Progress { done, total } => watch.progress(done, total),
+                        _ => {}
+                    }
                     if watch.cancelled() {
                         return Ok(None);
                     }

@@ -88,9 +88,35 @@ fn a_proposal_is_tried_out() {
         serde_json::from_slice(&fs::read(folder.path().join("out/stage5-cost/cost.json")).unwrap()).unwrap();
     let advice = &json["advice"];
     assert!(advice["expected_error"].as_f64().unwrap() <= 0.03, "{advice}");
-    // Other random numbers make another error, but not a much larger one.
-    assert!(advice["verified_error"].as_f64().unwrap() <= 0.045, "{advice}");
+    // Other random numbers make another error. That of 16 × 12 pixels is made by the few on edges, a dozen or so, and of so
+    // few the root of the mean of squares wobbles by a fifth; twice that is not reached by chance in a fixed pair of seeds.
+    assert!(advice["verified_error"].as_f64().unwrap() <= 0.03 * 1.5, "{advice}");
     assert!(said(&output).contains("rendered, with other random numbers"), "{}", said(&output));
+}
+
+#[test]
+fn hits_are_judged_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let judged = |method: &str| {
+        let arguments = ["scenes/stage2.toml", "--knob", "split", "--triangles", method, "--out", method];
+        let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
+        let json: Value = serde_json::from_slice(&json).unwrap();
+        let points = json["points"].as_array().unwrap().clone();
+        assert!(
+            points.len() == 3 && points.iter().all(|point| point["hits"] == points[0]["hits"]),
+            "{points:?}"
+        );
+        let number = |name: &str| points[0]["hits"][name].as_u64().unwrap();
+        (number("rays"), number("wrong"), number("leaks"))
+    };
+    let (rays, wrong, leaks) = judged("watertight");
+    // By rounding a ray may count for the neighbour; a leak would be a hole.
+    assert!(rays > 3000 && wrong <= 5 && leaks == 0, "{rays} {wrong} {leaks}");
+    let (same, wrong, leaks) = judged("cramer");
+    // One in ten that is aimed at an edge slips through (stage 2).
+    assert!(same == rays && wrong > leaks && leaks > 20, "{same} {wrong} {leaks}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! The best for your time: from the cheapest setting upwards, always by the step that buys the most.
 
+use super::climb::{Climb, Tried};
 use super::ladder::{Knob, Setting};
-use super::measure::{Bench, Measured, Point};
+use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
-use crate::report::bar_of_steps;
 use anyhow::Result;
 use raykata::scene::Scene;
 use serde::Serialize;
@@ -55,12 +55,14 @@ pub struct Advice {
     pub expected_seconds: f64,
     pub verified_error: Option<f64>,
     pub verified_seconds: Option<f64>,
+    /// How to render what is proposed.
+    pub command: String,
     #[serde(skip)]
     pub setting: Setting,
 }
 
 /// Turns a knob of one setting to where another has it.
-fn turned(to: &Setting, knob: Knob, setting: &Setting) -> Setting {
+pub fn turned(to: &Setting, knob: Knob, setting: &Setting) -> Setting {
     let (from, mut turned) = (&to.quality, setting.clone());
     let quality = &mut turned.quality;
     match knob {
@@ -82,10 +84,7 @@ fn turned(to: &Setting, knob: Knob, setting: &Setting) -> Setting {
 }
 
 /// How far the error of a setting may lie above that of another and still count as the same.
-const AS_GOOD: f64 = 1.02;
-
-/// How much of the budget is spent on purpose: frames differ by some percent from one to the next.
-const SHARE: f64 = 0.95;
+pub const AS_GOOD: f64 = 1.02;
 
 /// Knobs of which one value is best whatever the others are: the fastest of those that are as accurate.
 const CHOSEN_ONCE: [Knob; 6] = [
@@ -106,14 +105,53 @@ pub fn advise(
     goal: Goal,
     full: f64,
 ) -> Result<Option<Advice>> {
-    let own = Setting::of(scene);
-    let mut setting = own.clone();
-    let (ladders, chosen): (Vec<_>, Vec<_>) = measured
+    let mut tried = Tried { bench, scene, right, known: Vec::new() };
+    let start = with_what_is_best(measured, &Setting::of(scene));
+    let turned_by_steps: Vec<&Series> = measured
         .series
         .iter()
-        .filter(|series| !series.rungs.is_empty() && series.knob != Knob::Sampler)
-        .partition(|series| !CHOSEN_ONCE.contains(&series.knob));
-    for series in chosen {
+        .filter(|series| !series.rungs.is_empty() && !is_chosen_once(series.knob))
+        .collect();
+    let Some(mut climb) = Climb::new(&mut tried, measured, turned_by_steps, start, goal, full)? else {
+        return Ok(None);
+    };
+    if !climb.go_up()? {
+        return Ok(None);
+    }
+    climb.spend_the_rest()?;
+    let left = climb.one_step_more()?;
+    let values = [climb.values(), names_of_chosen(measured, &climb.now.setting)].concat();
+    let (now, steps) = (climb.now, climb.steps);
+    let Some(own) = tried.point(&Setting::of(scene))? else { return Ok(None) };
+    Ok(Some(Advice {
+        goal,
+        values,
+        steps,
+        left,
+        own_error: own.error(),
+        own_seconds: seconds_in_full(&own, full),
+        expected_error: now.error(),
+        expected_seconds: seconds_in_full(&now, full),
+        verified_error: None,
+        verified_seconds: None,
+        command: String::new(),
+        setting: now.setting,
+    }))
+}
+
+/// Seconds of a picture with so many times as many pixels; what is built is the same.
+pub fn seconds_in_full(point: &Point, full: f64) -> f64 {
+    point.seconds * full + point.build_seconds
+}
+
+fn is_chosen_once(knob: Knob) -> bool {
+    CHOSEN_ONCE.contains(&knob) || knob == Knob::Sampler
+}
+
+/// The setting with every knob that is chosen once at its best value.
+fn with_what_is_best(measured: &Measured, own: &Setting) -> Setting {
+    let mut setting = own.clone();
+    for series in measured.series.iter().filter(|series| CHOSEN_ONCE.contains(&series.knob)) {
         let points = || series.rungs.iter().map(|(_, index)| &measured.points[*index]);
         let least = points().map(Point::error).fold(f64::INFINITY, f64::min);
         let good = points().filter(|point| point.error() <= AS_GOOD * least);
@@ -121,116 +159,10 @@ pub fn advise(
             setting = turned(&best.setting, series.knob, &setting);
         }
     }
-    if let Some(best) = best_sampler(measured) {
-        setting = turned(&best.setting, Knob::Sampler, &setting);
+    match best_sampler(measured) {
+        Some(best) => turned(&best.setting, Knob::Sampler, &setting),
+        None => setting,
     }
-    // All others begin at the cheapest value.
-    let mut at = vec![0; ladders.len()];
-    for series in &ladders {
-        setting = turned(&measured.points[series.rungs[0].1].setting, series.knob, &setting);
-    }
-    let turns_samples = ladders.iter().any(|series| series.knob == Knob::Samples);
-    let bar = bar_of_steps(ladders.iter().map(|series| series.rungs.len()).sum());
-    bar.set_message("looking for the best settings");
-    let mut known: Vec<Point> = Vec::new();
-    let Some(mut now) = point(bench, scene, &setting, right, &mut known)? else { return Ok(None) };
-    let mut steps = Vec::new();
-    let in_full = |point: &Point| point.seconds * full + point.build_seconds;
-    let fits = |point: &Point| match goal {
-        Goal::Seconds(budget) => in_full(point) <= SHARE * budget,
-        Goal::Error(_) => true,
-    };
-    let reached = |point: &Point| matches!(goal, Goal::Error(target) if point.error() <= target);
-    loop {
-        if reached(&now) {
-            break;
-        }
-        let mut best: Option<(f64, usize, usize, Point)> = None;
-        for (index, series) in ladders.iter().enumerate() {
-            // The next rung and the one after it: some knobs help only when they are turned far enough.
-            for rung in (at[index] + 1..series.rungs.len()).take(2) {
-                let to = &measured.points[series.rungs[rung].1].setting;
-                let Some(candidate) =
-                    point(bench, scene, &turned(to, series.knob, &setting), right, &mut known)?
-                else {
-                    if bench.stopped() {
-                        return Ok(None);
-                    }
-                    continue;
-                };
-                let gain = (now.error() / candidate.error().max(1e-12)).ln();
-                let cost = (candidate.seconds - now.seconds).max(0.01 * now.seconds);
-                let worth = gain / cost;
-                if fits(&candidate)
-                    && candidate.error() * AS_GOOD < now.error()
-                    && best.as_ref().is_none_or(|(most, ..)| worth > *most)
-                {
-                    best = Some((worth, index, rung, candidate));
-                }
-            }
-        }
-        let Some((_, index, rung, next)) = best else { break };
-        at[index] = rung;
-        setting = next.setting.clone();
-        now = next;
-        let (knob, to) = (ladders[index].knob, ladders[index].rungs[rung].0.clone());
-        steps.push(Step { knob, to, error: now.error(), seconds: in_full(&now) });
-        bar.inc(1);
-    }
-    if let Goal::Seconds(budget) = goal {
-        // Rungs are a factor of two apart; what is left of the budget goes to as many samples as it pays for.
-        let times = (SHARE * budget - now.build_seconds) / (now.seconds * full).max(1e-9);
-        let samples = (f64::from(now.setting.quality.samples_per_pixel) * times) as u32;
-        if turns_samples && samples > now.setting.quality.samples_per_pixel {
-            let mut more = now.setting.clone();
-            more.quality.samples_per_pixel = samples.min(65_536);
-            if let Some(candidate) = point(bench, scene, &more, right, &mut known)?
-                .filter(|more| fits(more) && more.error() < now.error())
-            {
-                let (knob, to) = (Knob::Samples, more.quality.samples_per_pixel.to_string());
-                steps.push(Step { knob, to, error: candidate.error(), seconds: in_full(&candidate) });
-                (setting, now) = (more, candidate);
-            }
-        }
-    }
-    let mut left = Vec::new();
-    for (index, series) in ladders.iter().enumerate() {
-        let Some((_, next)) = series.rungs.get(at[index] + 1) else { continue };
-        let more = turned(&measured.points[*next].setting, series.knob, &setting);
-        // Samples may have been turned to between two rungs, or to the next.
-        if more.quality.samples_per_pixel < setting.quality.samples_per_pixel || more == setting {
-            continue;
-        }
-        if let Some(more) = point(bench, scene, &more, right, &mut known)? {
-            left.push(Left {
-                knob: series.knob,
-                at: series.rungs[at[index]].0.clone(),
-                time_factor: more.seconds / now.seconds.max(1e-9),
-                error_factor: more.error() / now.error().max(1e-12),
-            });
-        }
-    }
-    let mut values: Vec<(Knob, String)> =
-        ladders.iter().zip(&at).map(|(series, &rung)| (series.knob, series.rungs[rung].0.clone())).collect();
-    for (_, value) in values.iter_mut().filter(|(knob, _)| *knob == Knob::Samples) {
-        *value = setting.quality.samples_per_pixel.to_string();
-    }
-    values.extend(names_of_chosen(measured, &setting));
-    let Some(own) = point(bench, scene, &own, right, &mut known)? else { return Ok(None) };
-    bar.finish_and_clear();
-    Ok(Some(Advice {
-        goal,
-        values,
-        steps,
-        left,
-        own_error: own.error(),
-        own_seconds: in_full(&own),
-        expected_error: now.error(),
-        expected_seconds: in_full(&now),
-        verified_error: None,
-        verified_seconds: None,
-        setting,
-    }))
 }
 
 /// Renders the proposal in full size, with other random numbers, and its error in the small size.
@@ -256,7 +188,7 @@ fn best_sampler(measured: &Measured) -> Option<&Point> {
 }
 
 fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)> {
-    let of_series = |series: &super::measure::Series| {
+    let of_series = |series: &Series| {
         let is_same = |index: &usize| {
             let value = &measured.points[*index].setting;
             turned(value, series.knob, setting) == *setting
@@ -269,22 +201,5 @@ fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)
         };
         Some((series.knob, name?))
     };
-    let chosen = |knob: Knob| CHOSEN_ONCE.contains(&knob) || knob == Knob::Sampler;
-    measured.series.iter().filter(|series| chosen(series.knob)).filter_map(of_series).collect()
-}
-
-/// Measured once, however often it is asked for.
-fn point(
-    bench: &Bench<'_>,
-    scene: &Scene,
-    setting: &Setting,
-    right: &Reference,
-    known: &mut Vec<Point>,
-) -> Result<Option<Point>> {
-    if let Some(point) = known.iter().find(|point| point.setting == *setting) {
-        return Ok(Some(point.clone()));
-    }
-    let point = bench.point(scene, setting, right, false)?;
-    known.extend(point.clone());
-    Ok(point)
+    measured.series.iter().filter(|series| is_chosen_once(series.knob)).filter_map(of_series).collect()
 }

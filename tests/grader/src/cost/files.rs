@@ -25,6 +25,9 @@ struct Row<'a> {
     rays: u64,
     box_tests: u64,
     primitive_tests: u64,
+    rays_judged: Option<u64>,
+    wrong_hits: Option<u64>,
+    leaks: Option<u64>,
     unbeaten: bool,
 }
 
@@ -47,6 +50,9 @@ pub fn write(out: &Path, told: &Told<'_>) -> Result<()> {
                 rays: point.counts.rays(),
                 box_tests: point.counts.box_tests,
                 primitive_tests: point.counts.primitive_tests,
+                rays_judged: point.hits.map(|hits| hits.rays),
+                wrong_hits: point.hits.map(|hits| hits.wrong),
+                leaks: point.hits.map(|hits| hits.leaks),
                 unbeaten: told.front.contains(index),
             })?;
         }

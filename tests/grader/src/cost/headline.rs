@@ -5,16 +5,13 @@
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
-use crate::report::{Thousands, make_folder};
+use crate::report::{FrameBar, Thousands, make_folder};
 use anyhow::{Context, Result};
-use indicatif::{ProgressBar, ProgressStyle};
-use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, View, mishap};
 use raykata::scene::{Accelerator, Scene};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use std::time::Duration;
 
 /// The screen of the lecture notes.
 const SCREEN: (u32, u32) = (3840, 2160);
@@ -88,7 +85,7 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     );
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
-        let Some(row) = measure(bench, triangles, rows.last())? else { break };
+        let Some(row) = measure(bench, triangles)? else { break };
         println!(
             "{:>12} {:>7.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2} {:>11.0} {:>11.2} {:>13} {:>11} {:>11}",
             Thousands(row.triangles).to_string(),
@@ -155,30 +152,19 @@ fn sizes(most: u64) -> Vec<u64> {
 }
 
 /// `None` if nobody wants it any more.
-fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
+fn measure(bench: &Bench<'_>, triangles: u64) -> Result<Option<Row>> {
     let sides = sides(triangles);
     let exact = 2 * u64::from(sides.0) * u64::from(sides.1);
-    let bar = ProgressBar::new_spinner();
-    let style = ProgressStyle::with_template("{spinner} {elapsed} {msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let about = |seconds: fn(&Row) -> f64| {
-        // Sorting makes it n log n.
-        let ratio = |row: &Row| {
-            let (n, before) = (exact as f64, row.triangles as f64);
-            seconds(row) * (n * n.ln()) / (before * before.ln())
-        };
-        smaller.map_or(String::new(), |row| format!(", about {:.0} s", ratio(row).max(1.0)))
-    };
-    let say = |what: &str| bar.set_message(format!("{} triangles: {what}", Thousands(exact)));
+    let bar = FrameBar::new("");
+    let say = |what: &str| bar.begin(format!("{} triangles: {what}", Thousands(exact)));
     say("making the landscape");
     let scene = scene(SCREEN, sides)?;
 
-    say(&format!("building the hierarchy, then counting{}", about(|row| row.build_seconds)));
+    say("counting");
     let (width, height) = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
-    let counted = frame(bench, &scene, Accelerator::Bvh, (width, height), true)?;
-    say(&format!("building it again, then the whole frame{}", about(|row| row.build_seconds)));
-    let whole = frame(bench, &scene, Accelerator::Bvh, SCREEN, false)?;
+    let counted = frame(bench, &bar, &scene, Accelerator::Bvh, (width, height), true)?;
+    say("the whole frame");
+    let whole = frame(bench, &bar, &scene, Accelerator::Bvh, SCREEN, false)?;
     if bench.stopped() {
         return Ok(None);
     }
@@ -186,9 +172,9 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
     let across = ((TESTS_OF_SLICE as f64 / (144.0 * exact as f64)).sqrt() * 16.0).clamp(4.0, 960.0) as u32;
     let slice = (across, (across * 9 / 16).max(1));
     say("brute force on a slice");
-    let brute = frame(bench, &scene, Accelerator::BruteForce, slice, false)?;
-    let same = frame(bench, &scene, Accelerator::Bvh, slice, false)?;
-    bar.finish_and_clear();
+    let brute = frame(bench, &bar, &scene, Accelerator::BruteForce, slice, false)?;
+    let same = frame(bench, &bar, &scene, Accelerator::Bvh, slice, false)?;
+    bar.finish();
     let rays = counted.counts.primary.max(1) as f64;
     let different =
         brute.film.pixels.iter().zip(&same.film.pixels).filter(|(one, other)| one != other).count();
@@ -208,6 +194,7 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
 
 fn frame(
     bench: &Bench<'_>,
+    bar: &FrameBar,
     scene: &Scene,
     accelerator: Accelerator,
     (width, height): (u32, u32),
@@ -217,7 +204,7 @@ fn frame(
     (scene.film.width, scene.film.height) = (width, height);
     scene.quality.accelerator = accelerator;
     let job = RenderJob { scene, view: View::Normals, seed: bench.seed, threads: bench.threads, count };
-    mishap::catch(|| bench.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
+    mishap::catch(|| bench.kit.render(&job, bar))?.context("the frame was cancelled")
 }
 
 /// As people say it.

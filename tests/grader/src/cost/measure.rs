@@ -1,6 +1,7 @@
 //! Measuring: errors and counts, which do not wobble, and times by turns, which do.
 
 use super::error::{Errors, errors};
+use super::hits::Verdicts;
 use super::ladder::{Knob, Ladder, Setting};
 use super::reference::Reference;
 use crate::report::{bar_of_steps, quartiles};
@@ -14,11 +15,9 @@ use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// A small picture that takes longer is left out: in all rounds together it would take minutes.
-const PATIENCE: Duration = Duration::from_secs(30);
-
-/// The same for what has to be built before: nothing can break that off.
-const PATIENCE_TO_BUILD: f64 = 3.0;
+/// A small picture that takes longer is left out: in all rounds together it would take minutes. What is known to be dear is
+/// left out by numbers that no clock knows (`ladder`); this is for code that is slower than anybody expects.
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Who is measured, and how.
 pub struct Bench<'a> {
@@ -41,6 +40,8 @@ pub struct Point {
     /// Root mean square error of each round.
     pub rmse: Vec<f64>,
     pub counts: Counts,
+    /// What the oracle says of the hits, for knobs that decide only how they are found.
+    pub hits: Option<Verdicts>,
     /// Seconds for the pixels, the median over all rounds.
     pub seconds: f64,
     /// Seconds to build what finds hits.
@@ -84,14 +85,14 @@ pub struct Measured {
 /// Ends a frame that takes too long, or that nobody wants.
 struct Patience<'a> {
     stop: &'a AtomicBool,
-    until: Instant,
+    until: Option<Instant>,
 }
 
 impl Watch for Patience<'_> {
     fn progress(&self, _: u64, _: u64) {}
 
     fn cancelled(&self) -> bool {
-        self.stop.load(Ordering::Relaxed) || Instant::now() > self.until
+        self.stop.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() > until)
     }
 }
 
@@ -100,10 +101,9 @@ impl Bench<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// A picture; `None` if nobody wants it any more.
+    /// A picture, however long it takes; `None` if nobody wants it any more.
     pub fn frame(&self, scene: &Scene, seed: u64, count: bool) -> Result<Option<Rendering>> {
-        // A reference is worth waiting for.
-        self.frame_until(scene, seed, count, Instant::now() + 100 * PATIENCE)
+        self.frame_until(scene, seed, count, None)
     }
 
     fn frame_until(
@@ -111,7 +111,7 @@ impl Bench<'_> {
         scene: &Scene,
         seed: u64,
         count: bool,
-        until: Instant,
+        until: Option<Instant>,
     ) -> Result<Option<Rendering>> {
         let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count };
         Ok(mishap::catch(|| self.kit.render(&job, &Patience { stop: self.stop, until }))?)
@@ -126,7 +126,7 @@ impl Bench<'_> {
         right: &Reference,
         count: bool,
     ) -> Result<Option<Point>> {
-        let until = Instant::now() + PATIENCE;
+        let until = Some(Instant::now() + PATIENCE);
         let Some(frame) = self.frame_until(&setting.apply(scene), self.seed, count, until)? else {
             return Ok(None);
         };
@@ -136,6 +136,7 @@ impl Bench<'_> {
             rmse: vec![errors.rmse],
             errors,
             counts: frame.counts,
+            hits: None,
             seconds: frame.render_seconds,
             build_seconds: frame.build_seconds,
             spread: 0.0,
@@ -160,12 +161,6 @@ impl Bench<'_> {
                 };
                 match (known, point) {
                     (Some(known), _) => rungs.push((name, known)),
-                    (None, Some(point)) if point.build_seconds > PATIENCE_TO_BUILD => {
-                        measured.left_out.push(format!(
-                            "{} {name}: takes {:.0} s to build each time (`raykata compare` shows it)",
-                            ladder.name, point.build_seconds
-                        ));
-                    }
                     (None, Some(point)) => {
                         rungs.push((name, measured.points.len()));
                         measured.points.push(point);
@@ -186,10 +181,8 @@ impl Bench<'_> {
             bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
             for point in &mut measured.points {
                 let seed = self.seed + u64::from(round);
-                let until = Instant::now() + 2 * PATIENCE;
-                let Some(frame) = self.frame_until(&point.setting.apply(scene), seed, false, until)? else {
-                    break;
-                };
+                // Only who is stopped gives up here, so either all points have this round or it does not count.
+                let Some(frame) = self.frame(&point.setting.apply(scene), seed, false)? else { break };
                 point.times.push(frame.render_seconds);
                 if round > 0 {
                     point.rmse.push(errors(&frame.film, &right.film)?.rmse);

@@ -2,13 +2,15 @@
 //!
 //! `options` (what can be asked) · `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
 //! `slope` (how fast error falls) · `headline` and `landscape` (brute force against a
-//! hierarchy) · `advice` (the best for your time) · `table`,
+//! hierarchy) · `advice` and `climb` (the best for your time) · `hits` (judged exactly) · `table`,
 //! `page`, `plot`, `files` (how it is told)
 
 mod advice;
+mod climb;
 mod error;
 mod files;
 mod headline;
+mod hits;
 mod ladder;
 mod landscape;
 mod measure;
@@ -20,6 +22,7 @@ mod slope;
 mod table;
 
 use crate::kits::{Source, Which};
+use crate::knobs::arguments;
 use crate::report::{load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
@@ -28,7 +31,7 @@ use measure::{Bench, Measured, front};
 pub use options::Options;
 use raykata::effects::Effects;
 use raykata::kit::{Kit, Mishap, mishap};
-use raykata::scene::Scene;
+use raykata::scene::{Quality, Scene};
 use reference::Reference;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -99,6 +102,7 @@ pub fn run(options: &Options) -> Result<bool> {
         return headline::run(&bench, options.most, &out);
     };
     let mut full = load_scene(file)?;
+    let as_written = full.quality;
     options.knobs.apply(&mut full);
     let small = if options.knobs.names_a_size() { full.clone() } else { shrunk(&full) };
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
@@ -120,12 +124,17 @@ pub fn run(options: &Options) -> Result<bool> {
     };
     println!("its own error: {:.1e}\n", right.own_error);
 
-    let measured = bench.measure(&small, ladders, &right)?;
+    let mut measured = bench.measure(&small, ladders, &right)?;
+    hits::judge(&bench, &small, &mut measured)?;
     let goal = options.budget.map(Goal::Seconds).or(options.error.map(Goal::Error));
     let advice = match goal {
         Some(goal) if !bench.stopped() => advised(&bench, &small, &full, &measured, &right, goal)?,
         _ => None,
     };
+    let advice = advice.map(|advice| {
+        let size = options.knobs.names_a_size().then_some((full.film.width, full.film.height));
+        Advice { command: command_for(file, &as_written, &advice, size), ..advice }
+    });
     #[cfg(feature = "author")]
     let numerics = match measured.series.iter().any(|series| series.knob == Knob::Intersection) {
         true if !bench.stopped() => crate::gauntlet::summary(kit),
@@ -208,6 +217,14 @@ fn advised(
     };
     advice::verify(bench, small, full, right, &mut advice)?;
     Ok(Some(advice))
+}
+
+/// How to render what is proposed.
+fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<(u32, u32)>) -> String {
+    let flat = if advice.setting.smooth { "" } else { "  # and `smooth = false` for its meshes" };
+    let size = size.map_or(String::new(), |(width, height)| format!(" --size {width}x{height}"));
+    let turned = arguments(as_written, &advice.setting.quality);
+    format!("cargo run --release -- render {}{size}{turned}{flat}", file.display())
 }
 
 /// Of all ladders of samples.

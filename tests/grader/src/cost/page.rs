@@ -6,7 +6,7 @@ use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
 use super::ladder::Knob;
 use super::measure::Series;
-use super::table::{goal, named, verdict, waste};
+use super::table::{about_hits, goal, named, verdict, waste};
 use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -106,17 +106,19 @@ fn ladder(told: &Told<'_>, series: &Series) -> Result<Markup> {
                 table {
                     tr {
                         th {} th { "RMSE" } th { "relative MSE" } th { "similarity" } th { "ms" } th { "rays a pixel" } th { "tests a ray" }
+                        @if series.knob.is_geometric() { th { "wrong hits" } th { "leaks" } }
                     }
-                    @for (value, index) in &series.rungs { (rung(told, value, *index)) }
+                    @for (value, index) in &series.rungs { (rung(told, value, *index, series.knob.is_geometric())) }
                 }
             }
             @if let Some(waste) = waste(told, series) { p.waste { (waste) } }
+            @if let (true, Some(hits)) = (series.knob.is_geometric(), about_hits(told)) { p.about { "Wrong hits and leaks " (hits) "." } }
             @if !series.knob.is_geometric() && series.knob != Knob::Sampler { (pictures(told, series)?) }
         }
     })
 }
 
-fn rung(told: &Told<'_>, value: &str, index: usize) -> Markup {
+fn rung(told: &Told<'_>, value: &str, index: usize, is_geometric: bool) -> Markup {
     let point = &told.measured.points[index];
     let rays = point.counts.rays();
     let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
@@ -130,6 +132,10 @@ fn rung(told: &Told<'_>, value: &str, index: usize) -> Markup {
             td { (format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread)) }
             td { (format!("{:.2}", rays as f64 / (f64::from(told.width) * f64::from(told.height)))) }
             td { (format!("{tests:.1}")) }
+            @if is_geometric {
+                td { @if let Some(hits) = point.hits { (hits.wrong) } }
+                td { @if let Some(hits) = point.hits { (hits.leaks) } }
+            }
         }
     }
 }

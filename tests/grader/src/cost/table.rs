@@ -5,7 +5,6 @@ use super::advice::{Advice, Goal};
 use super::files::expected_slope;
 use super::ladder::Knob;
 use super::measure::Series;
-#[cfg(feature = "author")]
 use crate::report::Thousands;
 
 /// Prints it.
@@ -19,8 +18,16 @@ pub fn print(told: &Told<'_>) {
         if told.measured.rounds == 1 { "round" } else { "rounds" }
     );
     println!(
-        "{:<24}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}",
-        "", "RMSE", "rel. MSE", "similarity", "ms a picture", "rays/pixel", "tests/ray"
+        "{:<24}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
+        "",
+        "RMSE",
+        "rel. MSE",
+        "similarity",
+        "ms a picture",
+        "rays/pixel",
+        "tests/ray",
+        "wrong hits",
+        "leaks"
     );
     for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
         println!("{}{}", heading(series), slope(told, series));
@@ -29,7 +36,7 @@ pub fn print(told: &Told<'_>) {
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             println!(
-                "  {:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}",
+                "  {:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
                 named(told, name, *index),
                 if told.front.contains(index) { "•" } else { " " },
                 point.error(),
@@ -38,6 +45,8 @@ pub fn print(told: &Told<'_>) {
                 format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
                 rays as f64 / (f64::from(told.width) * f64::from(told.height)),
                 tests as f64 / rays.max(1) as f64,
+                point.hits.map_or(String::new(), |hits| hits.wrong.to_string()),
+                point.hits.map_or(String::new(), |hits| hits.leaks.to_string()),
             );
         }
         if let Some(waste) = waste(told, series) {
@@ -45,6 +54,9 @@ pub fn print(told: &Told<'_>) {
         }
     }
     println!("  • no other setting here is both faster and more accurate");
+    if let Some(hits) = about_hits(told) {
+        println!("  wrong hits and leaks: {hits}");
+    }
     for left_out in &told.measured.left_out {
         println!("  left out: {left_out}");
     }
@@ -56,6 +68,16 @@ pub fn print(told: &Told<'_>) {
     if told.partial {
         println!("\nstopped before the end: what is above is what had been measured by then");
     }
+}
+
+/// What was judged, if anything was.
+pub fn about_hits(told: &Told<'_>) -> Option<String> {
+    let rays = told.measured.points.iter().find_map(|point| point.hits)?.rays;
+    Some(format!(
+        "of {} rays from the eye, through the picture and at edges and corners that are seen, against exact arithmetic; a \
+         leak goes through a closed surface, other wrong hits are neighbours that a rounding chose",
+        Thousands(rays)
+    ))
 }
 
 /// The scene's own value is marked.
@@ -148,6 +170,7 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     if let (Some(error), Some(seconds)) = (advice.verified_error, advice.verified_seconds) {
         lines.push(format!("rendered, with other random numbers: error {error:.4}, {seconds:.2} s"));
     }
+    lines.push(format!("to render it: {}", advice.command));
     match advice.goal {
         Goal::Error(target) if advice.expected_error > target => {
             lines.push(format!("no rung of these ladders comes to {target}: this is the closest"));

@@ -95,7 +95,7 @@ impl Judge {
     ///
     /// No check depends on another: where the program `may_remember` what it was asked, each has a process of its own.
     /// Elsewhere one process answers as long as it passes, and whatever it fails it is asked again as if for the first
-    /// time. (A process a check takes 4 ms; the checks of stages 1 to 4 are twice as fast with one for all.)
+    /// time.
     pub fn judge(
         &self,
         worker: &Path,

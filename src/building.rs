@@ -1,0 +1,126 @@
+//! How far a hierarchy is that somebody builds: [`Bvh::set_leaf`](crate::bvh::Bvh::set_leaf) counts what is in its
+//! place, so whoever waits is told without a word in the builder.
+
+use crate::frame::Watch;
+use std::cell::RefCell;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread;
+use std::time::Duration;
+
+thread_local! {
+    static PLACED: RefCell<Option<Arc<AtomicU64>>> = const { RefCell::new(None) };
+}
+
+/// Fewer are built before anybody looks.
+const WORTH_TELLING: u64 = 100_000;
+
+/// How often somebody is told.
+const PAUSE: Duration = Duration::from_millis(200);
+
+/// So many more primitives are in leaves, on this thread.
+pub(crate) fn placed(count: usize) {
+    PLACED.with_borrow(|placed| {
+        if let Some(placed) = placed {
+            placed.fetch_add(count as u64, Ordering::Relaxed);
+        }
+    });
+}
+
+/// Builds something over `total` primitives on this thread, and tells `watch` now and then how many are in leaves.
+pub fn watched<T>(watch: &dyn Watch, total: u64, build: impl FnOnce() -> T) -> T {
+    if total < WORTH_TELLING {
+        return build();
+    }
+    let counter = Arc::new(AtomicU64::new(0));
+    let built = AtomicBool::new(false);
+    thread::scope(|scope| {
+        let teller = thread::Builder::new().name("teller".into()).spawn_scoped(scope, || {
+            while !built.load(Ordering::Relaxed) {
+                watch.building(counter.load(Ordering::Relaxed).min(total), total);
+                thread::park_timeout(PAUSE);
+            }
+        });
+        // Where no thread can be had, nobody is told. A build that panics ends the teller all the same.
+        let _ended = Ended { built: &built, teller: teller.ok().map(|teller| teller.thread().clone()) };
+        PLACED.set(Some(counter.clone()));
+        build()
+    })
+}
+
+/// Ends the telling when it is dropped.
+struct Ended<'a> {
+    built: &'a AtomicBool,
+    teller: Option<thread::Thread>,
+}
+
+impl Drop for Ended<'_> {
+    fn drop(&mut self) {
+        PLACED.set(None);
+        self.built.store(true, Ordering::Relaxed);
+        if let Some(teller) = &self.teller {
+            teller.unpark();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::aabb::Aabb;
+    use crate::bvh::{Bvh, PrimitiveRef};
+    use glam::Vec3;
+    use std::sync::Mutex;
+
+    #[derive(Default)]
+    struct Heard(Mutex<Vec<(u64, u64)>>);
+
+    impl Watch for Heard {
+        fn progress(&self, _: u64, _: u64) {}
+
+        fn building(&self, placed: u64, total: u64) {
+            self.0.lock().unwrap().push((placed, total));
+        }
+    }
+
+    impl Heard {
+        fn wait_for(&self, placed: u64) {
+            while !self.0.lock().unwrap().iter().any(|heard| heard.0 == placed) {
+                thread::yield_now();
+            }
+        }
+    }
+
+    fn leaf_of(count: usize) -> Bvh {
+        let mut bvh = Bvh::for_primitives(count);
+        let node = bvh.add_node(Aabb::EMPTY);
+        let one = PrimitiveRef { id: 0, bounds: Aabb::EMPTY, centroid: Vec3::ZERO };
+        bvh.set_leaf(node, &vec![one; count]);
+        bvh
+    }
+
+    #[test]
+    fn leaves_are_told_while_the_rest_is_built() {
+        let heard = Heard::default();
+        let total = 2 * WORTH_TELLING;
+        watched(&heard, total, || {
+            heard.wait_for(0);
+            leaf_of(150_000);
+            heard.wait_for(150_000);
+        });
+        leaf_of(10);
+        assert!(PLACED.with_borrow(Option::is_none), "nobody counts any more");
+        assert!(heard.0.into_inner().unwrap().iter().all(|(_, of)| *of == total));
+    }
+
+    #[test]
+    fn what_is_small_is_not_worth_a_word_and_a_panic_passes() {
+        let heard = Heard::default();
+        watched(&heard, WORTH_TELLING - 1, || leaf_of(5));
+        assert!(heard.0.lock().unwrap().is_empty());
+        let panicked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            watched(&heard, WORTH_TELLING, || panic!("a builder that gives up"));
+        }));
+        assert!(panicked.is_err() && PLACED.with_borrow(Option::is_none));
+    }
+}

@@ -1,0 +1,101 @@
+//! What a ray exactly meets first, among many bodies.
+
+use super::Asked;
+use checks::exact::{Body, aabb, meet, triangle};
+use checks::stage10::STABLE;
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+use raykata::world::{Geometry, World};
+
+/// Bodies that are asked one by one if the box around all of them is met.
+const GROUP: usize = 64;
+
+/// Primitives, and planes after them, as kits number them.
+pub fn bodies(world: &World) -> Vec<Body> {
+    let primitives = world.primitives.iter().map(|primitive| match primitive.geometry {
+        Geometry::Sphere(sphere) => Body::Sphere(sphere),
+        Geometry::Triangle(triangle) => Body::Triangle(triangle),
+        Geometry::Solid(_) | Geometry::Instance(_) => unreachable!("a plain world has neither"),
+    });
+    primitives.chain(world.planes.iter().map(|plane| Body::Plane(plane.plane))).collect()
+}
+
+/// Finds what a ray exactly meets first.
+pub struct Search<'a> {
+    bodies: &'a [Body],
+    /// Bodies side by side, and the box around them.
+    groups: Vec<(Aabb, Vec<u32>)>,
+}
+
+impl<'a> Search<'a> {
+    /// Over bodies of which so many are bounded; those after them have no end.
+    pub fn over(bodies: &'a [Body], n_bounded: usize) -> Search<'a> {
+        let boxes: Vec<Aabb> = bodies[..n_bounded].iter().map(bounds).collect();
+        let mut groups = Vec::new();
+        let mut waiting = vec![(0..n_bounded as u32).collect::<Vec<u32>>()];
+        while let Some(mut group) = waiting.pop() {
+            let around = group
+                .iter()
+                .map(|&index| boxes[index as usize])
+                .fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
+            if group.len() <= GROUP {
+                groups.push((around, group));
+                continue;
+            }
+            let axis = (around.max - around.min).max_position();
+            let middle =
+                |index: &u32| boxes[*index as usize].min[axis] / 2.0 + boxes[*index as usize].max[axis] / 2.0;
+            let half = group.len() / 2;
+            group.select_nth_unstable_by(half, |p, q| middle(p).total_cmp(&middle(q)));
+            waiting.push(group.split_off(half));
+            waiting.push(group);
+        }
+        groups.push((
+            Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY),
+            (n_bounded as u32..bodies.len() as u32).collect(),
+        ));
+        Search { bodies, groups }
+    }
+
+    /// What the ray meets first, and the ray with the `t` of that.
+    pub fn asked(&self, ray: Ray) -> (Option<u32>, Asked) {
+        let is_met = |around: &Aabb| {
+            // The last group is everywhere.
+            !around.min.is_finite()
+                || aabb::overlap(&ray, around).is_none_or(|overlap| overlap.verdict.is_hit())
+        };
+        let mut best: Option<(f32, u32)> = None;
+        for (_, group) in self.groups.iter().filter(|(around, _)| is_met(around)) {
+            for &index in group {
+                let t = meet(&ray, self.bodies[index as usize]).and_then(|meeting| meeting.t);
+                if let Some(t) = t
+                    && best.is_none_or(|(first, _)| t < first)
+                {
+                    best = Some((t, index));
+                }
+            }
+        }
+        // Well inside a triangle. The rim of a sphere is open to roundings, and how near it is nobody has measured.
+        let closed = best.is_some_and(|(_, index)| match self.bodies[index as usize] {
+            Body::Triangle(triangle) => {
+                triangle::margin(&ray, &triangle).is_some_and(|margin| margin > STABLE)
+            }
+            _ => false,
+        });
+        (best.map(|(_, index)| index), Asked { ray, first: best.map(|(t, _)| t), closed })
+    }
+}
+
+/// A box that holds the body, rounded outwards.
+fn bounds(body: &Body) -> Aabb {
+    match body {
+        Body::Triangle(Triangle { a, b, c }) => Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)),
+        Body::Sphere(sphere) => {
+            let (low, high) = (sphere.center - sphere.radius, sphere.center + sphere.radius);
+            Aabb::new(low.map(f32::next_down), high.map(f32::next_up))
+        }
+        _ => unreachable!("only triangles and spheres have an end here"),
+    }
+}
