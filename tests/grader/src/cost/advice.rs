@@ -4,6 +4,7 @@ use super::climb::{Climb, Tried};
 use super::ladder::{Knob, Setting};
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
+use crate::report::FrameBar;
 use anyhow::Result;
 use raykata::scene::Scene;
 use serde::Serialize;
@@ -175,7 +176,10 @@ pub fn verify(
 ) -> Result<()> {
     let others = Bench { seed: bench.seed + (1 << 20), ..*bench };
     advice.verified_error = others.point(small, &advice.setting, right, false)?.map(|point| point.error());
-    let frame = others.frame(&advice.setting.apply(full), others.seed, false)?;
+    let bar = FrameBar::new("the proposal, in full size");
+    let job = others.job(&advice.setting.apply(full), others.seed, false);
+    let frame = others.render(&job, None, Some(&bar))?;
+    bar.finish();
     advice.verified_seconds = frame.map(|frame| frame.build_seconds + frame.render_seconds);
     Ok(())
 }

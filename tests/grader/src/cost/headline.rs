@@ -7,7 +7,7 @@ use super::landscape::{scene, sides};
 use super::measure::Bench;
 use crate::report::{FrameBar, Thousands, make_folder};
 use anyhow::{Context, Result};
-use raykata::kit::{RenderJob, Rendering, View, mishap};
+use raykata::kit::{RenderJob, Rendering, View};
 use raykata::scene::{Accelerator, Scene};
 use serde::Serialize;
 use std::io::Write;
@@ -141,6 +141,12 @@ fn arithmetic(row: &Row) {
         Thousands((row.brute_seconds() / row.frame_seconds) as u64),
         Thousands((row.brute_seconds() / (row.frame_seconds + row.build_seconds)) as u64)
     );
+    let n = row.triangles as f64;
+    println!(
+        "  the lecture puts log2 n in the place of n, {} times less; counted are {} times fewer tests",
+        Thousands((n / n.log2()) as u64),
+        Thousands((n / (row.box_tests + row.triangle_tests)) as u64)
+    );
 }
 
 /// 12 times the powers of ten, and the largest.
@@ -159,21 +165,20 @@ fn measure(bench: &Bench<'_>, triangles: u64) -> Result<Option<Row>> {
     let say = |what: &str| bar.begin(format!("{} triangles: {what}", Thousands(exact)));
     say("making the landscape");
     let scene = scene(SCREEN, sides)?;
+    let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
+        say(what);
+        frame(bench, &bar, &scene, accelerator, size, count)
+    };
 
-    say("counting");
-    let (width, height) = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
-    let counted = frame(bench, &bar, &scene, Accelerator::Bvh, (width, height), true)?;
-    say("the whole frame");
-    let whole = frame(bench, &bar, &scene, Accelerator::Bvh, SCREEN, false)?;
-    if bench.stopped() {
-        return Ok(None);
-    }
+    let sixteenth = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
+    let Some(counted) = frame("counting", Accelerator::Bvh, sixteenth, true)? else { return Ok(None) };
+    let Some(whole) = frame("the whole frame", Accelerator::Bvh, SCREEN, false)? else { return Ok(None) };
     // A slice of the same shape: 16 × 9 times so much.
     let across = ((TESTS_OF_SLICE as f64 / (144.0 * exact as f64)).sqrt() * 16.0).clamp(4.0, 960.0) as u32;
     let slice = (across, (across * 9 / 16).max(1));
-    say("brute force on a slice");
-    let brute = frame(bench, &bar, &scene, Accelerator::BruteForce, slice, false)?;
-    let same = frame(bench, &bar, &scene, Accelerator::Bvh, slice, false)?;
+    let brute = frame("brute force on a slice", Accelerator::BruteForce, slice, false)?;
+    let same = frame("the slice again", Accelerator::Bvh, slice, false)?;
+    let (Some(brute), Some(same)) = (brute, same) else { return Ok(None) };
     bar.finish();
     let rays = counted.counts.primary.max(1) as f64;
     let different =
@@ -192,6 +197,7 @@ fn measure(bench: &Bench<'_>, triangles: u64) -> Result<Option<Row>> {
     }))
 }
 
+/// `None` if nobody wants it any more.
 fn frame(
     bench: &Bench<'_>,
     bar: &FrameBar,
@@ -199,12 +205,11 @@ fn frame(
     accelerator: Accelerator,
     (width, height): (u32, u32),
     count: bool,
-) -> Result<Rendering> {
-    let mut scene = scene.clone();
-    (scene.film.width, scene.film.height) = (width, height);
-    scene.quality.accelerator = accelerator;
-    let job = RenderJob { scene, view: View::Normals, seed: bench.seed, threads: bench.threads, count };
-    mishap::catch(|| bench.kit.render(&job, bar))?.context("the frame was cancelled")
+) -> Result<Option<Rendering>> {
+    let mut job = RenderJob { view: View::Normals, ..bench.job(scene, bench.seed, count) };
+    (job.scene.film.width, job.scene.film.height) = (width, height);
+    job.scene.quality.accelerator = accelerator;
+    bench.render(&job, None, Some(bar))
 }
 
 /// As people say it.

@@ -4,7 +4,7 @@ use super::error::{Errors, errors};
 use super::hits::Verdicts;
 use super::ladder::{Knob, Ladder, Setting};
 use super::reference::Reference;
-use crate::report::{bar_of_steps, quartiles};
+use crate::report::{FrameBar, bar_of_steps, quartiles};
 use anyhow::Result;
 use raykata::count::Counts;
 use raykata::film::Film;
@@ -82,14 +82,25 @@ pub struct Measured {
     pub rounds: u32,
 }
 
-/// Ends a frame that takes too long, or that nobody wants.
+/// Ends a frame that takes too long, or that nobody wants, and shows how far it is.
 struct Patience<'a> {
     stop: &'a AtomicBool,
     until: Option<Instant>,
+    bar: Option<&'a FrameBar>,
 }
 
 impl Watch for Patience<'_> {
-    fn progress(&self, _: u64, _: u64) {}
+    fn progress(&self, done: u64, total: u64) {
+        if let Some(bar) = self.bar {
+            bar.progress(done, total);
+        }
+    }
+
+    fn building(&self, placed: u64, total: u64) {
+        if let Some(bar) = self.bar {
+            bar.building(placed, total);
+        }
+    }
 
     fn cancelled(&self) -> bool {
         self.stop.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() > until)
@@ -103,18 +114,21 @@ impl Bench<'_> {
 
     /// A picture, however long it takes; `None` if nobody wants it any more.
     pub fn frame(&self, scene: &Scene, seed: u64, count: bool) -> Result<Option<Rendering>> {
-        self.frame_until(scene, seed, count, None)
+        self.render(&self.job(scene, seed, count), None, None)
     }
 
-    fn frame_until(
+    pub fn job(&self, scene: &Scene, seed: u64, count: bool) -> RenderJob {
+        RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count }
+    }
+
+    /// The same, until some moment, and with a bar for whoever waits.
+    pub fn render(
         &self,
-        scene: &Scene,
-        seed: u64,
-        count: bool,
+        job: &RenderJob,
         until: Option<Instant>,
+        bar: Option<&FrameBar>,
     ) -> Result<Option<Rendering>> {
-        let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count };
-        Ok(mishap::catch(|| self.kit.render(&job, &Patience { stop: self.stop, until }))?)
+        Ok(mishap::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
     }
 
     /// Measures one setting without regard to others: errors, one time, and counts, if it is to count, which takes time.
@@ -127,7 +141,8 @@ impl Bench<'_> {
         count: bool,
     ) -> Result<Option<Point>> {
         let until = Some(Instant::now() + PATIENCE);
-        let Some(frame) = self.frame_until(&setting.apply(scene), self.seed, count, until)? else {
+        let job = self.job(&setting.apply(scene), self.seed, count);
+        let Some(frame) = self.render(&job, until, None)? else {
             return Ok(None);
         };
         let errors = errors(&frame.film, &right.film)?;

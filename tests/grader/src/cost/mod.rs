@@ -23,7 +23,7 @@ mod table;
 
 use crate::kits::{Source, Which};
 use crate::knobs::arguments;
-use crate::report::{load_scene, make_folder};
+use crate::report::{FrameBar, load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
 use ladder::{Called, Knob, Ladder};
@@ -188,7 +188,10 @@ fn ladders(
     };
     let mut pixel = scene.clone();
     (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);
-    let primitives = bench.frame(&pixel, 0, true)?.map_or(0, |frame| frame.primitives);
+    let bar = FrameBar::new("looking at the scene");
+    let frame = bench.render(&bench.job(&pixel, 0, true), None, Some(&bar))?;
+    bar.finish();
+    let primitives = frame.map_or(0, |frame| frame.primitives);
     let called = Called { scene, effects: &effects, primitives };
     let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
     for &knob in <Knob as clap::ValueEnum>::value_variants() {

@@ -6,11 +6,14 @@ use checks::stage10::STABLE;
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
-use raykata::shape::Triangle;
+use raykata::shape::Shape;
 use raykata::world::{Geometry, World};
 
 /// Bodies that are asked one by one if the box around all of them is met.
 const GROUP: usize = 64;
+
+/// Around what has no end.
+const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
 /// Primitives, and planes after them, as kits number them.
 pub fn bodies(world: &World) -> Vec<Body> {
@@ -52,18 +55,14 @@ impl<'a> Search<'a> {
             waiting.push(group.split_off(half));
             waiting.push(group);
         }
-        groups.push((
-            Aabb::new(Vec3::NEG_INFINITY, Vec3::INFINITY),
-            (n_bounded as u32..bodies.len() as u32).collect(),
-        ));
+        groups.push((EVERYWHERE, (n_bounded as u32..bodies.len() as u32).collect()));
         Search { bodies, groups }
     }
 
     /// What the ray meets first, and the ray with the `t` of that.
     pub fn asked(&self, ray: Ray) -> (Option<u32>, Asked) {
         let is_met = |around: &Aabb| {
-            // The last group is everywhere.
-            !around.min.is_finite()
+            *around == EVERYWHERE
                 || aabb::overlap(&ray, around).is_none_or(|overlap| overlap.verdict.is_hit())
         };
         let mut best: Option<(f32, u32)> = None;
@@ -88,14 +87,13 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A box that holds the body, rounded outwards.
+/// A box that holds the body.
 fn bounds(body: &Body) -> Aabb {
-    match body {
-        Body::Triangle(Triangle { a, b, c }) => Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)),
-        Body::Sphere(sphere) => {
-            let (low, high) = (sphere.center - sphere.radius, sphere.center + sphere.radius);
-            Aabb::new(low.map(f32::next_down), high.map(f32::next_up))
-        }
-        _ => unreachable!("only triangles and spheres have an end here"),
-    }
+    let around = match body {
+        Body::Triangle(triangle) => Shape::Triangle(*triangle).bounds(&[]),
+        Body::Sphere(sphere) => Shape::Sphere(*sphere).bounds(&[]),
+        _ => None,
+    };
+    // Rounded to nearest, so one step more.
+    around.map_or(EVERYWHERE, |Aabb { min, max }| Aabb::new(min.map(f32::next_down), max.map(f32::next_up)))
 }
