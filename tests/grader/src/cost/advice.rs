@@ -48,6 +48,8 @@ pub struct Advice {
     pub values: Vec<(Knob, String)>,
     pub steps: Vec<Step>,
     pub left: Vec<Left>,
+    /// Values that are faster and let rays through closed surfaces, a sentence each.
+    pub passed_over: Vec<String>,
     /// What the scene's own settings come to.
     pub own_error: f64,
     pub own_seconds: f64,
@@ -107,7 +109,7 @@ pub fn advise(
     full: f64,
 ) -> Result<Option<Advice>> {
     let mut tried = Tried { bench, scene, right, known: Vec::new() };
-    let start = with_what_is_best(measured, &Setting::of(scene));
+    let (start, passed_over) = with_what_is_best(measured, &Setting::of(scene));
     let turned_by_steps: Vec<&Series> = measured
         .series
         .iter()
@@ -129,6 +131,7 @@ pub fn advise(
         values,
         steps,
         left,
+        passed_over,
         own_error: own.error(),
         own_seconds: seconds_in_full(&own, full),
         expected_error: now.error(),
@@ -149,21 +152,29 @@ fn is_chosen_once(knob: Knob) -> bool {
     CHOSEN_ONCE.contains(&knob) || knob == Knob::Sampler
 }
 
-/// The setting with every knob that is chosen once at its best value.
-fn with_what_is_best(measured: &Measured, own: &Setting) -> Setting {
-    let mut setting = own.clone();
+/// The setting with every knob that is chosen once at its best value, and what was faster and leaks.
+fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String>) {
+    let (mut setting, mut passed_over) = (own.clone(), Vec::new());
+    let leaks = |point: &Point| point.hits.map_or(0, |hits| hits.leaks);
     for series in measured.series.iter().filter(|series| CHOSEN_ONCE.contains(&series.knob)) {
-        let points = || series.rungs.iter().map(|(_, index)| &measured.points[*index]);
-        let least = points().map(Point::error).fold(f64::INFINITY, f64::min);
-        let good = points().filter(|point| point.error() <= AS_GOOD * least);
-        if let Some(best) = good.min_by(|a, b| a.seconds.total_cmp(&b.seconds)) {
-            setting = turned(&best.setting, series.knob, &setting);
-        }
+        let rungs = || series.rungs.iter().map(|(name, index)| (name, &measured.points[*index]));
+        let least = rungs().map(|(_, point)| point.error()).fold(f64::INFINITY, f64::min);
+        let good = || rungs().filter(|(_, point)| point.error() <= AS_GOOD * least);
+        // A picture may not show it, but what leaks in one scene is wrong in the next.
+        let fewest = good().map(|(_, point)| leaks(point)).min().unwrap_or_default();
+        let tight = good().filter(|(_, point)| leaks(point) == fewest);
+        let Some((_, best)) = tight.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)) else { continue };
+        setting = turned(&best.setting, series.knob, &setting);
+        let faster = good().filter(|(_, point)| leaks(point) > fewest && point.seconds < best.seconds);
+        passed_over.extend(faster.map(|(name, point)| {
+            let rays = point.hits.map_or(0, |hits| hits.rays);
+            format!("{} {name} is faster, but {} of {rays} rays leak", series.knob.name(), leaks(point))
+        }));
     }
-    match best_sampler(measured) {
-        Some(best) => turned(&best.setting, Knob::Sampler, &setting),
-        None => setting,
+    if let Some(best) = best_sampler(measured) {
+        setting = turned(&best.setting, Knob::Sampler, &setting);
     }
+    (setting, passed_over)
 }
 
 /// Renders the proposal in full size, with other random numbers, and its error in the small size.
@@ -206,4 +217,30 @@ fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)
         Some((series.knob, name?))
     };
     measured.series.iter().filter(|series| is_chosen_once(series.knob)).filter_map(of_series).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raykata::scene::Quality;
+    use raykata::scene::TriangleMethod::{Cramer, Gram, Watertight};
+
+    #[test]
+    fn what_leaks_is_not_proposed_however_fast_it_is() {
+        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage2.toml")).unwrap();
+        let own = Setting::of(&scene);
+        let by =
+            |triangle_method| Setting { quality: Quality { triangle_method, ..own.quality }, ..own.clone() };
+        let points = vec![
+            Point::made_up(by(Gram), 0.02, 1.0, 239),
+            Point::made_up(by(Cramer), 0.02, 3.0, 106),
+            Point::made_up(by(Watertight), 0.02, 2.0, 0),
+        ];
+        let rungs = ["gram", "cramer", "watertight"].map(str::to_owned).into_iter().zip(0..).collect();
+        let series = vec![Series { knob: Knob::Intersection, name: "intersection".into(), rungs }];
+        let measured = Measured { points, series, ..Measured::default() };
+        let (best, passed_over) = with_what_is_best(&measured, &by(Gram));
+        assert_eq!(best.quality.triangle_method, Watertight);
+        assert_eq!(passed_over, ["intersection gram is faster, but 239 of 1000 rays leak"]);
+    }
 }

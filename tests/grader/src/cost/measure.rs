@@ -53,12 +53,32 @@ pub struct Point {
     pub film: Film,
     #[serde(skip)]
     times: Vec<f64>,
+    #[serde(skip)]
+    notes: Vec<String>,
 }
 
 impl Point {
     /// The mean over all rounds.
     pub fn error(&self) -> f64 {
         self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
+    }
+
+    /// One that nobody has measured.
+    #[cfg(test)]
+    pub fn made_up(setting: Setting, error: f64, seconds: f64, leaks: u64) -> Point {
+        Point {
+            setting,
+            errors: Errors { rmse: error, relative_mse: 0.0, similarity: 1.0, not_a_number: 0 },
+            rmse: vec![error],
+            counts: Counts::default(),
+            hits: Some(Verdicts { rays: 1000, wrong: leaks, leaks }),
+            seconds,
+            build_seconds: 0.0,
+            spread: 0.0,
+            film: Film { width: 0, height: 0, pixels: Vec::new() },
+            times: Vec::new(),
+            notes: Vec::new(),
+        }
     }
 }
 
@@ -78,6 +98,8 @@ pub struct Measured {
     pub series: Vec<Series>,
     /// Values that were left out, and why.
     pub left_out: Vec<String>,
+    /// What pictures lack, because it is not written yet, one sentence each.
+    pub lacking: Vec<String>,
     /// How many rounds there were.
     pub rounds: u32,
 }
@@ -157,6 +179,7 @@ impl Bench<'_> {
             spread: 0.0,
             film: frame.film,
             times: Vec::new(),
+            notes: frame.notes,
         }))
     }
 
@@ -177,6 +200,11 @@ impl Bench<'_> {
                 match (known, point) {
                     (Some(known), _) => rungs.push((name, known)),
                     (None, Some(point)) => {
+                        for note in &point.notes {
+                            if !measured.lacking.contains(note) {
+                                measured.lacking.push(note.clone());
+                            }
+                        }
                         rungs.push((name, measured.points.len()));
                         measured.points.push(point);
                     }

@@ -54,6 +54,7 @@ fn page(told: &Told<'_>) -> Result<Markup> {
                 ul {
                     @for (knob, why) in &told.not_offered { li { (knob.name()) ": " (why) } }
                     @for left_out in &told.measured.left_out { li { (left_out) } }
+                    @for lacking in &told.measured.lacking { li { "Lacking: " (lacking) } }
                     li { "Lens and time have no samples of their own: each sample of a pixel has its own place on the lens and its own moment." }
                 }
             }
@@ -105,7 +106,9 @@ fn ladder(told: &Told<'_>, series: &Series) -> Result<Markup> {
             div.wide {
                 table {
                     tr {
-                        th {} th { "RMSE" } th { "relative MSE" } th { "similarity" } th { "ms" } th { "rays a pixel" } th { "tests a ray" }
+                        th {} th { "RMSE" }
+                        @if !series.knob.is_geometric() { th { "relative MSE" } th { "similarity" } }
+                        th { "ms" } th { "rays a pixel" } th { "tests a ray" }
                         @if series.knob.is_geometric() { th { "wrong hits" } th { "leaks" } }
                     }
                     @for (value, index) in &series.rungs { (rung(told, value, *index, series.knob.is_geometric())) }
@@ -127,8 +130,10 @@ fn rung(told: &Told<'_>, value: &str, index: usize, is_geometric: bool) -> Marku
         tr.front[unbeaten] {
             th scope="row" { (named(told, value, index)) @if unbeaten { " •" } }
             td { (format!("{:.5}", point.error())) }
-            td { (format!("{:.2e}", point.errors.relative_mse)) }
-            td { (format!("{:.4}", point.errors.similarity)) }
+            @if !is_geometric {
+                td { (format!("{:.2e}", point.errors.relative_mse)) }
+                td { (format!("{:.4}", point.errors.similarity)) }
+            }
             td { (format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread)) }
             td { (format!("{:.2}", rays as f64 / (f64::from(told.width) * f64::from(told.height)))) }
             td { (format!("{tests:.1}")) }
@@ -194,6 +199,7 @@ fn numerics(told: &Told<'_>) -> Markup {
                         }
                     }
                 }
+                @if let Some(warning) = super::table::about_kit_times(told) { p.about { (warning) } }
             }
         }
     }

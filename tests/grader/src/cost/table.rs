@@ -35,6 +35,7 @@ pub fn print(told: &Told<'_>) {
             let point = &told.measured.points[*index];
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
+            let hits = point.hits.filter(|_| series.knob.is_geometric());
             println!(
                 "  {:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
                 named(told, name, *index),
@@ -45,8 +46,8 @@ pub fn print(told: &Told<'_>) {
                 format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
                 rays as f64 / (f64::from(told.width) * f64::from(told.height)),
                 tests as f64 / rays.max(1) as f64,
-                point.hits.map_or(String::new(), |hits| hits.wrong.to_string()),
-                point.hits.map_or(String::new(), |hits| hits.leaks.to_string()),
+                hits.map_or(String::new(), |hits| hits.wrong.to_string()),
+                hits.map_or(String::new(), |hits| hits.leaks.to_string()),
             );
         }
         if let Some(waste) = waste(told, series) {
@@ -60,8 +61,11 @@ pub fn print(told: &Told<'_>) {
     for left_out in &told.measured.left_out {
         println!("  left out: {left_out}");
     }
+    for lacking in &told.measured.lacking {
+        println!("  lacking: {lacking}");
+    }
     #[cfg(feature = "author")]
-    numerics(&told.numerics);
+    numerics(told);
     if let Some(advice) = &told.advice {
         print_advice(told, advice);
     }
@@ -123,7 +127,8 @@ pub fn waste(told: &Told<'_>, series: &Series) -> Option<String> {
 }
 
 #[cfg(feature = "author")]
-fn numerics(numerics: &[crate::gauntlet::Summary]) {
+fn numerics(told: &Told<'_>) {
+    let numerics = &told.numerics;
     if numerics.is_empty() {
         return;
     }
@@ -140,6 +145,18 @@ fn numerics(numerics: &[crate::gauntlet::Summary]) {
             Thousands(one.leaks_per_million.round() as u64).to_string()
         );
     }
+    if let Some(warning) = about_kit_times(told) {
+        println!("  {warning}");
+    }
+}
+
+/// What the times of a kit in a process of its own say.
+#[cfg(feature = "author")]
+pub fn about_kit_times(told: &Told<'_>) -> Option<&'static str> {
+    (told.kit == "exercises").then_some(
+        "kit: questions go to a process of their own and answers come back, and that counts in its ns; wrong hits and \
+         leaks do not change",
+    )
 }
 
 fn print_advice(told: &Told<'_>, advice: &Advice) {
@@ -187,6 +204,7 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     if !spent.is_empty() {
         lines.push(format!("time is spent on {}", spent.join(", ")));
     }
+    lines.extend(advice.passed_over.iter().map(|sentence| format!("not by what leaks: {sentence}")));
     let wasted = advice.left.iter().filter(|left| left.error_factor > 1.0 - SAME);
     for left in wasted {
         lines.push(format!(
