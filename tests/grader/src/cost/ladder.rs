@@ -1,7 +1,8 @@
 //! The knobs that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
 
+use super::called::Called;
 use clap::ValueEnum;
-use raykata::effects::{Effect, Effects};
+use raykata::effects::Effect;
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
 use serde::Serialize;
 
@@ -65,14 +66,6 @@ pub struct Ladder {
     pub name: String,
     /// What each value is called, and the setting.
     pub rungs: Vec<(String, Setting)>,
-}
-
-/// A scene, and what is known of it.
-pub struct Called<'a> {
-    pub scene: &'a Scene,
-    pub effects: &'a Effects,
-    /// What rays are tested against.
-    pub primitives: u64,
 }
 
 /// As many samples as ladders go up to, at least.
@@ -186,7 +179,7 @@ impl Knob {
                 vec![Ladder { rungs: rungs.to_vec(), ..ladder(Vec::new()) }]
             }
             Knob::Intersection => {
-                needs(!scene.meshes.is_empty(), "there are no triangles")?;
+                needs(called.shows_triangles(), "there are no triangles")?;
                 let all = [
                     ("gram", TriangleMethod::Gram),
                     ("cramer", TriangleMethod::Cramer),
@@ -198,6 +191,10 @@ impl Knob {
                 vec![ladder(all.into_iter().map(with).collect())]
             }
             Knob::Precision => {
+                needs(
+                    called.shows_triangles() || called.shows_spheres(),
+                    "there are no triangles and no spheres, and other shapes have one test each",
+                )?;
                 let all = [("single", Precision::Single), ("double", Precision::Double)];
                 let with = |(name, precision): (&str, _)| (name.to_owned(), Quality { precision, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
@@ -264,6 +261,7 @@ fn doubling(own: u32, most: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use raykata::effects::Effects;
 
     #[test]
     fn the_scenes_own_value_is_a_rung() {

@@ -1,11 +1,12 @@
 //! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
 //!
-//! `options` (what can be asked) · `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
+//! `options` (what can be asked) · `called` and `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
 //! `slope` (how fast error falls) · `headline` and `landscape` (brute force against a
 //! hierarchy) · `advice` (the best for your time) · `table`,
 //! `page`, `plot`, `files` (how it is told)
 
 mod advice;
+mod called;
 mod error;
 mod files;
 mod headline;
@@ -23,7 +24,8 @@ use crate::kits::{Source, Which};
 use crate::report::{load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
-use ladder::{Called, Knob, Ladder};
+use called::Called;
+use ladder::{Knob, Ladder};
 use measure::{Bench, Measured, front};
 pub use options::Options;
 use raykata::effects::Effects;
