@@ -298,6 +298,12 @@ impl Stability for Kit {
     fn safe_normalize(&self, queries: &[Vec3]) -> Vec<Option<Vec3>> {
         each(queries, |v| stage10_stability::safe_normalize(*v))
     }
+    fn triangle_in_double(&self, queries: &[TriangleQuery]) -> Vec<Option<TriangleHit>> {
+        each(queries, |q| stage10_stability::triangle_in_double(&q.ray, &q.triangle))
+    }
+    fn sphere_in_double(&self, queries: &[SphereQuery]) -> Vec<Option<f32>> {
+        each(queries, |q| stage10_stability::sphere_in_double(&q.ray, q.sphere.center, q.sphere.radius))
+    }
 }
 
 impl Frames for Kit {

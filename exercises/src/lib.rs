@@ -12,6 +12,7 @@ mod plan; // nothing to do here: for frames
 mod probe; // nothing to do here: for frames
 mod radiance; // nothing to do here: for frames
 mod search; // nothing to do here: for frames
+mod shape_tests; // nothing to do here: for frames
 pub mod stage10_stability;
 pub mod stage1_shapes;
 pub mod stage2_triangles;

@@ -1,5 +1,6 @@
 //! Nothing to do here: what stands in a space of its own, through the functions of stage 8.
 
+use crate::shape_tests::ShapeTests;
 use crate::stage8_scene_graph::{bounds_to_world, normal_to_world, ray_to_object};
 use crate::stage8_solids::{cone, cuboid, cylinder, disk, polygon};
 use crate::surfaces::{Found, point_on_sphere};
@@ -13,14 +14,14 @@ use raykata::world::{Solid, SolidShape};
 
 /// Where a ray of the world meets a solid.
 #[inline(never)]
-pub fn meet_solid(ray: &Ray, solid: &Solid) -> Option<SolidHit> {
-    meet(&ray_to_object(ray, &solid.placement.to_object), &solid.shape)
+pub fn meet_solid(tests: ShapeTests, ray: &Ray, solid: &Solid) -> Option<SolidHit> {
+    meet(tests, &ray_to_object(ray, &solid.placement.to_object), &solid.shape)
 }
 
-fn meet(ray: &Ray, shape: &SolidShape) -> Option<SolidHit> {
+fn meet(tests: ShapeTests, ray: &Ray, shape: &SolidShape) -> Option<SolidHit> {
     match shape {
         SolidShape::Ball(ball) => {
-            let t = stage1_shapes::sphere_algebraic(ray, ball.center, ball.radius)?;
+            let t = tests.sphere(ray, ball)?;
             Some(SolidHit { t, normal: stage1_shapes::sphere_normal(ball.center, ray.at(t)) })
         }
         SolidShape::Cuboid(shape) => cuboid(ray, shape),
@@ -33,13 +34,13 @@ fn meet(ray: &Ray, shape: &SolidShape) -> Option<SolidHit> {
 
 /// The point at `t` of a solid, with its normal in the world.
 #[cold]
-pub fn point_on_solid(ray: &Ray, t: f32, solid: &Solid) -> Found {
+pub fn point_on_solid(tests: ShapeTests, ray: &Ray, t: f32, solid: &Solid) -> Found {
     let placement = &solid.placement;
     let ray = ray_to_object(ray, &placement.to_object);
     if let SolidShape::Ball(ball) = &solid.shape {
         return to_world(point_on_sphere(&ray, t, ball), placement);
     }
-    let normal = meet(&ray, &solid.shape).map_or(-ray.dir.normalize_or(Vec3::Z), |hit| hit.normal);
+    let normal = meet(tests, &ray, &solid.shape).map_or(-ray.dir.normalize_or(Vec3::Z), |hit| hit.normal);
     let point = ray.at(t);
     // The rounding of t moves the point along the ray, and the sum and the product are rounded as well; twice that for
     // tests that are not in double.

@@ -55,3 +55,22 @@ pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) ->
 pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     todo!("scale by the largest coordinate first")
 }
+
+/// Ray against triangle by Cramer's rule as in stage 2, `β (a - b) + γ (a - c) + t d = a - o`, with every number in `f64`
+/// and only the three results rounded. The range of the ray is asked about the rounded `t`. Scenes with
+/// `precision = "double"` are rendered with this.
+///
+/// Where the formula lies: what was rounded before it was converted stays rounded, so `(a - b).as_dvec3()` buys nothing.
+/// And in no precision has an epsilon on the determinant a meaning: it grows with the cube of the size.
+pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
+    todo!("convert all five vectors first, then Cramer's rule; round t, β and γ last")
+}
+
+/// Ray against sphere in the same way: the `t` of the nearest hit that counts, rounded once. A sphere without a radius
+/// above 0 is never hit, and NaN is no hit.
+///
+/// Where the formula lies: `(o - c).as_dvec3()` is off by up to 3 thousandths of a radius for a sphere 100,000 radii
+/// away, and all that follows is right for another sphere.
+pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
+    todo!("convert origin, direction, centre and radius first, then any way of stage 1")
+}

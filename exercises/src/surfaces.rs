@@ -2,13 +2,13 @@
 
 use crate::camera_rays::{geometry_at, plane_at};
 use crate::placed::{meet_solid, point_on_solid, to_world};
+use crate::shape_tests::ShapeTests;
 use crate::stage8_scene_graph::ray_to_object;
 use crate::{stage1_shapes, stage2_triangles, stage4_shading};
 use glam::{Vec2, Vec3, vec2};
 use raykata::bvh::PrimitiveHit;
 use raykata::kit::Surface;
 use raykata::ray::Ray;
-use raykata::scene::TriangleMethod;
 use raykata::shape::{Plane, Sphere, Triangle};
 use raykata::world::{Geometry, Instance, Primitive, World, around_ball};
 
@@ -60,7 +60,7 @@ pub struct Found {
 /// How surfaces are looked at.
 #[derive(Clone, Copy)]
 pub struct Looks {
-    pub method: TriangleMethod,
+    pub tests: ShapeTests,
     /// Whether normals are interpolated over smooth meshes.
     pub smooth: bool,
 }
@@ -78,7 +78,9 @@ pub fn surface(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Place {
             let found = match geometry_at(world, primitive, ray.time) {
                 Geometry::Sphere(sphere) => point_on_sphere(ray, hit.t, &sphere),
                 Geometry::Triangle(triangle) => point_on_triangle(world, looks, ray, primitive, &triangle),
-                Geometry::Solid(index) => point_on_solid(ray, hit.t, &world.solids[index as usize]),
+                Geometry::Solid(index) => {
+                    point_on_solid(looks.tests, ray, hit.t, &world.solids[index as usize])
+                }
                 // A search answers for an instance with what it has hit inside.
                 Geometry::Instance(_) => unreachable!("an instance is not a surface"),
             };
@@ -131,7 +133,7 @@ fn point_on_triangle(
     primitive: &Primitive,
     triangle: &Triangle,
 ) -> Found {
-    let weights = barycentric(looks.method, ray, triangle);
+    let weights = barycentric(looks.tests, ray, triangle);
     let Triangle { a, b, c } = *triangle;
     // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far the ray came
     // from.
@@ -151,15 +153,15 @@ fn point_on_triangle(
 
 /// `(α, β, γ)` of the point in which the ray meets the plane of the triangle, none below 0.
 #[inline(always)]
-fn barycentric(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> Vec3 {
+fn barycentric(tests: ShapeTests, ray: &Ray, triangle: &Triangle) -> Vec3 {
     let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-    let (beta, gamma) = meet_triangle(method, &unbounded, triangle)
-        .map_or((1.0 / 3.0, 1.0 / 3.0), |(_, beta, gamma)| (beta, gamma));
+    let (beta, gamma) =
+        tests.triangle(&unbounded, triangle).map_or((1.0 / 3.0, 1.0 / 3.0), |hit| (hit.beta, hit.gamma));
     Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma)
 }
 
 /// The texture coordinates of a hit; the middle of the image where the shape has none.
-pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit: &Hit, at: Vec3) -> Vec2 {
+pub fn texture_coordinates(world: &World, tests: ShapeTests, ray: &Ray, hit: &Hit, at: Vec3) -> Vec2 {
     let middle = vec2(0.5, 0.5);
     match *hit {
         Hit::Plane { index, .. } => {
@@ -172,13 +174,13 @@ pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit
             if let Geometry::Solid(index) = primitive.geometry {
                 let solid = &world.solids[index as usize];
                 let own = solid.placement.to_object.transform_point3(at);
-                let normal = meet_solid(ray, solid).map_or(Vec3::Y, |hit| hit.normal);
+                let normal = meet_solid(tests, ray, solid).map_or(Vec3::Y, |hit| hit.normal);
                 return solid.shape.texture_coordinates(own, normal);
             }
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at(world, primitive, ray.time) {
                 Geometry::Sphere(sphere) => around_ball(world.ball_axes[image] * (at - sphere.center)),
-                Geometry::Triangle(triangle) => uv_on_triangle(world, method, ray, image, &triangle),
+                Geometry::Triangle(triangle) => uv_on_triangle(world, tests, ray, image, &triangle),
                 Geometry::Solid(_) | Geometry::Instance(_) => middle,
             }
         }
@@ -187,7 +189,7 @@ pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit
             match (primitive.image.get(), &primitive.geometry) {
                 (Some(image), Geometry::Triangle(triangle)) => {
                     let ray = ray_to_object(ray, &instance.placement.to_object);
-                    uv_on_triangle(world, method, &ray, image, triangle)
+                    uv_on_triangle(world, tests, &ray, image, triangle)
                 }
                 _ => middle,
             }
@@ -195,29 +197,10 @@ pub fn texture_coordinates(world: &World, method: TriangleMethod, ray: &Ray, hit
     }
 }
 
-fn uv_on_triangle(
-    world: &World,
-    method: TriangleMethod,
-    ray: &Ray,
-    image: usize,
-    triangle: &Triangle,
-) -> Vec2 {
+fn uv_on_triangle(world: &World, tests: ShapeTests, ray: &Ray, image: usize, triangle: &Triangle) -> Vec2 {
     let [a, b, c] = world.uvs[image];
-    let weights = barycentric(method, ray, triangle);
+    let weights = barycentric(tests, ray, triangle);
     weights.x * a + weights.y * b + weights.z * c
-}
-
-/// `(t, β, γ)` by the method that the scene asks for.
-#[inline(always)]
-pub fn meet_triangle(method: TriangleMethod, ray: &Ray, triangle: &Triangle) -> Option<(f32, f32, f32)> {
-    let hit = match method {
-        TriangleMethod::Watertight => stage2_triangles::triangle_choice(ray, triangle),
-        TriangleMethod::Cramer => stage2_triangles::triangle_cramer(ray, triangle),
-        TriangleMethod::Gram => {
-            stage2_triangles::triangle_gram(ray, triangle, &stage2_triangles::gram_scalars(triangle))
-        }
-    };
-    hit.map(|hit| (hit.t, hit.beta, hit.gamma))
 }
 
 /// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.

@@ -105,7 +105,7 @@ impl<'a> Tracer<'a> {
             positions: plan.positions,
             weights: plan.weights,
         };
-        let looks = Looks { method: quality.triangle_method, smooth: plan.smooth };
+        let looks = Looks { tests: plan.tests, smooth: plan.smooth };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
         Tracer { job, plan, eye, finder, looks, limits }
     }

@@ -5,6 +5,7 @@ use crate::placed::{bounds_of_shape, placed_bounds};
 use crate::plan::Plan;
 use crate::probe::{GraphProbe, Inside, PacketProbe, SceneProbe};
 use crate::search::Search;
+use crate::shape_tests::ShapeTests;
 use crate::stage8_scene_graph::closest_hit_in_graph;
 use crate::stage9_coherence::{closest_hit_cached, closest_hit_packet};
 use crate::structure::Structure;
@@ -19,7 +20,7 @@ use raykata::bvh::PrimitiveHit;
 use raykata::count::{Event, Tally};
 use raykata::graph::{Graph, Savings};
 use raykata::ray::Ray;
-use raykata::scene::{Quality, TriangleMethod};
+use raykata::scene::Quality;
 use raykata::world::{Geometry, Primitive, World};
 
 /// A world, and the structures by which rays find what is in it.
@@ -31,7 +32,7 @@ pub struct Finder {
     pub parts: Vec<Structure>,
     search: Search,
     savings: Savings,
-    pub method: TriangleMethod,
+    pub tests: ShapeTests,
 }
 
 impl Finder {
@@ -54,8 +55,8 @@ impl Finder {
         let structure = over(&of_scene, &world.primitives, graph);
         let parts = world.parts.iter().zip(&of_parts);
         let parts = parts.map(|(part, bounds)| over(bounds, &part.primitives, None)).collect();
-        let (search, savings, method) = (plan.search, quality.savings, quality.triangle_method);
-        Finder { world, structure, parts, search, savings, method }
+        let (search, savings, tests) = (plan.search, quality.savings, plan.tests);
+        Finder { world, structure, parts, search, savings, tests }
     }
 
     /// Bytes of the structures of all parts.

@@ -1,6 +1,7 @@
 //! Nothing to do here: what a frame will compute, and what it leaves out while exercises are not written yet.
 
 use crate::search::Search;
+use crate::shape_tests::ShapeTests;
 use crate::{
     search, stage2_triangles, stage4_shading, stage5_recursion, stage6_distribution, stage7_effects,
     stage8_scene_graph, stage8_solids, stage8_surfaces,
@@ -24,6 +25,8 @@ pub struct Plan {
     /// What the scene calls for, as far as it is written.
     pub effects: Effects,
     pub search: Search,
+    /// By which functions rays are tested against shapes.
+    pub tests: ShapeTests,
     pub view: View,
     /// What the world is made with.
     pub crafts: Crafts,
@@ -46,6 +49,7 @@ impl Plan {
         let effects = if looks { stage7_effects::effects(scene) } else { Effects::everything(scene) };
         let mut plan = Plan {
             search: search::choose(&scene.quality, &mut notes),
+            tests: ShapeTests::choose(&scene.quality, &mut notes),
             view: choose_view(job.view, &mut notes),
             crafts: crafts(),
             smooth: written(|| stage4_shading::shading_normal(Vec3::X, None, Vec3::X)),

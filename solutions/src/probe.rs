@@ -3,16 +3,16 @@
 use crate::camera_rays::geometry_at;
 use crate::finder::Finder;
 use crate::placed::meet_solid;
+use crate::shape_tests::ShapeTests;
+use crate::stage3_bvh;
 use crate::stage8_scene_graph::ray_to_object;
 use crate::structure::{Structure, Volumes};
-use crate::surfaces::{Hit, meet_triangle};
-use crate::{stage1_shapes, stage3_bvh};
+use crate::surfaces::Hit;
 use glam::Vec3;
 use raykata::bvh::{Contents, Node, PrimitiveHit, Probe};
 use raykata::count::{Event, Tally};
 use raykata::partition::Cells;
 use raykata::ray::Ray;
-use raykata::scene::TriangleMethod;
 use raykata::world::{Geometry, Primitive, World};
 
 /// Answers the questions of a search about the world or a part of it, and counts them.
@@ -24,7 +24,7 @@ pub struct SceneProbe<'a, T> {
     nodes: &'a [Node],
     pub primitives: &'a [Primitive],
     world: &'a World,
-    method: TriangleMethod,
+    tests: ShapeTests,
     inverse_dir: Vec3,
     tally: &'a mut T,
     finder: &'a Finder,
@@ -45,7 +45,7 @@ impl<'a, T: Tally> SceneProbe<'a, T> {
             nodes: structure.nodes(),
             primitives,
             world: &finder.world,
-            method: finder.method,
+            tests: finder.tests,
             inverse_dir: ray.dir.recip(),
             tally,
             finder,
@@ -56,8 +56,8 @@ impl<'a, T: Tally> SceneProbe<'a, T> {
     #[inline(always)]
     fn meet(&mut self, index: u32, ray: &Ray, geometry: &Geometry) -> Option<f32> {
         match geometry {
-            Geometry::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
-            Geometry::Triangle(triangle) => meet_triangle(self.method, ray, triangle).map(|(t, ..)| t),
+            Geometry::Sphere(sphere) => self.tests.sphere(ray, sphere),
+            Geometry::Triangle(triangle) => self.tests.triangle(ray, triangle).map(|hit| hit.t),
             other => self.inside.meet(self.finder, self.tally, index, ray, other),
         }
     }
@@ -157,7 +157,8 @@ impl Inside {
         let instance = match geometry {
             Geometry::Instance(instance) => &finder.world.instances[*instance as usize],
             Geometry::Solid(solid) => {
-                return meet_solid(ray, &finder.world.solids[*solid as usize]).map(|hit| hit.t);
+                let solid = &finder.world.solids[*solid as usize];
+                return meet_solid(finder.tests, ray, solid).map(|hit| hit.t);
             }
             Geometry::Sphere(_) | Geometry::Triangle(_) => return None,
         };

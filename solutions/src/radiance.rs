@@ -99,7 +99,7 @@ impl Tracer<'_> {
             _ => return Cow::Borrowed(material),
         };
         tally.note(Event::TextureRead);
-        let uv = texture_coordinates(&self.finder.world, self.looks.method, ray, hit, at.surface.point);
+        let uv = texture_coordinates(&self.finder.world, self.looks.tests, ray, hit, at.surface.point);
         let color = stage7_effects::texture_color(image, uv);
         let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })

@@ -97,3 +97,54 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     // <stub> todo!("scale by the largest coordinate first")
     // </solution>
 }
+
+/// Ray against triangle by Cramer's rule as in stage 2, `β (a - b) + γ (a - c) + t d = a - o`, with every number in `f64`
+/// and only the three results rounded. The range of the ray is asked about the rounded `t`. Scenes with
+/// `precision = "double"` are rendered with this.
+///
+/// Where the formula lies: what was rounded before it was converted stays rounded, so `(a - b).as_dvec3()` buys nothing.
+/// And in no precision has an epsilon on the determinant a meaning: it grows with the cube of the size.
+pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
+    // <solution>
+    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    let (from_b, from_c, from_o) = (a - b, a - c, a - o);
+
+    let aside = from_c.cross(d);
+    let along = from_b.cross(from_o);
+    let determinant = from_b.dot(aside);
+    let beta = from_o.dot(aside) / determinant;
+    let gamma = d.dot(along) / determinant;
+    let t = (-from_c.dot(along) / determinant) as f32;
+
+    // A determinant of 0 makes infinities or NaN, and one of these is false then.
+    let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+    (inside && ray.contains(t)).then_some(TriangleHit { t, beta: beta as f32, gamma: gamma as f32 })
+    // <stub> todo!("convert all five vectors first, then Cramer's rule; round t, β and γ last")
+    // </solution>
+}
+
+/// Ray against sphere in the same way: the `t` of the nearest hit that counts, rounded once. A sphere without a radius
+/// above 0 is never hit, and NaN is no hit.
+///
+/// Where the formula lies: `(o - c).as_dvec3()` is off by up to 3 thousandths of a radius for a sphere 100,000 radii
+/// away, and all that follows is right for another sphere.
+pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
+    // <solution>
+    let (d, r) = (ray.dir.as_dvec3(), f64::from(radius));
+    let f = ray.origin.as_dvec3() - center.as_dvec3();
+
+    // r² - |f⊥|² as in stage 1; b² - a c has digits enough here as well.
+    let a = d.length_squared();
+    let b = -f.dot(d);
+    let discriminant = r * r - (f + (b / a) * d).length_squared();
+    if !(discriminant >= 0.0 && r > 0.0) {
+        return None;
+    }
+
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    let roots = [(f.length_squared() - r * r) / q, q / a].map(|t| t as f32);
+    let [near, far] = [roots[0].min(roots[1]), roots[0].max(roots[1])];
+    [near, far].into_iter().find(|&t| ray.contains(t))
+    // <stub> todo!("convert origin, direction, centre and radius first, then any way of stage 1")
+    // </solution>
+}

@@ -400,5 +400,9 @@ door! {
         OffsetOrigin fn offset_origin(OffsetQuery) -> Vec3;
         /// The unit vector along another, if it has a direction.
         SafeNormalize fn safe_normalize(Vec3) -> Option<Vec3>;
+        /// Ray against triangle, every number in double precision.
+        TriangleInDouble fn triangle_in_double(TriangleQuery) -> Option<TriangleHit>;
+        /// Ray against sphere, every number in double precision.
+        SphereInDouble fn sphere_in_double(SphereQuery) -> Option<f32>;
     }
 }

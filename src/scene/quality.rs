@@ -126,14 +126,16 @@ impl Sampler {
     }
 }
 
-/// How many digits ray/shape tests work with (stage 10).
+/// How many digits the tests of rays against triangles and spheres work with (stage 10). Rays and shapes themselves are
+/// kept in single precision. Planes, boxes, cylinders, cones, disks and polygons have one test each, whatever this is:
+/// their `t` is right to a few roundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
-    /// 24 bits.
+    /// 24 bits, by the [`TriangleMethod`] of the scene; that of the reference which is watertight takes 53 as it is.
     #[default]
     Single,
-    /// 53 bits.
+    /// 53 bits, whatever the method is.
     Double,
 }
 
@@ -164,7 +166,7 @@ pub struct Quality {
     pub copies: bool,
     /// What a search of the scene graph saves (stage 8).
     pub savings: Savings,
-    /// Digits of ray/shape tests (stage 10).
+    /// Digits of tests against triangles and spheres (stage 10).
     pub precision: Precision,
     /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
     pub grid_resolution: u32,

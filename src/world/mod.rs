@@ -19,7 +19,7 @@ use crate::effects::Effects;
 use crate::graph::{Graph, Placement};
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
-use crate::scene::{Precision, Scene};
+use crate::scene::Scene;
 use crate::shape::{BezierPatch, Plane, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
@@ -171,9 +171,6 @@ impl World {
 /// What the scene asks for and no built stage simulates.
 pub fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
-    if scene.quality.precision == Precision::Double {
-        notes.push("rays are tested in single precision: stage 10, not built yet".into());
-    }
     if scene.indirect_light {
         notes.push("light bounced between surfaces is left out: stage 11, not built yet".into());
     }

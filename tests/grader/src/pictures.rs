@@ -6,7 +6,7 @@ use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, Kit, RenderJob, Rendering, TracedRay, View, mishap};
-use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TriangleMethod, load};
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod, load};
 use sha2::{Digest, Sha256};
 use std::fmt;
 use std::path::Path;
@@ -85,6 +85,7 @@ impl Scenes {
             "effects, Gaussian",
             "effects, Random",
             "effects, lamps from the middle",
+            "effects, Double",
             "effects, no lens, all smooth",
             "stage8",
         ];
@@ -153,6 +154,7 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
     turned.extend(
         methods.map(|method| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
     );
+    turned.push(with("Double", &|quality| quality.precision = Precision::Double));
     let samplers = [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian];
     turned
         .extend(samplers.map(|sampler| with(&format!("{sampler:?}"), &|quality| quality.sampler = sampler)));

@@ -42,7 +42,10 @@ fn whoever_shows_a_figure_says_how_to_make_it() {
     let slides = slides(&root);
     assert!(slides.len() > 5 && slides.iter().filter(|(_, slide)| has_figures(slide)).count() > 3);
     for (place, slide) in &slides {
-        assert!(!has_figures(slide) || !commands(slide).is_empty(), "{place} shows figures and names no command");
+        assert!(
+            !has_figures(slide) || !commands(slide).is_empty(),
+            "{place} shows figures and names no command"
+        );
         for picture in pictures(slide) {
             assert!(root.join("slides").join(picture).is_file(), "{place}: there is no {picture}");
         }

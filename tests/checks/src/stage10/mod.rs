@@ -1,12 +1,15 @@
 //! Stage 10: stability.
 //!
-//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions)
+//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles with all digits) ·
+//! `rims` (spheres with all digits)
 //!
 //! Judged by [`crate::exact`]: an answer may differ from the exact one only where at most [`STABLE`] roundings decide,
 //! and a mesh may not leak at all.
 
 mod boxes;
+mod doubles;
 mod points;
+mod rims;
 mod roots;
 mod triangles;
 
@@ -15,10 +18,14 @@ use boxes::{
     slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met,
     slab_of_special_numbers_is_finite,
 };
+use doubles::{
+    double_of_special_numbers_is_finite, double_triangle_has_the_nearest_t, double_triangle_is_right_at_edges,
+};
 use points::{
     directions_have_length_one_at_every_length, nothing_has_no_direction,
     offsets_are_as_small_as_they_can_be, offsets_leave_the_surface_at_any_scale,
 };
+use rims::{double_sphere_has_the_nearest_t, double_sphere_is_right_at_rims};
 use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that_touch_are_found};
 use triangles::{
     watertight_errs_only_where_roundings_decide, watertight_has_a_good_t, watertight_meshes_do_not_leak,
@@ -50,4 +57,9 @@ checks! { ($) 10 stage10 [
     offsets_are_as_small_as_they_can_be
     directions_have_length_one_at_every_length
     nothing_has_no_direction
+    double_triangle_is_right_at_edges
+    double_triangle_has_the_nearest_t
+    double_sphere_is_right_at_rims
+    double_sphere_has_the_nearest_t
+    double_of_special_numbers_is_finite
 ] }

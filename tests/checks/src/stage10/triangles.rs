@@ -16,7 +16,7 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// Inputs of a distribution.
-fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
+pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
     let mut random = Random::new(trial.seed, name.len() as u64);
     let found = DISTRIBUTIONS.iter().find(|distribution| distribution.name == name);
     let draw = found.map(|distribution| distribution.draw).expect("a distribution of the gauntlet");
@@ -30,7 +30,7 @@ fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
 
 /// The triangles of a distribution from the same places, aimed well inside or a little beside an edge, where more than
 /// roundings decide; and the same rays turned round, or ended before they arrive.
-fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
+pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
     let mut random = Random::new(trial.seed, 4);
     let again = |TriangleQuery { ray, triangle }: &TriangleQuery| {
         let beside = -(10f64.powf(-1.0 - 4.0 * f64::from(random.unit())));

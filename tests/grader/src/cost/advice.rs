@@ -1,9 +1,10 @@
 //! The best for your time: from the cheapest setting upwards, always by the step that buys the most.
 
 use super::climb::{Climb, Tried};
-use super::ladder::{Knob, Setting};
+use super::ladder::Knob;
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
+use super::setting::Setting;
 use crate::report::FrameBar;
 use anyhow::Result;
 use raykata::scene::Scene;
@@ -62,28 +63,6 @@ pub struct Advice {
     pub command: String,
     #[serde(skip)]
     pub setting: Setting,
-}
-
-/// Turns a knob of one setting to where another has it.
-pub fn turned(to: &Setting, knob: Knob, setting: &Setting) -> Setting {
-    let (from, mut turned) = (&to.quality, setting.clone());
-    let quality = &mut turned.quality;
-    match knob {
-        Knob::Samples => quality.samples_per_pixel = from.samples_per_pixel,
-        Knob::Sampler => quality.sampler = from.sampler,
-        Knob::LightSamples => quality.light_samples = from.light_samples,
-        Knob::GlossSamples => quality.gloss_samples = from.gloss_samples,
-        Knob::Depth => quality.max_depth = from.max_depth,
-        Knob::MinContribution => quality.min_contribution = from.min_contribution,
-        Knob::SmoothNormals => turned.smooth = to.smooth,
-        Knob::Intersection => quality.triangle_method = from.triangle_method,
-        Knob::Precision => quality.precision = from.precision,
-        Knob::Accelerator => quality.accelerator = from.accelerator,
-        Knob::Split => quality.split = from.split,
-        Knob::LeafSize => quality.leaf_size = from.leaf_size,
-        Knob::GridResolution => quality.grid_resolution = from.grid_resolution,
-    }
-    turned
 }
 
 /// How far the error of a setting may lie above that of another and still count as the same.
@@ -164,7 +143,7 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
         let fewest = good().map(|(_, point)| leaks(point)).min().unwrap_or_default();
         let tight = good().filter(|(_, point)| leaks(point) == fewest);
         let Some((_, best)) = tight.min_by(|a, b| a.1.seconds.total_cmp(&b.1.seconds)) else { continue };
-        setting = turned(&best.setting, series.knob, &setting);
+        setting = setting.turned(series.knob, &best.setting);
         let faster = good().filter(|(_, point)| leaks(point) > fewest && point.seconds < best.seconds);
         passed_over.extend(faster.map(|(name, point)| {
             let rays = point.hits.map_or(0, |hits| hits.rays);
@@ -172,7 +151,7 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
         }));
     }
     if let Some(best) = best_sampler(measured) {
-        setting = turned(&best.setting, Knob::Sampler, &setting);
+        setting = setting.turned(Knob::Sampler, &best.setting);
     }
     (setting, passed_over)
 }
@@ -206,7 +185,7 @@ fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)
     let of_series = |series: &Series| {
         let is_same = |index: &usize| {
             let value = &measured.points[*index].setting;
-            turned(value, series.knob, setting) == *setting
+            setting.turned(series.knob, value) == *setting
         };
         let name = match series.knob {
             Knob::Sampler => {

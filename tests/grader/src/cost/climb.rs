@@ -1,9 +1,10 @@
 //! The way up: from the cheapest value of every knob, always by the step that lowers the error most for its time.
 
-use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full, turned};
-use super::ladder::{Knob, Setting};
+use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
+use super::ladder::Knob;
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
+use super::setting::Setting;
 use crate::report::bar_of_steps;
 use anyhow::Result;
 use indicatif::ProgressBar;
@@ -70,7 +71,7 @@ impl<'a, 't> Climb<'a, 't> {
         full: f64,
     ) -> Result<Option<Climb<'a, 't>>> {
         let foot = ladders.iter().fold(start, |setting, series| {
-            turned(&measured.points[series.rungs[0].1].setting, series.knob, &setting)
+            setting.turned(series.knob, &measured.points[series.rungs[0].1].setting)
         });
         let bar = bar_of_steps(ladders.iter().map(|series| series.rungs.len()).sum());
         bar.set_message("looking for the best settings");
@@ -117,7 +118,7 @@ impl<'a, 't> Climb<'a, 't> {
     fn turned_to(&self, ladder: usize, rung: usize) -> Setting {
         let series = self.ladders[ladder];
         let to = &self.measured.points[series.rungs[rung].1].setting;
-        turned(to, series.knob, &self.now.setting)
+        self.now.setting.turned(series.knob, to)
     }
 
     fn best_step(&mut self) -> Result<Option<Candidate>> {

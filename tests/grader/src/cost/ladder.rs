@@ -1,8 +1,11 @@
 //! The knobs that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
 
+use super::called::Called;
+use super::setting::Setting;
+use crate::report::Thousands;
 use clap::ValueEnum;
-use raykata::effects::{Effect, Effects};
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
+use raykata::effects::Effect;
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
 use serde::Serialize;
 
 /// Something that can be turned.
@@ -37,27 +40,6 @@ pub enum Knob {
     GridResolution,
 }
 
-/// A value of a knob: the scene with one thing changed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Setting {
-    pub quality: Quality,
-    /// Whether meshes keep their smooth normals.
-    pub smooth: bool,
-}
-
-impl Setting {
-    /// As the scene has it.
-    pub fn of(scene: &Scene) -> Setting {
-        Setting { quality: scene.quality, smooth: true }
-    }
-
-    pub fn apply(&self, scene: &Scene) -> Scene {
-        let mut scene = if self.smooth { scene.clone() } else { Effect::SmoothNormals.removed_from(scene) };
-        scene.quality = self.quality;
-        scene
-    }
-}
-
 /// Values of a knob, from cheap to dear.
 pub struct Ladder {
     pub knob: Knob,
@@ -65,21 +47,18 @@ pub struct Ladder {
     pub name: String,
     /// What each value is called, and the setting.
     pub rungs: Vec<(String, Setting)>,
-}
-
-/// A scene, and what is known of it.
-pub struct Called<'a> {
-    pub scene: &'a Scene,
-    pub effects: &'a Effects,
-    /// What rays are tested against.
-    pub primitives: u64,
+    /// Values that would take too long, and why.
+    pub left_out: Vec<String>,
 }
 
 /// As many samples as ladders go up to, at least.
 const MOST_SAMPLES: u32 = 64;
 
-/// Asking every ray about more primitives than this takes minutes, which `raykata compare` shows on a slice.
-const MOST_PRIMITIVES: u64 = 2_000;
+/// Asking every ray about more primitives than this takes minutes.
+const MOST_ASKED: u64 = 2_000;
+
+/// A BSP tree over more primitives takes ten seconds and more to build, and it is built for every picture.
+const MOST_IN_BSP: u64 = 500_000;
 
 /// How deep the reference follows paths, and the ladder of depths goes at least.
 pub const LEAST_DEPTH: u32 = 8;
@@ -128,7 +107,7 @@ impl Knob {
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
         let ladder = |rungs: Vec<(String, Quality)>| {
             let rungs = rungs.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
-            Ladder { knob: self, name: self.name().into(), rungs: rungs.collect() }
+            Ladder { knob: self, name: self.name().into(), rungs: rungs.collect(), left_out: Vec::new() }
         };
         let numbers = |values: Vec<u32>, set: fn(&mut Quality, u32)| {
             let with = |value: u32| {
@@ -186,7 +165,7 @@ impl Knob {
                 vec![Ladder { rungs: rungs.to_vec(), ..ladder(Vec::new()) }]
             }
             Knob::Intersection => {
-                needs(!scene.meshes.is_empty(), "there are no triangles")?;
+                needs(called.shows_triangles(), "there are no triangles")?;
                 let all = [
                     ("gram", TriangleMethod::Gram),
                     ("cramer", TriangleMethod::Cramer),
@@ -198,19 +177,34 @@ impl Knob {
                 vec![ladder(all.into_iter().map(with).collect())]
             }
             Knob::Precision => {
+                needs(
+                    called.shows_triangles() || called.shows_spheres(),
+                    "there are no triangles and no spheres, and other shapes have one test each",
+                )?;
                 let all = [("single", Precision::Single), ("double", Precision::Double)];
                 let with = |(name, precision): (&str, _)| (name.to_owned(), Quality { precision, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
             }
             Knob::Accelerator => {
-                let asks_all =
-                    [Accelerator::BruteForce, Accelerator::BoundingBoxes, Accelerator::BoundingSpheres];
-                let affordable =
-                    |one: &Accelerator| *primitives <= MOST_PRIMITIVES || !asks_all.contains(one);
-                let with = |accelerator: Accelerator| {
-                    (accelerator.name().replace('_', " "), Quality { accelerator, ..quality })
+                let most = |one: Accelerator| match one {
+                    Accelerator::BruteForce | Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
+                        MOST_ASKED
+                    }
+                    Accelerator::Bsp => MOST_IN_BSP,
+                    _ => u64::MAX,
                 };
-                vec![ladder(Accelerator::ALL.into_iter().filter(affordable).map(with).collect())]
+                let name = |one: Accelerator| one.name().replace('_', " ");
+                let (offered, dear): (Vec<_>, Vec<_>) =
+                    Accelerator::ALL.into_iter().partition(|&one| *primitives <= most(one));
+                let with = |accelerator| (name(accelerator), Quality { accelerator, ..quality });
+                let why = |one: Accelerator| {
+                    let (name, most) = (name(one), Thousands(most(one)));
+                    format!(
+                        "accelerator {name}: for scenes of {most} primitives or fewer; `raykata compare` shows it"
+                    )
+                };
+                let left_out = dear.into_iter().map(why).collect();
+                vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }]
             }
             Knob::Split => {
                 needs(hierarchy, "what finds hits is no hierarchy")?;
@@ -264,6 +258,7 @@ fn doubling(own: u32, most: u32) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use raykata::effects::Effects;
 
     #[test]
     fn the_scenes_own_value_is_a_rung() {

@@ -2,8 +2,9 @@
 
 use super::error::{Errors, errors};
 use super::hits::Verdicts;
-use super::ladder::{Knob, Ladder, Setting};
+use super::ladder::{Knob, Ladder};
 use super::reference::Reference;
+use super::setting::Setting;
 use crate::report::{FrameBar, bar_of_steps, quartiles};
 use anyhow::Result;
 use raykata::count::Counts;
@@ -217,6 +218,7 @@ impl Bench<'_> {
                 }
                 bar.inc(1);
             }
+            measured.left_out.extend(ladder.left_out);
             measured.series.push(Series { knob: ladder.knob, name: ladder.name, rungs });
         }
         bar.set_length((n_rungs + measured.points.len() * self.rounds as usize) as u64);

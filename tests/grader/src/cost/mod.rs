@@ -1,11 +1,12 @@
 //! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
 //!
-//! `options` (what can be asked) · `ladder` (which knobs, which values) · `reference` (what is right) · `error` (how far off) · `measure` (counts, times) ·
-//! `slope` (how fast error falls) · `headline` and `landscape` (brute force against a
-//! hierarchy) · `advice` and `climb` (the best for your time) · `hits` (judged exactly) · `table`,
-//! `page`, `plot`, `files` (how it is told)
+//! `options` (what can be asked) · `called`, `ladder` and `setting` (which knobs, which values) · `reference` (what is right) ·
+//! `error` (how far off) · `hits` (judged exactly) · `measure` (counts, times) · `slope` (how fast error falls) · `advice`
+//! and `climb` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told) · `headline` and `landscape`
+//! (brute force against a hierarchy)
 
 mod advice;
+mod called;
 mod climb;
 mod error;
 mod files;
@@ -18,6 +19,7 @@ mod options;
 mod page;
 mod plot;
 mod reference;
+mod setting;
 mod slope;
 mod table;
 
@@ -26,7 +28,8 @@ use crate::knobs::arguments;
 use crate::report::{FrameBar, load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
-use ladder::{Called, Knob, Ladder};
+use called::Called;
+use ladder::{Knob, Ladder};
 use measure::{Bench, Measured, front};
 pub use options::Options;
 use raykata::effects::Effects;
@@ -34,6 +37,7 @@ use raykata::kit::{Kit, Mishap, mishap};
 use raykata::scene::{Quality, Scene};
 use reference::Reference;
 use serde::Serialize;
+use setting::Setting;
 use sha2::{Digest, Sha256};
 use slope::Slope;
 use std::path::Path;
@@ -153,7 +157,7 @@ pub fn run(options: &Options) -> Result<bool> {
         reference_error: right.own_error,
         measured: &measured,
         front: front(&measured.points),
-        own: measured.points.iter().position(|point| point.setting == ladder::Setting::of(&small)),
+        own: measured.points.iter().position(|point| point.setting == Setting::of(&small)),
         slopes: slopes(&measured),
         not_offered,
         advice,

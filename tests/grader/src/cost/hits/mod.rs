@@ -7,8 +7,8 @@
 mod search;
 mod surface;
 
-use super::ladder::Setting;
 use super::measure::{Bench, Measured};
+use super::setting::Setting;
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::Result;

@@ -1,0 +1,132 @@
+//! `precision = "double"` in whole frames: the same picture where nothing is hard, and the right one where it is.
+
+use checks::exact::{Body, verdict};
+use glam::{Vec3, vec3};
+use raykata::count::Counts;
+use raykata::frame::Unwatched;
+use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::scene::{Accelerator, Precision, Scene, TriangleMethod, load};
+use raykata::shape::{Shape, Sphere};
+use raykata::world::camera_for;
+use std::path::Path;
+
+fn scene(text: &str) -> Scene {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
+    load::parse(&file, text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
+    let mut scene = scene.clone();
+    scene.quality.precision = precision;
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true };
+    let frame = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+    assert!(frame.notes.is_empty(), "{:?}", frame.notes);
+    frame
+}
+
+/// What every ray asks, and what it costs.
+fn work(counts: &Counts) -> [u64; 5] {
+    [counts.rays(), counts.hits, counts.node_visits, counts.box_tests, counts.primitive_tests]
+}
+
+#[test]
+fn more_digits_move_few_pixels_and_hardly_any_count() {
+    for name in ["effects.toml", "stage8.toml", "stage5.toml"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+        let mut scene = load::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (48, 32, 1);
+        for method in [TriangleMethod::Watertight, TriangleMethod::Cramer, TriangleMethod::Gram] {
+            scene.quality.triangle_method = method;
+            let [single, double] = [Precision::Single, Precision::Double].map(|p| in_precision(&scene, p));
+            // Another surface is seen, and not a rounding of the same one: rims, and glass that looks at rims.
+            let pixels = single.film.pixels.iter().zip(&double.film.pixels);
+            let other = pixels.filter(|(p, q)| (**p - **q).abs().max_element() > 0.01).count();
+            assert!(other <= 8, "{name}, {method:?}: {other} of 1536 pixels differ");
+            for (single, double) in work(&single.counts).into_iter().zip(work(&double.counts)) {
+                assert!(single.abs_diff(double) <= single / 200, "{name}, {method:?}: {single} and {double}");
+            }
+        }
+    }
+}
+
+/// A wall of two triangles a column, behind which it is light. The edges between columns run through the centres of
+/// pixels from top to bottom.
+fn wall() -> Scene {
+    const COLUMNS: u32 = 40;
+    let mut text = format!(
+        "[film]\nwidth = {COLUMNS}\nheight = 30\n[camera]\nposition = [0.1, 0.2, 0.3]\nlook_at = [1.3, -0.4, 2.1]\n\
+         [environment]\nbackground = 1\n"
+    );
+    let camera = camera_for(&scene(&text));
+    let [below, above] = [1.0, 0.0].map(|y| {
+        let corner = |column: u32| {
+            let ray = camera.ray((column as f32 + 0.5) / COLUMNS as f32, y);
+            ray.at(3.0 + (column as f32).sin())
+        };
+        (0..COLUMNS).map(corner).collect::<Vec<Vec3>>()
+    });
+    let mut triangle = |corners: [Vec3; 3]| {
+        let [a, b, c] = corners.map(|corner| format!("{:?}", corner.to_array()));
+        text += &format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n");
+    };
+    for (left, right) in (0..).zip(1..COLUMNS as usize) {
+        // What is weighed by γ on the one side of an edge is weighed by 1 - β - γ on the other.
+        triangle([below[left], above[left], below[right]]);
+        triangle([above[left], above[right], below[right]]);
+    }
+    scene(&text)
+}
+
+#[test]
+fn light_leaks_through_a_wall_in_single_precision_only() {
+    let mut scene = wall();
+    for method in [TriangleMethod::Cramer, TriangleMethod::Gram] {
+        scene.quality.triangle_method = method;
+        let leaks = |precision: Precision| {
+            let frame = in_precision(&scene, precision);
+            // The wall ends with the outermost columns and at the upper and lower rim.
+            let inner = |index: usize| (1..39).contains(&(index % 40)) && (1..29).contains(&(index / 40));
+            let lit = |(index, color): &(usize, &Vec3)| inner(*index) && **color != Vec3::ZERO;
+            frame.film.pixels.iter().enumerate().filter(lit).count()
+        };
+        let single = leaks(Precision::Single);
+        assert!(single >= 20, "{method:?}: {single} of 1064 pixels are lit");
+        assert_eq!(leaks(Precision::Double), 0, "{method:?}");
+    }
+}
+
+#[test]
+fn the_rim_of_a_far_ball_is_exact_in_double() {
+    let text = r#"
+[film]
+width = 48
+height = 48
+[camera]
+position = [61234.5, 4321.25, -73456.75]
+look_at = [0.3, 0.1, -0.2]
+vertical_fov = 0.0014
+[environment]
+background = 1
+[[nodes]]
+shape = { sphere = { center = [0.3, 0.1, -0.2], radius = 1 } }
+"#;
+    let mut scene = scene(text);
+    let (camera, ball) = (camera_for(&scene), Sphere { center: vec3(0.3, 0.1, -0.2), radius: 1.0 });
+    assert_eq!(scene.nodes[0].shape, Some(Shape::Sphere(ball)));
+    let wrong = |frame: &Rendering| {
+        let pixel = |index: u32| [index % 48, index / 48].map(|place| (place as f32 + 0.5) / 48.0);
+        let is_wrong = |index: &u32| {
+            let [x, y] = pixel(*index);
+            let hit = verdict(&camera.ray(x, y), Body::Sphere(ball)).is_some_and(|verdict| verdict.is_hit());
+            hit != (frame.film.pixels[*index as usize] == Vec3::ZERO)
+        };
+        (0..48 * 48).filter(is_wrong).count()
+    };
+    for accelerator in [Accelerator::BruteForce, Accelerator::Bvh] {
+        scene.quality.accelerator = accelerator;
+        let [single, double] =
+            [Precision::Single, Precision::Double].map(|precision| wrong(&in_precision(&scene, precision)));
+        assert!(single > 0, "{accelerator:?}");
+        assert_eq!(double, 0, "{accelerator:?}");
+    }
+}

@@ -1,0 +1,70 @@
+//! What a scene calls for, as far as knobs depend on it.
+
+use raykata::effects::{Effect, Effects};
+use raykata::scene::Scene;
+use raykata::shape::Shape;
+
+/// A scene, and what is known of it.
+pub struct Called<'a> {
+    pub scene: &'a Scene,
+    pub effects: &'a Effects,
+    /// What rays are tested against.
+    pub primitives: u64,
+}
+
+impl Called<'_> {
+    /// Whether rays are tested against triangles.
+    pub fn shows_triangles(&self) -> bool {
+        self.shows(|shape, moves| match shape {
+            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } => true,
+            Shape::Sphere(_) | Shape::Plane(_) => false,
+            // What moves has no space of its own and is made of triangles.
+            _ => moves,
+        })
+    }
+
+    /// Whether rays are tested against spheres.
+    pub fn shows_spheres(&self) -> bool {
+        self.shows(|shape, _| matches!(shape, Shape::Sphere(_)))
+    }
+
+    /// Whether some shape is so, and whether it moves while the shutter is open.
+    fn shows(&self, is_so: impl Fn(&Shape, bool) -> bool) -> bool {
+        let motion = self.effects.calls_for(Effect::Motion);
+        self.scene.shown().iter().any(|shown| {
+            let shape = self.scene.nodes[shown.node].shape.as_ref();
+            shape.is_some_and(|shape| is_so(shape, shown.moves && motion))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Called;
+    use raykata::effects::Effects;
+    use raykata::scene::load::parse;
+    use std::path::Path;
+
+    /// Whether a scene of one node shows triangles and spheres, standing still and moving.
+    #[track_caller]
+    fn check(shape: &str, still: (bool, bool), moving: (bool, bool)) {
+        let text = format!(
+            "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nshutter = {{ open = 0, close = 1 }}\n\
+             [[nodes]]\nshape = {{ {shape} }}\ntransform_end = [{{ translate = [1, 0, 0] }}]\n"
+        );
+        let scene = parse(Path::new("test.toml"), &text).unwrap_or_else(|error| panic!("{error}"));
+        for (motion, expected) in [(false, still), (true, moving)] {
+            let effects = Effects { motion, ..Effects::default() };
+            let called = Called { scene: &scene, effects: &effects, primitives: 1 };
+            assert_eq!((called.shows_triangles(), called.shows_spheres()), expected, "{shape}");
+        }
+    }
+
+    #[test]
+    fn what_moves_and_has_an_end_is_made_of_triangles() {
+        check("triangle = { a = [0, 0, 0], b = [1, 0, 0], c = [0, 1, 0] }", (true, false), (true, false));
+        check("sphere = { center = [0, 0, 0], radius = 1 }", (false, true), (false, true));
+        check("plane = { point = [0, 0, 0], normal = [0, 1, 0] }", (false, false), (false, false));
+        check("box = { min = [0, 0, 0], max = [1, 1, 1] }", (false, false), (true, false));
+    }
+}
