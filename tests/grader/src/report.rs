@@ -93,7 +93,7 @@ impl FrameBar {
     pub fn new(what: &str) -> Self {
         let bar = ProgressBar::new(0);
         let style = ProgressStyle::with_template(
-            "{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix}{msg}",
+            "{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix} {msg}",
         );
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
         bar.set_prefix(what.to_owned());
@@ -118,7 +118,7 @@ impl FrameBar {
 
 impl Watch for FrameBar {
     fn building(&self, placed: u64, total: u64) {
-        self.0.set_message("building");
+        self.0.set_message("(building)");
         self.0.set_length(total);
         self.0.set_position(placed);
     }

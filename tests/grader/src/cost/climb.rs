@@ -16,6 +16,9 @@ const SHARE: f64 = 0.95;
 /// More samples a pixel than this are not proposed.
 const MOST_SAMPLES: u32 = 65_536;
 
+/// How often a budget is met anew, each time with a twentieth fewer samples at least: times wobble by some percent.
+const ATTEMPTS: u32 = 4;
+
 /// Settings that have been measured, each once, however often it is asked for.
 pub struct Tried<'a> {
     pub bench: &'a Bench<'a>,
@@ -146,19 +149,26 @@ impl<'a, 't> Climb<'a, 't> {
         if !self.ladders.iter().any(|series| series.knob == Knob::Samples) {
             return Ok(());
         }
-        let times = (SHARE * budget - self.now.build_seconds) / (self.now.seconds * self.full).max(1e-9);
-        let mut more = self.now.setting.clone();
-        let samples = (f64::from(more.quality.samples_per_pixel) * times) as u32;
-        if samples <= more.quality.samples_per_pixel {
-            return Ok(());
-        }
-        more.quality.samples_per_pixel = samples.min(MOST_SAMPLES);
-        if let Some(point) = self.tried.point(&more)?
-            && self.fits(&point)
-            && point.error() < self.now.error()
-        {
-            let to = more.quality.samples_per_pixel.to_string();
-            self.go_to(point, Knob::Samples, to);
+        let samples = |point: &Point| point.setting.quality.samples_per_pixel;
+        let (mut priced, mut most) = (self.now.clone(), MOST_SAMPLES);
+        for _ in 0..ATTEMPTS {
+            // As many as the budget pays for at the price that was measured last.
+            let price = priced.seconds * self.full / f64::from(samples(&priced));
+            let pays_for = ((SHARE * budget - priced.build_seconds) / price.max(1e-9)) as u32;
+            if pays_for.min(most) <= samples(&self.now) {
+                break;
+            }
+            let mut more = self.now.setting.clone();
+            more.quality.samples_per_pixel = pays_for.min(most);
+            let Some(point) = self.tried.point(&more)? else { break };
+            if self.fits(&point) {
+                if point.error() < self.now.error() {
+                    self.go_to(point, Knob::Samples, pays_for.min(most).to_string());
+                }
+                break;
+            }
+            most = samples(&point) - samples(&point) / 20;
+            priced = point;
         }
         Ok(())
     }

@@ -18,7 +18,7 @@ pub fn print(told: &Told<'_>) {
         if told.measured.rounds == 1 { "round" } else { "rounds" }
     );
     println!(
-        "{:<24}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
+        "{:<32}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
         "",
         "RMSE",
         "rel. MSE",
@@ -37,7 +37,7 @@ pub fn print(told: &Told<'_>) {
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             let hits = point.hits.filter(|_| series.knob.is_geometric());
             println!(
-                "  {:<20}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
+                "  {:<28}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
                 named(told, name, *index),
                 if told.front.contains(index) { "•" } else { " " },
                 point.error(),
