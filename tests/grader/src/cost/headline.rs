@@ -170,6 +170,7 @@ fn measure(bench: &Bench<'_>, triangles: u64) -> Result<Option<Row>> {
         frame(bench, &bar, &scene, accelerator, size, count)
     };
 
+    // A kit keeps nothing between two pictures: the hierarchy is built for each.
     let sixteenth = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
     let Some(counted) = frame("counting", Accelerator::Bvh, sixteenth, true)? else { return Ok(None) };
     let Some(whole) = frame("the whole frame", Accelerator::Bvh, SCREEN, false)? else { return Ok(None) };
