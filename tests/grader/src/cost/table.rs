@@ -189,6 +189,12 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     }
     lines.push(format!("to render it: {}", advice.command));
     match advice.goal {
+        Goal::Seconds(budget) if advice.verified_seconds.is_some_and(|seconds| seconds > budget) => {
+            lines.push(
+                "that is longer than asked for: times wobble by some percent from one picture to the next"
+                    .into(),
+            );
+        }
         Goal::Error(target) if advice.expected_error > target => {
             lines.push(format!("no rung of these ladders comes to {target}: this is the closest"));
         }
