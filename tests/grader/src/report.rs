@@ -91,23 +91,33 @@ pub struct FrameBar(ProgressBar);
 impl FrameBar {
     /// `what` is being made; it may be said later.
     pub fn new(what: &str) -> Self {
-        let bar = ProgressBar::new(0);
-        let style = ProgressStyle::with_template(
-            "{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix} {msg}",
-        );
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        bar.set_prefix(what.to_owned());
-        // Time goes on where nothing can be counted.
-        bar.enable_steady_tick(Duration::from_millis(500));
-        FrameBar(bar)
+        let bar = FrameBar(ProgressBar::new(0));
+        bar.begin(what.to_owned());
+        bar.0.enable_steady_tick(Duration::from_millis(500));
+        bar
     }
 
     /// Something else begins.
     pub fn begin(&self, what: String) {
-        self.0.reset();
-        self.0.set_length(0);
-        self.0.set_message("");
+        self.count("{spinner} {elapsed} gone  {prefix}", 0);
         self.0.set_prefix(what);
+        self.0.set_message("");
+    }
+
+    /// Counts to `total` from now on: pixels go at another pace than primitives, and what is not counted has no end in sight.
+    fn count(&self, template: &str, total: u64) {
+        let style = ProgressStyle::with_template(template);
+        self.0.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        self.0.reset();
+        self.0.set_length(total);
+    }
+
+    fn tell(&self, message: &'static str, done: u64, total: u64) {
+        if self.0.length() != Some(total) || self.0.message() != message {
+            self.count("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix} {msg}", total);
+            self.0.set_message(message);
+        }
+        self.0.set_position(done);
     }
 
     /// Nothing more to show.
@@ -118,19 +128,14 @@ impl FrameBar {
 
 impl Watch for FrameBar {
     fn building(&self, placed: u64, total: u64) {
-        self.0.set_message("(building)");
-        self.0.set_length(total);
-        self.0.set_position(placed);
+        // Nobody knows how long it takes before anything has found its place.
+        if placed > 0 {
+            self.tell("(building)", placed, total);
+        }
     }
 
     fn progress(&self, done: u64, total: u64) {
-        if self.0.length() != Some(total) {
-            // Pixels go at another pace than primitives.
-            self.0.reset();
-            self.0.set_message("");
-            self.0.set_length(total);
-        }
-        self.0.set_position(done);
+        self.tell("", done, total);
     }
 }
 

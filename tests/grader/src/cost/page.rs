@@ -46,7 +46,7 @@ fn page(told: &Told<'_>) -> Result<Markup> {
                 @if let Some(advice) = &told.advice { (proposal(told, advice)) }
                 @for (_, plot) in plots(told) { figure.plot { (PreEscaped(plot)) } }
                 @if !told.front.is_empty() {
-                    p.about { "The broad yellow line is the front: no setting that was measured is both faster and more accurate." }
+                    p.about { "The broad yellow line is the front: no setting that was measured is both faster and more accurate. What leaks is left out of it." }
                 }
                 @for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) { (ladder(told, series)?) }
                 (numerics(told))
