@@ -54,6 +54,12 @@ impl Row {
         1e9 * self.slice_seconds / (self.slice_rays as f64 * self.triangles as f64)
     }
 
+    /// How long the hierarchy over so many triangles should take: sorting makes it n log n.
+    fn build_seconds_of(&self, triangles: u64) -> f64 {
+        let work = |n: u64| n as f64 * (n as f64).ln();
+        self.build_seconds * work(triangles) / work(self.triangles)
+    }
+
     /// Seconds of brute force for the whole screen.
     fn brute_seconds(&self) -> f64 {
         self.slice_seconds / self.slice_rays as f64 * Row::rays()
@@ -85,7 +91,7 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     );
     let mut rows: Vec<Row> = Vec::new();
     for triangles in sizes(most) {
-        let Some(row) = measure(bench, triangles)? else { break };
+        let Some(row) = measure(bench, triangles, rows.last())? else { break };
         println!(
             "{:>12} {:>7.1} {:>9.2} {:>9.1} {:>9.1} {:>9.2} {:>11.0} {:>11.2} {:>13} {:>11} {:>11}",
             Thousands(row.triangles).to_string(),
@@ -158,15 +164,20 @@ fn sizes(most: u64) -> Vec<u64> {
 }
 
 /// `None` if nobody wants it any more.
-fn measure(bench: &Bench<'_>, triangles: u64) -> Result<Option<Row>> {
+fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
     let sides = sides(triangles);
     let exact = 2 * u64::from(sides.0) * u64::from(sides.1);
     let bar = FrameBar::new("");
     let say = |what: &str| bar.begin(format!("{} triangles: {what}", Thousands(exact)));
     say("making the landscape");
     let scene = scene(SCREEN, sides)?;
+    // Before the first leaf there is nothing to count, so this is what the smaller landscape lets expect.
+    let expected = smaller.map_or(0.0, |row| row.build_seconds_of(exact));
     let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
-        say(what);
+        match accelerator {
+            Accelerator::Bvh if expected >= 1.0 => say(&format!("{what}, about {expected:.0} s to build")),
+            _ => say(what),
+        }
         frame(bench, &bar, &scene, accelerator, size, count)
     };
 
