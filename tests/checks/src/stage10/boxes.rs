@@ -1,6 +1,6 @@
 //! Rays at boxes.
 
-use super::{SPECIAL, STABLE};
+use super::{Odd, STABLE};
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::exact::aabb::overlap;
@@ -136,13 +136,10 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome
 }
 
 pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
-    let mut random = Random::new(trial.seed, 9);
-    let mut pick = || SPECIAL[random.below(SPECIAL.len() as u64) as usize];
-    let mut vector = || Vec3::new(pick(), pick(), pick());
+    let mut odd = Odd::new(trial, 9);
     let mut queries = vec![SlabQuery { ray: Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY }];
     queries.extend(
-        (0..3000)
-            .map(|_| SlabQuery { ray: Ray::new(vector(), vector()), bounds: Aabb::new(vector(), vector()) }),
+        (0..3000).map(|_| SlabQuery { ray: odd.ray(), bounds: Aabb::new(odd.vector(), odd.vector()) }),
     );
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let broken = |expected: &str, diagnosis: &'static str| {

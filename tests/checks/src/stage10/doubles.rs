@@ -1,14 +1,13 @@
 //! Triangles with all their digits, and odd numbers.
 
 use super::triangles::{aim_again, draw};
-use super::{SPECIAL, STABLE};
+use super::{Odd, SPECIAL, STABLE};
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::exact::{Body, meet, t_error_in_ulps, triangle};
 use crate::gauntlet::distributions::DISTRIBUTIONS;
 use crate::judge::{compare, known};
 use crate::paste::Arguments;
-use crate::splitmix::Random;
 use glam::Vec3;
 use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
@@ -163,15 +162,8 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
-    let mut random = Random::new(trial.seed, 16);
-    let mut pick = || SPECIAL[random.below(SPECIAL.len() as u64) as usize];
-    let mut vector = || Vec3::new(pick(), pick(), pick());
-    let triangles: Vec<TriangleQuery> = (0..3000)
-        .map(|_| TriangleQuery {
-            ray: Ray::new(vector(), vector()),
-            triangle: Triangle { a: vector(), b: vector(), c: vector() },
-        })
-        .collect();
+    let mut odd = Odd::new(trial, 16);
+    let triangles = odd.triangles();
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
         let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
         let nan = [ray.origin, ray.dir, *a, *b, *c].iter().any(|vector| vector.is_nan());
@@ -195,8 +187,8 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
     let mut spheres: Vec<SphereQuery> =
         [-1.0, -2.0, 0.0, -0.0].into_iter().chain(SPECIAL).map(centred).collect();
     spheres.extend((0..3000).map(|_| {
-        let sphere = Sphere { center: vector(), radius: vector().x };
-        SphereQuery { ray: Ray::new(vector(), vector()), sphere }
+        let sphere = Sphere { center: odd.vector(), radius: odd.vector().x };
+        SphereQuery { ray: odd.ray(), sphere }
     }));
     let judge = |query: &SphereQuery, yours: Option<f32>| {
         let SphereQuery { ray, sphere } = query;

@@ -13,7 +13,8 @@ mod rims;
 mod roots;
 mod triangles;
 
-use crate::checks;
+use crate::splitmix::Random;
+use crate::{Trial, checks};
 use boxes::{
     slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met,
     slab_of_special_numbers_is_finite,
@@ -21,10 +22,14 @@ use boxes::{
 use doubles::{
     double_of_special_numbers_is_finite, double_triangle_has_the_nearest_t, double_triangle_is_right_at_edges,
 };
+use glam::Vec3;
 use points::{
     directions_have_length_one_at_every_length, nothing_has_no_direction,
     offsets_are_as_small_as_they_can_be, offsets_leave_the_surface_at_any_scale,
 };
+use raykata::kit::TriangleQuery;
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
 use rims::{double_sphere_has_the_nearest_t, double_sphere_is_right_at_rims};
 use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that_touch_are_found};
 use triangles::{
@@ -39,6 +44,35 @@ pub const STABLE: f64 = 64.0;
 /// Numbers that break formulas.
 pub const SPECIAL: [f32; 10] =
     [0.0, -0.0, 1.0, -1.0, 1e-40, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
+
+/// Inputs made of [`SPECIAL`] numbers.
+struct Odd(Random);
+
+impl Odd {
+    fn new(trial: &Trial<'_>, case: u64) -> Odd {
+        Odd(Random::new(trial.seed, case))
+    }
+
+    fn number(&mut self) -> f32 {
+        SPECIAL[self.0.below(SPECIAL.len() as u64) as usize]
+    }
+
+    fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.number(), self.number(), self.number())
+    }
+
+    fn ray(&mut self) -> Ray {
+        Ray::new(self.vector(), self.vector())
+    }
+
+    fn triangles(&mut self) -> Vec<TriangleQuery> {
+        let mut one = || TriangleQuery {
+            ray: self.ray(),
+            triangle: Triangle { a: self.vector(), b: self.vector(), c: self.vector() },
+        };
+        (0..3000).map(|_| one()).collect()
+    }
+}
 
 checks! { ($) 10 stage10 [
     roots_do_not_cancel

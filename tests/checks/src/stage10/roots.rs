@@ -1,13 +1,12 @@
 //! The quadratic formula.
 
-use super::SPECIAL;
+use super::Odd;
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::double::U;
 use crate::generate::magnitude;
 use crate::judge::{compare, known};
 use crate::paste::call;
-use crate::splitmix::Random;
 use proptest::prelude::*;
 
 type Coefficients = [f32; 3];
@@ -110,10 +109,9 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> Outcome {
-    let mut random = Random::new(trial.seed, 10);
-    let pick = |random: &mut Random| SPECIAL[random.below(SPECIAL.len() as u64) as usize];
+    let mut odd = Odd::new(trial, 10);
     let mut queries: Vec<Coefficients> = vec![[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, f32::NAN, 1.0]];
-    queries.extend((0..1000).map(|_| [(); 3].map(|()| pick(&mut random))));
+    queries.extend((0..1000).map(|_| [(); 3].map(|()| odd.number())));
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let refused = query[0] == 0.0 || !query.iter().all(|x| x.is_finite());
         let broken = |expected: &str, diagnosis: &'static str| {

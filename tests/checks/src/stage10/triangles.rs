@@ -1,6 +1,6 @@
 //! Watertight triangles.
 
-use super::{SPECIAL, STABLE};
+use super::{Odd, STABLE};
 use crate::Trial;
 use crate::broken::{Broken, Outcome};
 use crate::exact::{Body, meet, t_in_double, triangle};
@@ -222,15 +222,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
-    let mut random = Random::new(trial.seed, 6);
-    let mut pick = || SPECIAL[random.below(SPECIAL.len() as u64) as usize];
-    let mut vector = || Vec3::new(pick(), pick(), pick());
-    let queries: Vec<TriangleQuery> = (0..3000)
-        .map(|_| TriangleQuery {
-            ray: Ray::new(vector(), vector()),
-            triangle: Triangle { a: vector(), b: vector(), c: vector() },
-        })
-        .collect();
+    let queries = Odd::new(trial, 6).triangles();
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken =
