@@ -1,8 +1,6 @@
 //! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
 //! about just these entries. Building and trying them is `cargo run -- corpus --check`, which takes minutes.
 
-#![cfg(feature = "author")]
-
 use grader::corpus::entry::{Claim, Entry, read_all};
 use grader::corpus::records::{Matrix, message_file};
 use grader::corpus::verdict::check_named;
@@ -106,12 +104,12 @@ fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
 
 #[test]
 fn an_entry_that_does_not_exist_is_told() {
-    let raykata = Command::new(env!("CARGO_BIN_EXE_raykata"))
+    let output = Command::new(env!("CARGO_BIN_EXE_grader"))
         .current_dir(root())
         .args(["corpus", "no_such_entry"])
         .output()
         .expect("the program starts");
-    assert_eq!(raykata.status.code(), Some(1));
-    let complaint = String::from_utf8_lossy(&raykata.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = String::from_utf8_lossy(&output.stderr);
     assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
 }

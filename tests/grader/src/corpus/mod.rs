@@ -1,4 +1,4 @@
-//! `raykata corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
+//! `grader corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
 //! must catch and name, or another right way to do it, which every check must accept.
 //!
 //! `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
@@ -8,13 +8,13 @@ pub mod records;
 pub mod verdict;
 pub mod workshop;
 
-use crate::check::run_checks_on;
-use crate::kits::Source;
+use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
 use clap::Args;
 use entry::{Claim, Entry};
+use judge::scorecard::run_checks_on;
 use records::Matrix;
 use std::path::Path;
 use verdict::{Fate, Tried};
@@ -113,7 +113,7 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Re
     let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
-    let workshops = Workshop::open_all(root, jobs)?;
+    let workshops = Workshop::open_all(root, jobs, Need::Checks)?;
     let threads = queue::cores().div_ceil(jobs);
     let tried = queue::run(&workshops, entries, |workshop, entry| {
         bar.set_message(entry.to_string());
@@ -133,7 +133,8 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
         Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
     };
     let wanted = |stage| stage == entry.stage;
-    let graded = run_checks_on(threads, &Source::Worker(worker), wanted, seed.unwrap_or(0))?;
+    let source = Source { which: Which::Solutions, program: worker };
+    let graded = run_checks_on(threads, &source, wanted, seed.unwrap_or(0))?;
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     let fate = match Fate::of(entry, &failures) {
@@ -192,6 +193,6 @@ fn report(tried: &[Tried], differences: &[String]) {
         println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));
     }
     if !differences.is_empty() {
-        println!("\n{} differences: look at them, then `cargo run -- corpus --bless`", differences.len());
+        println!("\n{} differences: look at them, then `cargo run -p grader -- corpus --bless`", differences.len());
     }
 }
