@@ -286,12 +286,9 @@ impl Given {
     }
 
     /// The values of an option that can have several.
-    pub fn list<T>(
-        &self,
-        long: &str,
-        parse: impl Fn(&str) -> Result<T, String>,
-    ) -> Result<Vec<T>, Misuse> {
-        let texts: Vec<String> = self.values(long).map(|value| value.to_string_lossy().into_owned()).collect();
+    pub fn list<T>(&self, long: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Misuse> {
+        let texts: Vec<String> =
+            self.values(long).map(|value| value.to_string_lossy().into_owned()).collect();
         let parts = texts.iter().flat_map(|text| text.split(','));
         parts.map(|part| self.one(long, part, &parse)).collect()
     }
@@ -405,7 +402,11 @@ mod tests {
             ],
             &[
                 Opt::value("--colour", "NAME", "The colours.").choices(&names(&COLOURS)).many(),
-                Opt::value("--width", "N", "How wide it is, from here to there and back, which takes a while to say."),
+                Opt::value(
+                    "--width",
+                    "N",
+                    "How wide it is, from here to there and back, which takes a while to say.",
+                ),
             ],
         ],
     };
@@ -442,7 +443,10 @@ mod tests {
         assert!(why(&["-x"]).ends_with("For more information, try `tool paint --help`."));
         let given = read(&["--colour", "gren", "--width", "0"]).unwrap();
         let colour = given.choices("--colour", &COLOURS).unwrap_err().to_string();
-        assert!(colour.starts_with("`--colour gren`: known are red, green; did you mean `green`?"), "{colour}");
+        assert!(
+            colour.starts_with("`--colour gren`: known are red, green; did you mean `green`?"),
+            "{colour}"
+        );
         assert!(given.number("--width", 1..=9u32).unwrap_err().to_string().contains("from 1 to 9"));
         assert!(given.required(0).unwrap_err().to_string().starts_with("WALL is missing"));
     }

@@ -21,8 +21,7 @@ pub enum Which {
 
 impl Which {
     /// The names of both.
-    pub const NAMES: [(&str, Which); 2] =
-        [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
+    pub const NAMES: [(&str, Which); 2] = [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
 
     /// The name of the package.
     pub fn package(self) -> &'static str {
@@ -227,7 +226,8 @@ impl Shown<'_> {
     fn line(&mut self, line: String) {
         let plain = without_colours(&line);
         let word = plain.split_whitespace().next().unwrap_or_default();
-        let begins = ["Compiling", "Blocking", "Downloading", "Downloaded", "Updating", "Locking", "Building"];
+        let begins =
+            ["Compiling", "Blocking", "Downloading", "Downloaded", "Updating", "Locking", "Building"];
         if begins.contains(&word) {
             self.begin();
         }

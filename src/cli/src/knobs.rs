@@ -80,7 +80,11 @@ const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("dou
 impl Knobs {
     /// As options.
     pub const OPTIONS: &[Opt] = &[
-        Opt::value("--size", "WxH", "Size in pixels, such as 640x360 [default: the scene's, as for all below]."),
+        Opt::value(
+            "--size",
+            "WxH",
+            "Size in pixels, such as 640x360 [default: the scene's, as for all below].",
+        ),
         Opt::value("--spp", "N", "Samples per pixel."),
         Opt::value("--sampler", "NAME", "Where the samples of a pixel lie.").choices(&names(&SAMPLERS)),
         Opt::value("--light-samples", "N", "Places on an area light that a hit asks about."),

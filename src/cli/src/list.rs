@@ -71,7 +71,9 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
 /// The checks of a stage, or of all, with their points and laws.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
-    for (number, about) in rubric::stages().into_iter().filter(|(one, _)| stage.is_none_or(|stage| stage == *one)) {
+    for (number, about) in
+        rubric::stages().into_iter().filter(|(one, _)| stage.is_none_or(|stage| stage == *one))
+    {
         let _ = writeln!(
             text,
             "stage {number} · {}\n  work in {},\n  run `cargo test --test stage{number}`",

@@ -147,7 +147,8 @@ fn what_is_stopped_leaves_a_report() {
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");
-    nix::sys::signal::kill(nix::unistd::Pid::from_raw(child.id() as i32), nix::sys::signal::SIGINT).unwrap();
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
     let told: Vec<String> = lines.collect();
     assert_eq!(child.wait().unwrap().code(), Some(1));
     assert!(told.iter().any(|line| line.starts_with("stopped before the end")), "{told:?}");

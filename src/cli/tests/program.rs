@@ -98,7 +98,10 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
             let output = raykata(&[command, wrong]);
             assert_eq!(output.status.code(), Some(2));
             let complaint = told(&output).1;
-            assert!(complaint.contains("there are stages 1 to 10") && !complaint.contains("building"), "{complaint}");
+            assert!(
+                complaint.contains("there are stages 1 to 10") && !complaint.contains("building"),
+                "{complaint}"
+            );
         }
     }
 }

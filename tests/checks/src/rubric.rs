@@ -18,9 +18,11 @@ pub fn differences() -> Vec<String> {
             }
         }
         let order: Vec<&str> = stage.in_order().into_iter().map(|(name, _)| name).collect();
-        if checks.iter().map(|check| check.name).ne(order.iter().copied().filter(|name| {
-            checks.iter().any(|check| check.name == *name)
-        })) {
+        if checks
+            .iter()
+            .map(|check| check.name)
+            .ne(order.iter().copied().filter(|name| checks.iter().any(|check| check.name == *name)))
+        {
             differences.push(format!("the rubric has the checks of stage {number} in another order"));
         }
         for name in stage.checks.keys() {

@@ -206,14 +206,8 @@ fn what_cannot_be_graded_is_said_in_words() {
         (&["--shard", "3/2"], "parts are counted from 1"),
         (&["--jobs", "0"], "0 is not in 1.."),
     ] {
-        let output = grader()
-            .arg("grade")
-            .arg(class.path())
-            .arg("--out")
-            .arg(out.path())
-            .args(more)
-            .output()
-            .unwrap();
+        let output =
+            grader().arg("grade").arg(class.path()).arg("--out").arg(out.path()).args(more).output().unwrap();
         assert!(!output.status.success() && said(&output).contains(says), "{}", said(&output));
     }
     let nowhere = grader().args(["grade", "/no/such/folder", "--out"]).arg(out.path()).output().unwrap();

@@ -185,7 +185,11 @@ fn a_student_can_begin() {
             false,
             "not written yet: exercises/src/stage1",
         ),
-        (&["run", "--", "render", "scenes/stage1.toml", "--kit", "solutions"], false, "there are no solutions"),
+        (
+            &["run", "--", "render", "scenes/stage1.toml", "--kit", "solutions"],
+            false,
+            "there are no solutions",
+        ),
         (&["run", "--", "sync"], false, "there is no command `sync`"),
         (&["fmt", "--all", "--check"], true, ""),
         (&["test", "--workspace"], true, "test result: ok"),

@@ -4,12 +4,12 @@ use crate::leak_table;
 use anyhow::Result;
 use checks::gauntlet::distributions::DISTRIBUTIONS;
 use checks::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
+use glam::Vec3;
 use raykata::kit::{Kit, TriangleHit, TriangleQuery, mishap};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata_cli::cost::Summary;
 use raykata_cli::report::bar_of_steps;
-use glam::Vec3;
 use std::hint::black_box;
 
 /// A question to a method.

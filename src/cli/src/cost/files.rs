@@ -1,12 +1,12 @@
 //! What machines and slides read: JSON, a table with commas, plots.
 
 use super::hits::Verdicts;
-use super::{Summary, Told};
-use crate::html::csv_line;
 use super::ladder::Knob;
 use super::measure::Series;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
+use super::{Summary, Told};
+use crate::html::csv_line;
 use anyhow::{Context, Result};
 use raykata::film::write_atomically;
 use std::io::Write;

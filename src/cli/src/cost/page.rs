@@ -185,9 +185,8 @@ fn pictures(told: &Told<'_>, series: &Series) -> Result<String> {
         let picture = embedded(&shown(film)?)?;
         let heat = embedded(&heat(film, &told.right.film, most))?;
         let about = escape(format!("the picture with {} {value}", series.name));
-        let images = format!(
-            "<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"where it is wrong\">"
-        );
+        let images =
+            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"where it is wrong\">");
         figures += &around("figure", "", &(images + &element("figcaption", value)));
     }
     Ok(around("div", "class=\"pictures\"", &figures))

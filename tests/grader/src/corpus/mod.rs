@@ -193,6 +193,9 @@ fn report(tried: &[Tried], differences: &[String]) {
         println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));
     }
     if !differences.is_empty() {
-        println!("\n{} differences: look at them, then `cargo run -p grader -- corpus --bless`", differences.len());
+        println!(
+            "\n{} differences: look at them, then `cargo run -p grader -- corpus --bless`",
+            differences.len()
+        );
     }
 }

@@ -125,7 +125,8 @@ impl Trial {
                     overlap(&query.ray, &query.bounds).is_some_and(|overlap| overlap.verdict.is_hit())
                 };
                 let answers = kit.slab(&queries);
-                let missed = queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
+                let missed =
+                    queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
                 Ok(missed.count() as u64)
             }
             Trial::Mesh(structure, aim) => {

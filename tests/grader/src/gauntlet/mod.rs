@@ -56,7 +56,8 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
 fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
     let methods = METHODS.iter().map(|method| {
         let hit = method.hit;
-        let answer = move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
+        let answer =
+            move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
         Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit) }
     });
     methods.chain(rows_of_kit(kit)).collect()

@@ -10,13 +10,16 @@ use std::sync::Arc;
 
 /// A scene of these triangles, which keep their numbers, searched in this way on one thread.
 pub fn job(triangles: &[Triangle], quality: Quality) -> RenderJob {
-    let camera = Camera::new(Vec3::Z, Vec3::NEG_Z, Vec3::Y, 45.0, 1.0).unwrap_or_else(|error| panic!("{error:?}"));
+    let camera =
+        Camera::new(Vec3::Z, Vec3::NEG_Z, Vec3::Y, 45.0, 1.0).unwrap_or_else(|error| panic!("{error:?}"));
     let mut scene = Scene::empty(camera);
     scene.quality = Quality { triangle_method: TriangleMethod::Watertight, ..quality };
     if !triangles.is_empty() {
         let mesh = Mesh {
             positions: triangles.iter().flat_map(|triangle| [triangle.a, triangle.b, triangle.c]).collect(),
-            triangles: (0..triangles.len() as u32).map(|index| [3 * index, 3 * index + 1, 3 * index + 2]).collect(),
+            triangles: (0..triangles.len() as u32)
+                .map(|index| [3 * index, 3 * index + 1, 3 * index + 2])
+                .collect(),
             ..Mesh::default()
         };
         scene.meshes =

@@ -4,8 +4,8 @@ use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
 use crate::jail::{Jail, Purpose, Walls};
-use crate::queue;
 use crate::kits::{Need, Source, Which};
+use crate::queue;
 use crate::worker::{self, Worker};
 use anyhow::{Result, ensure};
 use base64::Engine;
@@ -233,7 +233,11 @@ fn result(check: &Check, answered: Answered) -> CheckResult {
 }
 
 /// What the reference is asked by a check: a fingerprint of the questions, and to which functions; and whether it passes.
-fn asked(reference: &Arc<Worker>, check: &Check, seed: u64) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
+fn asked(
+    reference: &Arc<Worker>,
+    check: &Check,
+    seed: u64,
+) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
     let heard = Arc::new(Mutex::new((Sha256::new(), HashSet::new())));
     let overheard = Overheard { reference: reference.clone(), heard: heard.clone() };
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(overheard));

@@ -78,11 +78,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         let _ = fs::remove_dir_all(&draft);
         return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
     }
-    println!(
-        "{}: {} files; `cargo run` in it says what to do first",
-        options.folder.display(),
-        files.len()
-    );
+    println!("{}: {} files; `cargo run` in it says what to do first", options.folder.display(), files.len());
     Ok(())
 }
 
@@ -110,12 +106,7 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
 }
 
 /// The files with these endings in a folder and below it.
-fn gather(
-    root: &Path,
-    folder: &str,
-    endings: &[&str],
-    files: &mut BTreeMap<String, Vec<u8>>,
-) -> Result<()> {
+fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<String, Vec<u8>>) -> Result<()> {
     for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
         let entry = entry?;
         let path = format!("{folder}/{}", entry.file_name().to_string_lossy());

@@ -27,10 +27,10 @@ pub use ended::{Ended, How};
 pub use probes::{Level, got_through, self_test};
 pub use run::{run, spawn_guarded};
 
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
 use crate::worker::{Death, Launcher, last_words};
+use std::ffi::OsString;
 use std::io;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::OnceLock;
 use std::time::Duration;
