@@ -74,11 +74,11 @@ pub fn list(stage: Option<u8>) -> String {
     for (number, about) in
         rubric::stages().into_iter().filter(|(one, _)| stage.is_none_or(|stage| stage == *one))
     {
-        let _ = writeln!(
-            text,
-            "stage {number} · {}\n  work in {},\n  run `cargo test --test stage{number}`",
-            about.title, about.file
-        );
+        let _ = writeln!(text, "stage {number} · {}", about.title);
+        let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
+        for line in lines(&how, WIDTH - 2) {
+            let _ = writeln!(text, "  {line}");
+        }
         for (name, entry) in about.in_order() {
             let _ = writeln!(text, "  {:>2}  {name}", entry.points);
             for line in lines(&entry.title, WIDTH - 6) {

@@ -126,7 +126,7 @@ fn what_buys_nothing_is_said() {
     for (arguments, says) in [
         (&["scenes/stage1.toml", "--budget", "soon"][..], "a time is a number above 0"),
         (&["scenes/stage1.toml", "--budget", "1s", "--error", "0.1"], "cannot be used with"),
-        (&[], "required"),
+        (&[], "SCENE is missing"),
         (&["scenes/none.toml"], "scenes/none.toml"),
     ] {
         let output = cost(folder.path(), arguments);

@@ -1,5 +1,5 @@
 //! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
-//! about just these entries. Building and trying them is `cargo run -- corpus --check`, which takes minutes.
+//! about just these entries. Building and trying them is `cargo run -p grader -- corpus --check`, which takes minutes.
 
 use grader::corpus::entry::{Claim, Entry, read_all};
 use grader::corpus::records::{Matrix, message_file};
@@ -53,7 +53,7 @@ fn the_matrix_is_about_these_entries_and_all_is_as_it_must_be() {
     let names: BTreeSet<String> = entries.iter().map(ToString::to_string).collect();
     let known: BTreeSet<String> = matrix.0.keys().cloned().collect();
     let different: Vec<&String> = names.symmetric_difference(&known).collect();
-    assert!(different.is_empty(), "run `cargo run -- corpus --bless`: {different:?}");
+    assert!(different.is_empty(), "run `cargo run -p grader -- corpus --bless`: {different:?}");
     for entry in &entries {
         let failed = &matrix.0[&entry.to_string()];
         match &entry.claim {

@@ -1,8 +1,9 @@
 //! `grader corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
 //! must catch and name, or another right way to do it, which every check must accept.
 //!
-//! `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
+//! `carry` (patches follow their files) · `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
 
+mod carry;
 pub mod entry;
 pub mod records;
 pub mod verdict;
@@ -12,7 +13,7 @@ use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
-use clap::Args;
+use clap::{Args, Subcommand};
 use entry::{Claim, Entry};
 use judge::scorecard::run_checks_on;
 use records::Matrix;
@@ -22,7 +23,10 @@ use workshop::{Built, Workshop};
 
 /// Which entries to try, and what to do with what comes of it.
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Options {
+    #[command(subcommand)]
+    what: Option<What>,
     /// Entries by name; all, if none is named.
     names: Vec<String>,
     /// One stage only.
@@ -49,8 +53,18 @@ pub struct Options {
     seed: Option<u64>,
 }
 
+/// What else can be done with the corpus.
+#[derive(Subcommand)]
+enum What {
+    /// Make the patches follow files of the solutions that have moved, were split or have changed.
+    Carry(carry::Options),
+}
+
 /// Tries entries and reports; whether all is as it must be.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    if let Some(What::Carry(options)) = &options.what {
+        return carry::run(root, options);
+    }
     let all = entry::read_all(root)?;
     let n_all = all.len();
     let chosen = choose(all, options)?;
