@@ -131,7 +131,9 @@ fn a_reader_that_goes_away_is_no_panic() {
 fn a_worker_that_is_up_to_date_is_not_mentioned() {
     let tree = || raykata(&["tree", "scenes/stage1.toml", "--pixel", "1,1"]);
     assert!(tree().status.success());
-    assert_eq!(told(&tree()).1, "");
+    // Other tests ask cargo at the same time, and whoever has to wait is told so.
+    let said: Vec<String> = (0..100).map(|_| told(&tree()).1).take_while(|said| !said.is_empty()).collect();
+    assert!(said.len() < 100, "{}", said.concat());
 }
 
 #[test]
