@@ -15,6 +15,7 @@ pub mod judge;
 pub mod kits;
 pub mod knobs;
 pub mod list;
+pub mod progress;
 pub mod queue;
 pub mod render;
 pub mod report;

@@ -1,15 +1,15 @@
 //! How things are told: numbers that can be read, errors in files with the line drawn, and how far a long work is.
 
+use crate::progress::ProgressBar;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
-use indicatif::{ProgressBar, ProgressStyle};
 use raykata::frame::Watch;
 use raykata::scene::error::LoadError;
 use raykata::scene::{Scene, load};
 use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
 
 /// Prints. A reader that has gone away, such as `head`, is no error: what is printed after that is lost, and files are
 /// still written.
@@ -88,48 +88,44 @@ pub fn make_folder_of(file: &Path) -> Result<()> {
 
 /// A bar for so many steps, each of which can be named; draws nothing when nobody sees it.
 pub fn bar_of_steps(n: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len}, {eta} left  {msg}");
-    ProgressBar::new(n as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+    ProgressBar::new(n as u64)
 }
 
 /// How far a frame is: what is built first, then its pixels. Draws nothing when nobody sees it.
-pub struct FrameBar(ProgressBar);
+pub struct FrameBar {
+    bar: ProgressBar,
+    /// What is being made, and what is counted of it.
+    now: Mutex<(String, &'static str)>,
+}
 
 impl FrameBar {
     /// `what` is being made; it may be said later.
     pub fn new(what: &str) -> Self {
-        let bar = FrameBar(ProgressBar::new(0));
+        let bar = FrameBar { bar: ProgressBar::new(0), now: Mutex::default() };
         bar.begin(what.to_owned());
-        bar.0.enable_steady_tick(Duration::from_millis(500));
+        bar.bar.tick();
         bar
     }
 
     /// Something else begins.
     pub fn begin(&self, what: String) {
-        self.count("{spinner} {elapsed} gone  {prefix}", 0);
-        self.0.set_prefix(what);
-        self.0.set_message("");
+        self.bar.begin(what.as_str(), 0);
+        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = (what, "nothing");
     }
 
-    /// Counts to `total` from now on: pixels go at another pace than primitives, and what is not counted has no end in sight.
-    fn count(&self, template: &str, total: u64) {
-        let style = ProgressStyle::with_template(template);
-        self.0.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        self.0.reset();
-        self.0.set_length(total);
-    }
-
-    fn tell(&self, message: &'static str, done: u64, total: u64) {
-        if self.0.length() != Some(total) || self.0.message() != message {
-            self.count("{bar:40} {percent:>3} %  {elapsed} gone, {eta} to go  {prefix} {msg}", total);
-            self.0.set_message(message);
+    fn tell(&self, counted: &'static str, done: u64, total: u64) {
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        if now.1 != counted {
+            // Pixels go at another pace than primitives.
+            now.1 = counted;
+            self.bar.begin(format!("{} {counted}", now.0), total);
         }
-        self.0.set_position(done);
+        self.bar.set(done, total);
     }
 
     /// Nothing more to show.
     pub fn finish(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 

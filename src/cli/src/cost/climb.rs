@@ -5,9 +5,9 @@ use super::ladder::Knob;
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
 use super::setting::Setting;
+use crate::progress::ProgressBar;
 use crate::report::bar_of_steps;
 use anyhow::Result;
-use indicatif::ProgressBar;
 use raykata::scene::Scene;
 
 /// How much of a budget is spent on purpose: frames differ by some percent from one to the next.

@@ -9,16 +9,44 @@ pub(super) fn of_workspace(text: &str, files: &BTreeMap<String, Vec<u8>>) -> Res
     for (path, manifest) in files.iter().filter(|(path, _)| path.ends_with("/Cargo.toml")) {
         wanted.extend(dependencies(&String::from_utf8_lossy(manifest)).with_context(|| path.to_owned())?);
     }
-    Ok(workspace(text, &wanted, &|path| {
+    let lock = files.get("Cargo.lock").map(|lock| String::from_utf8_lossy(lock).into_owned());
+    let built = built(&lock.unwrap_or_default(), &wanted)?;
+    Ok(workspace(text, &wanted, &built, &|path| {
         let (start, end) = path.split_once('*').unwrap_or((path, ""));
         let is = |file: &String| file.starts_with(start) && file.ends_with(end) && file.len() >= path.len();
         if path.contains('*') { files.keys().any(is) } else { files.contains_key(path) }
     }))
 }
 
-/// The workspace with the members that are present, and with the dependencies that these still want. `present` tells
-/// whether a file is there; its name may hold a `*`.
-fn workspace(text: &str, wanted: &BTreeSet<String>, present: &dyn Fn(&str) -> bool) -> String {
+/// The names of all packages that these need, by the versions that are locked.
+fn built(lock: &str, wanted: &BTreeSet<String>) -> Result<BTreeSet<String>> {
+    let lock: toml::Table = toml::from_str(lock)?;
+    let packages = lock.get("package").and_then(|packages| packages.as_array()).into_iter().flatten();
+    let mut needs: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for package in packages {
+        let name = package.get("name").and_then(|name| name.as_str()).unwrap_or_default();
+        let list = package.get("dependencies").and_then(|list| list.as_array()).into_iter().flatten();
+        // Where there are several versions, one follows the name.
+        let list = list.filter_map(|one| one.as_str()?.split(' ').next());
+        needs.entry(name).or_default().extend(list);
+    }
+    let mut built = wanted.clone();
+    let mut waiting: Vec<&str> = wanted.iter().map(String::as_str).collect();
+    while let Some(name) = waiting.pop() {
+        let list = needs.get(name).into_iter().flatten();
+        waiting.extend(list.filter(|one| built.insert((**one).to_owned())));
+    }
+    Ok(built)
+}
+
+/// The workspace with the members that are present, and with the dependencies that these still want. Settings stay for
+/// packages that are built. `present` tells whether a file is there; its name may hold a `*`.
+fn workspace(
+    text: &str,
+    wanted: &BTreeSet<String>,
+    built: &BTreeSet<String>,
+    present: &dyn Fn(&str) -> bool,
+) -> String {
     let text = with_members(text, present);
     let mut of_workspace = false;
     cut(&text, |lines, kept| {
@@ -96,15 +124,19 @@ mod tests {
                         [workspace.dependencies]\nglam = \"1\" # vectors\nsolutions = { path = \"solutions\" }\n\n\
                         # Only for authors.\nsyn = \"3\"\n\n# All of them.\n\n[[test]]\nname = \"stage1\"\n\n\
                         [[test]]\nname = \"untouched\"\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n\n\
+                        [profile.dev.package.matrixmultiply]\nopt-level = 3\n\n\
                         # A database.\n[profile.dev.package.sqlite]\nopt-level = 0\n";
         let wanted = BTreeSet::from(["glam".to_owned()]);
+        let lock = "[[package]]\nname = \"glam\"\ndependencies = [\"matrixmultiply 1.0.0\"]\n\
+                    [[package]]\nname = \"sqlite\"\n";
+        let built = built(lock, &wanted).unwrap();
         assert_eq!(
-            workspace(manifest, &wanted, &|path| {
+            workspace(manifest, &wanted, &built, &|path| {
                 ["tests/stage1.rs", "exercises/Cargo.toml", "tests/checks/Cargo.toml"].contains(&path)
             }),
             "[workspace]\nmembers = [\"exercises\", \"tests/checks\"]\n\n[workspace.dependencies]\n\
              glam = \"1\" # vectors\n\n# All of them.\n\n[[test]]\nname = \"stage1\"\n\n\
-             [profile.dev.package.\"*\"]\nopt-level = 2\n"
+             [profile.dev.package.\"*\"]\nopt-level = 2\n\n[profile.dev.package.matrixmultiply]\nopt-level = 3\n"
         );
     }
 }
