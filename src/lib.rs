@@ -17,5 +17,6 @@ pub mod random;
 pub mod ray;
 pub mod scene;
 pub mod shape;
+pub mod tracer;
 pub mod worker;
 pub mod world;

@@ -16,7 +16,7 @@ fn gaps(folder: &str, stage: u8, opening: &str) -> usize {
 
 #[test]
 fn every_check_of_an_untouched_exercise_says_what_is_not_written_yet() {
-    let kit: Arc<dyn raykata::kit::Kit + Send + Sync> = Arc::new(exercises::Kit);
+    let kit: Arc<dyn raykata::kit::Kit + Send + Sync> = Arc::new(raykata::kit::Linked(exercises::Kit));
     for (stage, checks) in STAGES {
         let handed_out = gaps("solutions/src", *stage, "// <stub> todo!");
         let left = gaps("exercises/src", *stage, "todo!");

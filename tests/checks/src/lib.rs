@@ -29,6 +29,9 @@ pub mod statistics;
 pub mod tree;
 pub mod trial;
 
+use raykata::kit::{Kit, Linked, Renders, StudentFunctions};
+use std::sync::Arc;
+
 pub use broken::{Broken, Outcome};
 pub use drawn::Drawn;
 pub use trial::{Check, Trial, Verdict, examine, examine_with, grade, run, verdict};
@@ -47,6 +50,11 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (10, stage10::CHECKS),
 ];
 
+/// The functions of a crate as a kit that checks can ask.
+pub fn linked<F: StudentFunctions + Renders + Send>(functions: F) -> Arc<dyn Kit + Send + Sync> {
+    Arc::new(Linked(functions))
+}
+
 /// Lists the checks of a stage, and makes the macro that turns them into tests of a kit: `checks::stage1!(kit)`.
 ///
 /// The leading `($)` lends the inner macro its dollar sign.
@@ -62,7 +70,7 @@ macro_rules! checks {
             ($d kit:expr) => {
                 $(#[test]
                 fn $name() {
-                    $d crate::grade($number, stringify!($name), ::std::sync::Arc::new($d kit));
+                    $d crate::grade($number, stringify!($name), $d crate::linked($d kit));
                 })*
             };
         }

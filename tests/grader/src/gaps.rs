@@ -53,7 +53,7 @@ pub fn run(options: &Options) -> Result<bool> {
     let root = root()?;
     let gaps = all(&root)?;
     let scenes = Scenes::read(&root)?.of_gaps();
-    let whole = scenes.shown_by(&solutions::Kit);
+    let whole = scenes.shown_by(&raykata::kit::Linked(solutions::Kit));
     let workshops = Workshop::open_all(&root, queue::cores())?;
     let told = told(&workshops, &gaps, &scenes, &whole)?;
     let text: String =

@@ -93,7 +93,7 @@ impl Source {
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
         match self {
             #[cfg(feature = "author")]
-            Source::Solutions => Arc::new(solutions::Kit),
+            Source::Solutions => Arc::new(raykata::kit::Linked(solutions::Kit)),
             Source::Worker(program) => Arc::new(Door(Worker::new(program.clone(), CALL_PATIENCE))),
         }
     }

@@ -111,7 +111,7 @@ fn primitives_of(scene: &Scene) -> Result<u64> {
     let mut scene = scene.clone();
     (scene.film.width, scene.film.height) = (1, 1);
     let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-    let frame = mishap::catch(|| solutions::Kit.render(&job, &Unwatched))?;
+    let frame = mishap::catch(|| raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched))?;
     Ok(frame.context("nobody cancels")?.primitives)
 }
 

@@ -104,6 +104,6 @@ fn a_frame_in_a_jail_is_the_frame_that_is_linked() {
     let watch: &dyn Watch = &Unwatched;
     let kit = jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 10);
     let jailed = kit.render(&job, watch).expect("nobody cancels");
-    let linked = solutions::Kit.render(&job, watch).expect("nobody cancels");
+    let linked = raykata::kit::Linked(solutions::Kit).render(&job, watch).expect("nobody cancels");
     assert_eq!((jailed.film, jailed.counts, jailed.notes), (linked.film, linked.counts, linked.notes));
 }

@@ -70,7 +70,9 @@ impl Pane {
 fn counts(scene: &str) -> Result<Counts> {
     let scene = load::parse(Path::new("pane.toml"), scene).map_err(|error| anyhow!("{error}"))?;
     let job = RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: true };
-    let counts = solutions::Kit.render(&job, &Unwatched).map_or_else(Counts::default, |frame| frame.counts);
+    let counts = raykata::kit::Linked(solutions::Kit)
+        .render(&job, &Unwatched)
+        .map_or_else(Counts::default, |frame| frame.counts);
     ensure!(
         counts.reflection == counts.primary && counts.transmission == counts.primary,
         "not every ray from the eye met the pane: {counts:?}"

@@ -249,7 +249,7 @@ impl Transport for Overheard {
         heard.0.update(message);
         heard.1.insert(discriminant(&request));
         drop(heard);
-        request.answer(&solutions::Kit, watch)
+        request.answer(&raykata::kit::Linked(solutions::Kit), watch)
     }
 }
 

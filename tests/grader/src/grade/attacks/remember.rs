@@ -135,7 +135,7 @@ struct Listener(Arc<Heard>);
 
 impl Transport for Listener {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        let answer = request.answer(&solutions::Kit, watch);
+        let answer = request.answer(&raykata::kit::Linked(solutions::Kit), watch);
         let heard = match (self.0.name.as_str(), &request, &answer) {
             ("nearest_root", Request::NearestRoot(asked), Answer::NearestRoot(given)) => {
                 pairs(asked, given, |q| vec![q.roots.to_vec(), ray(&q.ray)], |found| option(*found))

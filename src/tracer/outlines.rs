@@ -1,12 +1,12 @@
-//! Nothing to do here: the boxes and cells of a structure as lines that can be drawn.
+//! The boxes and cells of a structure as lines that can be drawn.
 
-use crate::structure::{Structure, Volumes};
+use super::structure::{Structure, Volumes};
+use crate::aabb::Aabb;
+use crate::bvh::{Bvh, Contents};
+use crate::graph::Graph;
+use crate::partition::corners;
+use crate::shape::Sphere;
 use glam::Vec3;
-use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents};
-use raykata::graph::Graph;
-use raykata::partition::corners;
-use raykata::shape::Sphere;
 use std::f32::consts::TAU;
 
 /// The edges of the boxes or cells at this depth, the root being at depth 0, and of the leaves above it; of a BSP tree the
@@ -14,7 +14,7 @@ use std::f32::consts::TAU;
 pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
     let edges = |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(edges_of).collect();
     match structure {
-        Structure::None => Vec::new(),
+        Structure::List | Structure::Painter => Vec::new(),
         Structure::Hierarchy(bvh) => edges(boxes_at(bvh, depth)),
         Structure::Graph { graph, volumes: Volumes::Boxes(boxes) } => {
             edges(nodes_at(graph, depth).into_iter().map(|node| boxes[node as usize]).collect())
@@ -24,7 +24,7 @@ pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
             balls.flat_map(|ball| circles(&ball)).collect()
         }
         Structure::Grid(grid) => edges(grid.cells(depth)),
-        Structure::Octree(tree) => edges(tree.cells(depth)),
+        Structure::Octree { tree, .. } => edges(tree.cells(depth)),
         Structure::KdTree(tree) => edges(tree.cells(depth)),
         Structure::Bsp { tree, around } => {
             let polygons = tree.polygons(around, depth).into_iter();

@@ -1,16 +1,20 @@
-//! Nothing to do here: rays from the camera in packets, one pixel beside the other.
+//! Rays from the camera in packets, one pixel beside the other.
 
-use crate::camera_rays::Eye;
-use crate::finder::Finder;
-use crate::surfaces::Hit;
-use raykata::count::Tally;
-use raykata::frame::{CameraSample, FrameSettings, TILE};
-use raykata::ray::Ray;
+use super::camera_sampler::CameraSampler;
+use super::hit::Hit;
+use super::intersector::Intersector;
+use crate::count::Tally;
+use crate::frame::{CameraSample, FrameSettings, TILE};
+use crate::kit::StudentFunctions;
+use crate::ray::Ray;
 use std::collections::HashMap;
 
 /// Columns and rows of pixels that share a packet. They divide a tile evenly, so that no two threads trace the same one.
 const BLOCK: (u32, u32) = (4, 2);
 const _: () = assert!(TILE.is_multiple_of(BLOCK.0) && TILE.is_multiple_of(BLOCK.1));
+
+/// Rays of a packet.
+pub const PACKET: usize = (BLOCK.0 * BLOCK.1) as usize;
 
 /// What the packets of a tile have met so far.
 #[derive(Default)]
@@ -21,12 +25,12 @@ pub struct Packets {
 
 impl Packets {
     /// What the ray of a sample meets. The first sample of a block traces the rays of all its pixels.
-    pub fn first_hit<T: Tally>(
+    pub fn first_hit<F: StudentFunctions, T: Tally>(
         &mut self,
         sample: &CameraSample,
         settings: &FrameSettings,
-        eye: &Eye,
-        finder: &Finder,
+        camera: &CameraSampler<F>,
+        intersector: &Intersector<F>,
         tally: &mut T,
     ) -> Option<Hit> {
         let place = (sample.column, sample.row, sample.sample);
@@ -38,8 +42,8 @@ impl Packets {
         let pixels = (top..bottom).flat_map(|row| (left..right).map(move |column| (column, row)));
         let samples: Vec<CameraSample> =
             pixels.map(|(column, row)| CameraSample::draw(settings, column, row, sample.sample)).collect();
-        let rays: Vec<Ray> = samples.iter().map(|sample| eye.ray(sample)).collect();
-        let hits = finder.closest_hits(&rays, tally);
+        let rays: Vec<Ray> = samples.iter().map(|sample| camera.ray(sample)).collect();
+        let hits = intersector.closest_hits(&rays, tally);
         self.hits.extend(samples.iter().zip(hits).map(|(s, hit)| ((s.column, s.row, s.sample), hit)));
         self.hits.remove(&place).flatten()
     }
