@@ -203,11 +203,9 @@ pub fn verdict(check: &Check, examined: Result<Outcome, Mishap>) -> Verdict {
 }
 
 /// Runs the check of this name as a test of `kit`: prints what a student needs to know and ends the test.
-pub fn grade(stage: u8, name: &str, kit: Arc<dyn Kit + Send + Sync>) {
-    let checks =
-        crate::STAGES.iter().find(|(number, _)| *number == stage).map_or(&[][..], |(_, checks)| checks);
+pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
-        panic!("stage {stage} has no check `{name}`");
+        panic!("there is no check `{name}` in this stage");
     };
     match run(check, &kit, 0) {
         Verdict::Passed => return,
