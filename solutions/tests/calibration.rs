@@ -40,7 +40,7 @@ impl Transport for Twisted {
 }
 
 fn check(name: &str) -> &'static Check {
-    checks::stage6::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
+    stage6_checks::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
 }
 
 /// The seeds with which `check` rejects `kit`.

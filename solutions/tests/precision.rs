@@ -1,7 +1,7 @@
 //! `precision = "double"` in whole frames: the same picture where nothing is hard, and the right one where it is.
 
-use checks::exact::{Body, verdict};
 use glam::{Vec3, vec3};
+use oracle::exact::{Body, verdict};
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, RenderJob, Rendering, View};

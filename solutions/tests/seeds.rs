@@ -2,7 +2,8 @@
 //! than these few: `SEEDS=300 cargo test --release -p solutions --test seeds`; others, with `FIRST=301` before that; of one
 //! stage, with `STAGE=9`.
 
-use checks::{STAGES, Verdict};
+use all_checks::STAGES;
+use checks::Verdict;
 use raykata::kit::Kit;
 use std::sync::Arc;
 

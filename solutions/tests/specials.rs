@@ -1,7 +1,7 @@
 //! Zeros of both signs, denormal numbers and the largest ones in every place of a scene: each is refused with an error
 //! that says where, or rendered without a NaN.
 
-use checks::splitmix::Random;
+use oracle::splitmix::Random;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, RenderJob, View};
 use raykata::scene::{Accelerator, load};

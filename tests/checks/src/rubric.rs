@@ -1,6 +1,5 @@
 //! The rubric: for each check its points, its title, its slide and three hints, read from `tests/rubric.toml`.
 
-use crate::STAGES;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -73,51 +72,4 @@ pub fn entry(stage: u8, check: &str) -> Entry {
         .and_then(|stage| stage.checks.get(check))
         .cloned()
         .unwrap_or_else(|| Entry { stage, points: 1, title: check.replace('_', " "), ..Entry::default() })
-}
-
-/// Differences between the rubric and the checks that exist, one sentence each.
-pub fn differences() -> Vec<String> {
-    let mut differences = Vec::new();
-    for (number, checks) in STAGES {
-        let Some(stage) = RUBRIC.get(&format!("stage{number}")) else {
-            differences.push(format!("the rubric has no stage {number}"));
-            continue;
-        };
-        for check in *checks {
-            match stage.checks.get(check.name) {
-                None => differences.push(format!("the rubric lacks `{}` of stage {number}", check.name)),
-                Some(entry) => differences.extend(entry.faults(check.name)),
-            }
-        }
-        for name in stage.checks.keys() {
-            if !checks.iter().any(|check| check.name == name) {
-                differences
-                    .push(format!("the rubric has `{name}` in stage {number}, and there is no such check"));
-            }
-        }
-    }
-    differences
-}
-
-impl Entry {
-    fn faults(&self, name: &str) -> Vec<String> {
-        let empty =
-            [&self.title, &self.slide].into_iter().chain(&self.hints).any(|text| text.trim().is_empty());
-        let mut faults = Vec::new();
-        if empty {
-            faults.push(format!("`{name}` lacks a title, a slide or a hint"));
-        }
-        if self.points == 0 {
-            faults.push(format!("`{name}` is worth nothing"));
-        }
-        faults
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn the_rubric_and_the_checks_are_the_same_list() {
-        assert_eq!(super::differences(), Vec::<String>::new());
-    }
 }

@@ -2,9 +2,10 @@
 
 use crate::kits::{Source, WITH_EXERCISES};
 use crate::queue;
+use all_checks::STAGES;
 use anyhow::{Result, bail};
 use checks::rubric::{self, RUBRIC};
-use checks::{Check, STAGES, Verdict};
+use checks::{Check, Verdict};
 
 /// A check and how it ended.
 pub struct Graded {

@@ -2,10 +2,10 @@
 //! ray exactly meets first.
 
 use super::traversal::{Packet, Triangles, hierarchy};
-use checks::exact::{Body, meet, triangle};
-use checks::gauntlet::scenes::{HardScene, hard_scenes};
-use checks::splitmix::Random;
 use glam::{UVec3, Vec3};
+use oracle::exact::{Body, meet, triangle};
+use oracle::gauntlet::scenes::{HardScene, hard_scenes};
+use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, PrimitiveHit};
 use raykata::partition::{KdHeuristics, KdTree};

@@ -1,12 +1,12 @@
 //! Leaks of closed meshes: of every method, and of the functions of the kit.
 
+use super::methods::METHODS;
 use super::{Answers, Input, Row};
 use crate::queue;
 use anyhow::Result;
-use checks::gauntlet::leaks::{self, Aim, aimed};
-use checks::gauntlet::meshes::{Closed, closed};
-use checks::gauntlet::methods::METHODS;
-use checks::splitmix::Random;
+use oracle::gauntlet::leaks::{self, Aim, aimed};
+use oracle::gauntlet::meshes::{Closed, closed};
+use oracle::splitmix::Random;
 use raykata::ray::Ray;
 
 /// One method a thread at a time, and then what the kit has, row by row.

@@ -6,11 +6,11 @@ use super::traversal::{Triangles, hierarchy};
 use crate::queue;
 use crate::report::{Thousands, bar_of_steps, make_folder_of};
 use anyhow::{Context, Result, bail};
-use checks::exact::aabb::overlap;
-use checks::gauntlet::boxes::at_a_corner;
-use checks::gauntlet::leaks::{Aim, aimed};
-use checks::gauntlet::meshes::{Closed, closed};
-use checks::splitmix::Random;
+use oracle::exact::aabb::overlap;
+use oracle::gauntlet::boxes::at_a_corner;
+use oracle::gauntlet::leaks::{Aim, aimed};
+use oracle::gauntlet::meshes::{Closed, closed};
+use oracle::splitmix::Random;
 use raykata::bvh::Bvh;
 use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
@@ -90,7 +90,7 @@ impl Prepared {
                 let hit = |ray: &Ray, triangle: &Triangle| {
                     stage2_triangles::triangle_choice(ray, triangle).map(|hit| hit.t)
                 };
-                !checks::gauntlet::leaks::leaks(&self.mesh, ray, vertex, hit)
+                !oracle::gauntlet::leaks::leaks(&self.mesh, ray, vertex, hit)
             }
             Structure::Bvh(split) => {
                 let bvh = self.hierarchies.iter().find(|(other, _)| *other == split).map(|(_, bvh)| bvh);

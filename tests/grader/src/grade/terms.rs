@@ -5,8 +5,8 @@ use super::forge::{self, Forge};
 use super::judge::Judge;
 use super::result::Session;
 use crate::jail::{self, Walls};
+use all_checks::STAGES;
 use anyhow::{Context, Result, ensure};
-use checks::STAGES;
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -103,8 +103,8 @@ fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     let mut hash = Sha256::new();
     hash.update(forge.fingerprint());
     hash.update(allow.join(","));
-    let mut waiting =
-        vec![root.join("tests/checks/src"), root.join("tests/golden"), root.join("tests/rubric.toml")];
+    let judges = ["tests/checks", "tests/oracle", "tests/golden", "tests/rubric.toml"];
+    let mut waiting = judges.map(|path| root.join(path)).to_vec();
     while let Some(path) = waiting.pop() {
         if path.is_dir() {
             let mut inside: Vec<PathBuf> =

@@ -5,17 +5,22 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The members of a hand-out's workspace.
-const MEMBERS: [&str; 3] = ["exercises/Cargo.toml", "tests/checks/Cargo.toml", "tests/grader/Cargo.toml"];
+const MEMBERS: [&str; 5] = ["exercises", "tests/checks", "tests/checks/all", "tests/oracle", "tests/grader"];
+
+/// How many stages have a package of their own in `tests/checks`.
+const STAGES: u8 = 10;
 
 /// All manifests of a hand-out, by their paths. `present` tells which other files it has.
 pub(super) fn all(root: &Path, present: &dyn Fn(&str) -> bool) -> Result<Vec<(String, String)>> {
     let mut manifests = Vec::new();
     let workspace = super::text(root, "Cargo.toml")?;
     let mut wanted = dependencies(&workspace)?;
-    for path in MEMBERS {
-        let text = member(&super::text(root, path)?);
-        wanted.extend(dependencies(&text).with_context(|| path.to_owned())?);
-        manifests.push((path.to_owned(), text));
+    let stages = (1..=STAGES).map(|stage| format!("tests/checks/stage{stage}"));
+    for folder in MEMBERS.into_iter().map(str::to_owned).chain(stages) {
+        let path = format!("{folder}/Cargo.toml");
+        let text = member(&super::text(root, &path)?);
+        wanted.extend(dependencies(&text).with_context(|| path.clone())?);
+        manifests.push((path, text));
     }
     manifests.push(("Cargo.toml".into(), self::workspace(&workspace, &wanted, present)));
     Ok(manifests)

@@ -4,8 +4,8 @@
 //! ask something else one day.
 
 use super::source::{self, Function};
+use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
-use checks::STAGES;
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use std::collections::BTreeMap;
