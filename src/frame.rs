@@ -4,7 +4,7 @@
 use crate::count::{Counts, Event, Tally};
 use crate::effects::{Effect, Effects};
 use crate::film::Film;
-use crate::kit::{Mishap, WeightedColor, mishap};
+use crate::kit::{Function, Mishap, WeightedColor, mishap, note_unwound, take_unwound};
 use crate::random::{Points, Purpose, Stratum};
 use crate::scene::Sampler;
 use glam::Vec3;
@@ -131,12 +131,13 @@ pub fn render<T: Tally>(
     let total = u64::from(width) * u64::from(height);
     let done = AtomicU64::new(0);
     let broken = AtomicBool::new(false);
-    let tile = |corner: (u32, u32)| -> Result<Option<Tile>, Mishap> {
+    let tile = |corner: (u32, u32)| -> Result<Option<Tile>, Broken> {
         if watch.cancelled() || broken.load(Ordering::Relaxed) {
             return Ok(None);
         }
         // Caught where it happens: a panic that crosses threads forgets its file and line.
         let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance, &develop))
+            .map_err(|mishap| (mishap, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.pixels.len() as u64;
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
@@ -146,7 +147,7 @@ pub fn render<T: Tally>(
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
         .collect();
-    let tiles: Vec<Result<Option<Tile>, Mishap>> = if settings.threads == 1 {
+    let tiles: Vec<Result<Option<Tile>, Broken>> = if settings.threads == 1 {
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
@@ -158,7 +159,10 @@ pub fn render<T: Tally>(
     };
 
     let tiles: Vec<Option<Tile>> =
-        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|mishap| mishap::unwind(mishap));
+        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(mishap, function)| {
+            note_unwound(function);
+            mishap::unwind(mishap)
+        });
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
     for tile in tiles {
@@ -171,6 +175,9 @@ pub fn render<T: Tally>(
     }
     Some((film, counts))
 }
+
+/// Why a tile has no pixels, and the function of the student that was running.
+type Broken = (Mishap, Option<Function>);
 
 struct Tile {
     x: u32,

@@ -18,5 +18,6 @@ pub mod ray;
 pub mod rubric;
 pub mod scene;
 pub mod shape;
+pub mod tracer;
 pub mod worker;
 pub mod world;

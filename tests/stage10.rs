@@ -1,4 +1,4 @@
-//! Stage 10 of your ray tracer. What it grades is in tests/checks/src/stage10/; where to write, in
+//! Stage 10 of your ray tracer. What it grades is in tests/checks/stage10/src; where to write, in
 //! exercises/src/stage10*.rs.
 
-checks::stage10!(exercises::Kit);
+stage10_checks::tests!(exercises::Kit);

@@ -1,3 +1,4 @@
-//! Stage 5 of your ray tracer. What it grades is in tests/checks/src/stage5/; where to write, in exercises/src/stage5*.rs.
+//! Stage 5 of your ray tracer. What it grades is in tests/checks/stage5/src; where to write, in
+//! exercises/src/stage5*.rs.
 
-checks::stage5!(exercises::Kit);
+stage5_checks::tests!(exercises::Kit);

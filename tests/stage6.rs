@@ -1,3 +1,4 @@
-//! Stage 6 of your ray tracer. What it grades is in tests/checks/src/stage6/; where to write, in exercises/src/stage6*.rs.
+//! Stage 6 of your ray tracer. What it grades is in tests/checks/stage6/src; where to write, in
+//! exercises/src/stage6*.rs.
 
-checks::stage6!(exercises::Kit);
+stage6_checks::tests!(exercises::Kit);

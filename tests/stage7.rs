@@ -1,3 +1,4 @@
-//! Stage 7 of your ray tracer. What it grades is in tests/checks/src/stage7/; where to write, in exercises/src/stage7*.rs.
+//! Stage 7 of your ray tracer. What it grades is in tests/checks/stage7/src; where to write, in
+//! exercises/src/stage7*.rs.
 
-checks::stage7!(exercises::Kit);
+stage7_checks::tests!(exercises::Kit);

@@ -1,4 +1,4 @@
-//! Stage 8 of your ray tracer. What it grades is in tests/checks/src/stage8/; where to write, in
+//! Stage 8 of your ray tracer. What it grades is in tests/checks/stage8/src; where to write, in
 //! exercises/src/stage8*.rs.
 
-checks::stage8!(exercises::Kit);
+stage8_checks::tests!(exercises::Kit);

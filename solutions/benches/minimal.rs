@@ -41,7 +41,8 @@ fn main() -> Result<()> {
 
 fn compare(scene: &Scene, lamps: usize) -> Result<()> {
     let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
-    let full = |count| solutions::Kit.render(&job(count), &Unwatched).expect("nobody cancels");
+    let full =
+        |count| raykata::kit::Linked(solutions::Kit).render(&job(count), &Unwatched).expect("nobody cancels");
     let caster = Caster::new(scene);
 
     let (mut picture, mut rays) = (Vec::new(), 0);

@@ -1,8 +1,8 @@
-//! Nothing to do here: the program that answers questions about the code in this folder. `raykata check` starts it.
+//! The program that answers questions about the code in this folder. `raykata` and the grader start it.
 
 fn main() {
     // <solution>
-    raykata::worker::serve(&solutions::Kit);
-    // <stub> raykata::worker::serve(&exercises::Kit);
+    raykata::worker::serve(solutions::Kit);
+    // <stub> raykata::worker::serve(exercises::Kit);
     // </solution>
 }

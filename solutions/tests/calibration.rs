@@ -35,12 +35,12 @@ struct Twisted(fn(&Request) -> Option<Answer>);
 
 impl Transport for Twisted {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        (self.0)(&request).unwrap_or_else(|| request.answer(&solutions::Kit, watch))
+        (self.0)(&request).unwrap_or_else(|| request.answer(&raykata::kit::Linked(solutions::Kit), watch))
     }
 }
 
 fn check(name: &str) -> &'static Check {
-    checks::stage6::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
+    stage6_checks::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
 }
 
 /// The seeds with which `check` rejects `kit`.
@@ -63,7 +63,7 @@ fn the_reference_is_rejected_as_rarely_as_stated() {
     assert!(f64::from(laws) * FALSE_ALARMS < UNFAIR, "{laws} tests");
     let (mut tests, mut alarms) = (0, 0);
     for (name, laws) in STATISTICAL {
-        let rejected = rejections(check(name), &solutions::Kit);
+        let rejected = rejections(check(name), &raykata::kit::Linked(solutions::Kit));
         println!("{rejected:>4} of {SEEDS} seeds rejected, {laws} tests each: {name}");
         tests += SEEDS * u64::from(laws);
         alarms += rejected;
@@ -197,7 +197,10 @@ const WRONG: &[Wrong] = &[
     ("ball: half of the rim", "half_a_ball_makes_half_a_shadow", |r| {
         let Request::TowardBall(queries) = r else { return None };
         let halved = |query: &BallQuery| BallQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
-        Some(Request::TowardBall(each(queries, halved)).answer(&solutions::Kit, &raykata::frame::Unwatched))
+        Some(
+            Request::TowardBall(each(queries, halved))
+                .answer(&raykata::kit::Linked(solutions::Kit), &raykata::frame::Unwatched),
+        )
     }),
     ("gloss: exponent 1 / n", "gloss_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 2.0)))

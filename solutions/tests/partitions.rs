@@ -1,8 +1,8 @@
 //! All structures of stage 9, built and searched by the reference with its own triangle and sphere tests in single
 //! precision, against brute force: the same primitive and the same `t`, ray by ray.
 
-use checks::splitmix::Random;
 use glam::{Vec3, vec3};
+use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::partition::{Cell, Cells, KdHeuristics, corners};

@@ -1,7 +1,7 @@
 //! `precision = "double"` in whole frames: the same picture where nothing is hard, and the right one where it is.
 
-use checks::exact::{Body, verdict};
 use glam::{Vec3, vec3};
+use oracle::exact::{Body, verdict};
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, RenderJob, Rendering, View};
@@ -19,7 +19,7 @@ fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true };
-    let frame = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+    let frame = raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels");
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame
 }

@@ -1,7 +1,7 @@
 //! Zeros of both signs, denormal numbers and the largest ones in every place of a scene: each is refused with an error
 //! that says where, or rendered without a NaN.
 
-use checks::splitmix::Random;
+use oracle::splitmix::Random;
 use raykata::frame::Unwatched;
 use raykata::kit::{Frames, RenderJob, View};
 use raykata::scene::{Accelerator, load};
@@ -100,7 +100,8 @@ fn numbers_that_break_formulas_break_no_picture() {
             scene.quality.accelerator = accelerator;
             let job =
                 RenderJob { scene: scene.clone(), view: View::Shaded, seed: n, threads: 1, count: true };
-            let frame = solutions::Kit.render(&job, &Unwatched).expect("nobody cancels");
+            let frame =
+                raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels");
             let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
         }

@@ -1,9 +1,9 @@
-//! The traits themselves, and the same calls as messages. One list makes both, so they cannot drift apart; it is as long as
-//! the kit has functions.
+//! The traits of the door, and the same calls as messages, both generated from the list of student functions
+//! (`list.rs`).
 
 use super::*;
 use crate::aabb::Aabb;
-use crate::bvh::{Bvh, PrimitiveHit};
+use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef};
 use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
 use crate::graph::Placement;
@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::partition::{Bsp, Grid, KdTree, Octree};
 use crate::random::Stratum;
 use crate::ray::Ray;
-use crate::scene::{Sampler, Scene};
+use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 
@@ -78,17 +78,18 @@ pub trait Frames {
 }
 
 macro_rules! door {
-    ($($(#[$trait_doc:meta])* trait $stage:ident {
-        $($(#[$doc:meta])* $Message:ident fn $name:ident($query:ty) -> $answer:ty;)*
+    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
+            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
     })*) => {
-        $($(#[$trait_doc])* pub trait $stage {
-            $($(#[$doc])* fn $name(&self, queries: &[$query]) -> Vec<$answer>;)*
+        $($(#[$trait_doc])* pub trait $Trait {
+            $($(#[$doc])* fn $name(&self, queries: &[$Query]) -> Vec<$Answer>;)*
         })*
 
         /// A call as a message.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Request {
-            $($($(#[$doc])* $Message(Vec<$query>),)*)*
+            $($($(#[$doc])* $Message(Vec<$Query>),)*)*
             /// A whole frame.
             Render(Box<RenderJob>),
             /// The rays behind a pixel, by column and row.
@@ -102,7 +103,7 @@ macro_rules! door {
         /// An answer as a message.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Answer {
-            $($($(#[$doc])* $Message(Vec<$answer>),)*)*
+            $($($(#[$doc])* $Message(Vec<$Answer>),)*)*
             /// A whole frame; `None` when it was cancelled.
             Render(Option<Box<Rendering>>),
             /// The rays behind a pixel.
@@ -126,8 +127,8 @@ macro_rules! door {
             }
         }
 
-        $(impl<T: Transport> $stage for Door<T> {
-            $(fn $name(&self, queries: &[$query]) -> Vec<$answer> {
+        $(impl<T: Transport> $Trait for Door<T> {
+            $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
                 match self.0.call(Request::$Message(queries.to_vec()), &crate::frame::Unwatched) {
                     Answer::$Message(answers) if answers.len() == queries.len() => answers,
                     answer => mishap::wrong_answer(&answer),
@@ -135,6 +136,23 @@ macro_rules! door {
             })*
         })*
     };
+}
+
+crate::student_functions! { door }
+
+impl dyn Kit + '_ {
+    /// Divides the primitives of each query by its rule: one of the three functions that split.
+    pub fn split(&self, queries: &[SplitQuery]) -> Vec<SplitAnswer> {
+        let divide = |query: &SplitQuery| {
+            let primitives = [query.primitives.clone()];
+            match query.split {
+                Split::ObjectMedian => self.split_object_median(&primitives),
+                Split::SpatialMedian => self.split_spatial_median(&primitives),
+                Split::SurfaceArea => self.split_surface_area(&primitives),
+            }
+        };
+        queries.iter().flat_map(divide).collect()
+    }
 }
 
 impl<T: Transport> Frames for Door<T> {
@@ -169,240 +187,5 @@ impl<T: Transport> Frames for Door<T> {
             Answer::FirstHits(hits) if hits.len() == rays.len() => hits,
             answer => mishap::wrong_answer(&answer),
         }
-    }
-}
-
-door! {
-    /// Stage 1: spheres and planes.
-    trait Shapes {
-        /// The first of two roots that counts for a ray.
-        NearestRoot fn nearest_root(RootQuery) -> Option<f32>;
-        /// Ray against sphere by the quadratic formula.
-        SphereAlgebraic fn sphere_algebraic(SphereQuery) -> Option<f32>;
-        /// Ray against sphere by right triangles.
-        SphereGeometric fn sphere_geometric(SphereQuery) -> Option<f32>;
-        /// The outward unit normal of a sphere at a point of it.
-        SphereNormal fn sphere_normal((Sphere, Vec3)) -> Vec3;
-        /// Ray against plane.
-        Plane fn plane(PlaneQuery) -> Option<f32>;
-        /// A normal, turned to the side that a ray with this direction comes from.
-        FaceViewer fn face_viewer((Vec3, Vec3)) -> Vec3;
-    }
-
-    /// Stage 2: triangles and meshes.
-    trait Triangles {
-        /// Ray against triangle by Cramer's rule.
-        TriangleCramer fn triangle_cramer(TriangleQuery) -> Option<TriangleHit>;
-        /// The four scalars of the Gram method.
-        GramScalars fn gram_scalars(Triangle) -> GramScalars;
-        /// Ray against triangle by plane and Gram matrix.
-        TriangleGram fn triangle_gram(TriangleQuery) -> Option<TriangleHit>;
-        /// Ray against triangle by a method of the student's choice; the reference is watertight.
-        TriangleChoice fn triangle_choice(TriangleQuery) -> Option<TriangleHit>;
-        /// Inside test I: planes through the ray's origin and each side.
-        InsideByPlanes fn inside_by_planes(InsideQuery) -> bool;
-        /// Inside test II: the ray's direction against each side.
-        InsideByDirection fn inside_by_direction(InsideQuery) -> bool;
-        /// Inside test III: areas; `(α, β, γ)` if inside.
-        InsideByAreas fn inside_by_areas(InsideQuery) -> Option<Vec3>;
-        /// A value between three corners.
-        Interpolate fn interpolate(InterpolateQuery) -> Vec3;
-        /// The unit normal of a triangle, if it has one.
-        FaceNormal fn face_normal(Triangle) -> Option<Vec3>;
-        /// One unit normal a vertex: the average of the faces around it.
-        VertexNormals fn vertex_normals(Mesh) -> Vec<Vec3>;
-        /// The closest hit among all primitives of the table.
-        BruteForce fn brute_force(SearchQuery) -> SearchAnswer;
-    }
-
-    /// Stage 3: bounding volume hierarchies.
-    trait Hierarchies {
-        /// The box around a triangle.
-        TriangleBounds fn triangle_bounds(Triangle) -> Aabb;
-        /// The box around a sphere.
-        SphereBounds fn sphere_bounds(Sphere) -> Aabb;
-        /// The smallest box around two boxes.
-        Union fn union((Aabb, Aabb)) -> Aabb;
-        /// The middle of a box.
-        Centroid fn centroid(Aabb) -> Vec3;
-        /// The surface area of a box.
-        SurfaceArea fn surface_area(Aabb) -> f32;
-        /// Where a ray enters and leaves a box, within its range.
-        Slab fn slab(SlabQuery) -> Option<(f32, f32)>;
-        /// Primitives divided by a rule.
-        Split fn split(SplitQuery) -> SplitAnswer;
-        /// A hierarchy over boxes.
-        Build fn build(BuildQuery) -> Bvh;
-        /// The closest hit, visiting both children always.
-        ClosestHitBoth fn closest_hit_both(SearchQuery) -> SearchAnswer;
-        /// The closest hit, nearer child first, skipping what lies beyond the best hit.
-        ClosestHit fn closest_hit(SearchQuery) -> SearchAnswer;
-        /// Whether there is any hit.
-        AnyHit fn any_hit(SearchQuery) -> (bool, SearchAnswer);
-    }
-
-    /// Stage 4: light and shade.
-    trait Shading {
-        /// The cosine term of diffuse light.
-        DiffuseTerm fn diffuse_term(TermQuery) -> f32;
-        /// The highlight.
-        SpecularTerm fn specular_term(TermQuery) -> f32;
-        /// The ray that asks whether a light is visible, if the light can matter.
-        ShadowRay fn shadow_ray(ShadowQuery) -> Option<Ray>;
-        /// The normal to shade with: `(geometric, interpolated, ray direction)`.
-        ShadingNormal fn shading_normal((Vec3, Option<Vec3>, Vec3)) -> Vec3;
-        /// The colour of a point.
-        Shade fn shade(ShadeQuery) -> ShadeAnswer;
-        /// Linear light to a byte with gamma 2.
-        EncodeGamma fn encode_gamma(f32) -> u8;
-        /// A byte to linear light with gamma 2.
-        DecodeGamma fn decode_gamma(u8) -> f32;
-    }
-
-    /// Stage 5: mirrors and glass.
-    trait Recursion {
-        /// The mirrored direction: `(direction, normal)`.
-        Mirror fn mirror((Vec3, Vec3)) -> Vec3;
-        /// The refracted direction, unless all light is mirrored.
-        Refract fn refract(RefractQuery) -> Option<Vec3>;
-        /// The mirrored share by Schlick's formula.
-        FresnelSchlick fn fresnel_schlick(FresnelQuery) -> f32;
-        /// The mirrored share by Fresnel's equations.
-        FresnelExact fn fresnel_exact(FresnelQuery) -> f32;
-        /// The rays that go on from a surface.
-        Children fn children(ChildrenQuery) -> Vec<Child>;
-        /// The ray that follows a child, off the surface.
-        Leave fn leave((Surface, Child)) -> Ray;
-    }
-
-    /// Stage 6: distributed ray tracing.
-    trait Distribution {
-        /// Where in its cell a sample lies.
-        Jittered fn jittered(Stratum) -> Vec2;
-        /// Where in or around its pixel a sample lies.
-        PixelPosition fn pixel_position((Sampler, Stratum)) -> Vec2;
-        /// The weight of a sample at this distance from the centre of its pixel.
-        GaussianWeight fn gaussian_weight(Vec2) -> f32;
-        /// The colour of a pixel from its samples.
-        Develop fn develop(Vec<WeightedColor>) -> Vec3;
-        /// A place on a disk of radius 1.
-        OnDisk fn on_disk(Vec2) -> Vec2;
-        /// The ray from a place on the lens.
-        LensRay fn lens_ray(LensQuery) -> Ray;
-        /// A point of a rectangular lamp.
-        OnRectangle fn on_rectangle(RectangleQuery) -> Vec3;
-        /// A point of a round flat lamp.
-        OnLampDisk fn on_lamp_disk((Disk, Vec2)) -> Vec3;
-        /// A direction to a ball.
-        TowardBall fn toward_ball(BallQuery) -> Vec3;
-        /// A direction off or through a rough surface.
-        Gloss fn gloss(GlossQuery) -> Vec3;
-        /// The slot in time of the cell in column x and row y.
-        TemporalSlot fn temporal_slot((u32, u32)) -> u32;
-        /// A moment while the shutter is open.
-        TimeInShutter fn time_in_shutter(TimeQuery) -> f32;
-        /// Where a point is that moves from the first to the second in time 0 to 1.
-        Between fn between((Vec3, Vec3, f32)) -> Vec3;
-        /// The box around all that moves from the first box to the second.
-        Sweep fn sweep((Aabb, Aabb)) -> Aabb;
-    }
-
-    /// Stage 7: only what the scene calls for.
-    trait Economy {
-        /// What a light takes.
-        LightEffects fn light_effects(LightQuery) -> LightEffects;
-        /// What a material takes.
-        MaterialEffects fn material_effects(MaterialQuery) -> MaterialEffects;
-        /// What a scene takes.
-        Effects fn effects(Scene) -> Effects;
-        /// The most rays that a scene can take.
-        MostRays fn most_rays(BoundQuery) -> RayCounts;
-        /// The rays that hits send on.
-        RaysOfHits fn rays_of_hits(HitsQuery) -> RayCounts;
-        /// How many samples it takes for an error: `(standard deviation of one, error of the mean)`.
-        SamplesForError fn samples_for_error((f32, f32)) -> u32;
-        /// The column or row of an image that stands for this one.
-        Texel fn texel(TexelQuery) -> u32;
-        /// The colour of an image.
-        TextureColor fn texture_color(TextureQuery) -> Vec3;
-    }
-    /// Stage 8: every shape in a space of its own.
-    trait SceneGraph {
-        /// The ray in the space of an object.
-        RayToObject fn ray_to_object(ObjectRayQuery) -> Ray;
-        /// The normal of an object in the world.
-        NormalToWorld fn normal_to_world(NormalQuery) -> Vec3;
-        /// The way of a node to the world and back, for the transforms from the root down.
-        Place fn placement(Vec<Affine3A>) -> Option<Placement>;
-        /// The box around a transformed box.
-        BoundsToWorld fn bounds_to_world(BoundsQuery) -> Aabb;
-        /// A ball around points.
-        BoundingBall fn bounding_ball(Vec<Vec3>) -> Sphere;
-        /// Where a ray enters a ball.
-        EnterBall fn enter_ball(BallEntryQuery) -> Option<f32>;
-        /// The closest hit in a scene graph.
-        GraphHit fn closest_hit_in_graph(GraphQuery) -> GraphAnswer;
-        /// Ray against box.
-        Cuboid fn cuboid(SolidQuery<Cuboid>) -> Option<SolidHit>;
-        /// Ray against closed cylinder.
-        Cylinder fn cylinder(SolidQuery<Cylinder>) -> Option<SolidHit>;
-        /// Ray against closed cone.
-        Cone fn cone(SolidQuery<Cone>) -> Option<SolidHit>;
-        /// Ray against disk.
-        Disk fn disk(SolidQuery<Disk>) -> Option<SolidHit>;
-        /// Ray against convex polygon.
-        Polygon fn polygon(SolidQuery<Polygon>) -> Option<SolidHit>;
-        /// A point of a Bézier patch.
-        BezierPoint fn bezier_point(PatchQuery) -> Vec3;
-        /// A mesh with four triangles for each.
-        LoopSubdivide fn loop_subdivide(Mesh) -> Mesh;
-    }
-
-    /// Stage 9: cells of space.
-    trait Partitions {
-        /// Where a ray is in a cell, in double precision.
-        CellSpan fn cell_span(SlabQuery) -> Option<(f64, f64)>;
-        /// How many cells a grid should have along each axis.
-        GridResolution fn grid_resolution(ResolutionQuery) -> UVec3;
-        /// A grid over boxes.
-        GridBuild fn grid_build(GridQuery) -> Grid;
-        /// The closest hit in a grid.
-        GridSearch fn grid_search(CellsQuery<Grid>) -> CellsAnswer;
-        /// An octree over boxes.
-        OctreeBuild fn octree_build(OctreeQuery) -> Octree;
-        /// The closest hit in an octree, from cell to cell.
-        OctreeByCells fn octree_by_cells(CellsQuery<Octree>) -> CellsAnswer;
-        /// The closest hit in an octree, from the root down.
-        OctreeSearch fn octree_search(CellsQuery<Octree>) -> CellsAnswer;
-        /// A kd-tree over boxes.
-        KdBuild fn kd_build(KdQuery) -> KdTree;
-        /// The closest hit in a kd-tree.
-        KdSearch fn kd_search(CellsQuery<KdTree>) -> CellsAnswer;
-        /// A BSP tree over hulls.
-        BspBuild fn bsp_build(BspQuery) -> Bsp;
-        /// The closest hit in a BSP tree.
-        BspSearch fn bsp_search(CellsQuery<Bsp>) -> CellsAnswer;
-        /// The closest hit, knowing what the ray before hit.
-        CachedSearch fn cached_search(CachedQuery) -> CellsAnswer;
-        /// The closest hits of several rays.
-        PacketSearch fn packet_search(PacketQuery) -> PacketAnswer;
-    }
-
-    /// Stage 10: answers that survive rounding.
-    trait Stability {
-        /// The roots of `a t² + b t + c`, for `[a, b, c]`.
-        StableRoots fn stable_roots([f32; 3]) -> Option<[f32; 2]>;
-        /// Ray against triangle, without leaks between neighbours.
-        Watertight fn watertight(TriangleQuery) -> Option<TriangleHit>;
-        /// Ray against box, without a miss of what is met.
-        ConservativeSlab fn conservative_slab(SlabQuery) -> Option<(f32, f32)>;
-        /// Where a ray starts that leaves a surface.
-        OffsetOrigin fn offset_origin(OffsetQuery) -> Vec3;
-        /// The unit vector along another, if it has a direction.
-        SafeNormalize fn safe_normalize(Vec3) -> Option<Vec3>;
-        /// Ray against triangle, every number in double precision.
-        TriangleInDouble fn triangle_in_double(TriangleQuery) -> Option<TriangleHit>;
-        /// Ray against sphere, every number in double precision.
-        SphereInDouble fn sphere_in_double(SphereQuery) -> Option<f32>;
     }
 }

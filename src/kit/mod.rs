@@ -4,9 +4,13 @@
 //! the same process or sits in a worker at the other end of a pipe. Every call takes a batch, so that a check with
 //! thousands of cases crosses the pipe once.
 
+mod adapters;
 mod distribution;
 pub mod door;
 mod economy;
+mod example;
+mod functions;
+mod list;
 pub mod mishap;
 mod partitions;
 mod recursion;
@@ -17,7 +21,10 @@ mod stability;
 mod table;
 mod traced;
 mod triangles;
+#[doc(hidden)]
+pub mod types;
 
+pub use adapters::{Linked, Renders};
 pub use distribution::{
     BallQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };
@@ -28,6 +35,10 @@ pub use door::{
 pub use economy::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
+#[doc(hidden)]
+pub use functions::Running;
+pub(crate) use functions::note_unwound;
+pub use functions::{Function, StudentFunctions, is_written, take_unwound};
 pub use mishap::Mishap;
 pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,

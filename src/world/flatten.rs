@@ -5,7 +5,7 @@ use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale};
 use super::{
-    Crafts, EndlessPlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World,
+    EndlessPlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
     what_is_not_simulated,
 };
 use crate::effects::Effects;
@@ -15,14 +15,14 @@ use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2};
 use std::ops::Range;
 
-pub(super) fn flatten(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
-    let mut meshes = Meshes::new(scene, effects, crafts);
+pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
+    let mut meshes = Meshes::new(scene, effects, functions);
     let searched =
         matches!(scene.quality.accelerator, Accelerator::BoundingBoxes | Accelerator::BoundingSpheres);
     let mut flattener = Flattener {
         scene,
         effects,
-        crafts,
+        functions,
         // What does not move while the shutter is open stands where it is when it opens.
         still_at: scene.camera.shutter.map_or(0.0, |shutter| shutter.open),
         path: Vec::new(),
@@ -68,7 +68,7 @@ impl Way {
 struct Flattener<'a> {
     scene: &'a Scene,
     effects: &'a Effects,
-    crafts: &'a Crafts,
+    functions: &'a WorldFunctions,
     still_at: f32,
     /// The transforms from the root down to where we are.
     path: Vec<Affine3A>,
@@ -114,8 +114,11 @@ impl Flattener<'_> {
 
     fn shape(&mut self, shape: &Shape, ready: Option<&mut Ready>, way: &Way, material: u32) {
         match shape {
+            Shape::Sphere(_) if !self.functions.spheres => {}
             Shape::Sphere(sphere) => self.sphere(sphere, way, material),
+            Shape::Plane(_) if !self.functions.planes => {}
             Shape::Plane(plane) => self.plane(plane, way, material),
+            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
                 self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
@@ -127,6 +130,7 @@ impl Flattener<'_> {
                 }
             }
             _ if self.solid(shape, way, material) => {}
+            _ if !self.functions.triangles => {}
             Shape::Polygon(polygon) => self.facets(&facets::polygon(&polygon.corners), way, material),
             Shape::Cuboid(cuboid) => self.facets(&facets::cuboid(cuboid), way, material),
             Shape::Cylinder(cylinder) => self.facets(&facets::cylinder(cylinder), way, material),
@@ -138,7 +142,7 @@ impl Flattener<'_> {
     /// Where the shape of this node stands, if the kit says so. What moves is not placed: its transform is another one at
     /// every moment.
     fn placement(&self, way: &Way) -> Option<Placement> {
-        let place = self.crafts.placement?;
+        let place = self.functions.placement?;
         match (way.end, way.blended) {
             (Some(_), _) => None,
             (None, true) => place(&[way.start]),
@@ -180,6 +184,7 @@ impl Flattener<'_> {
                 (start, Some(Geometry::Sphere(end)))
             }
             _ if self.solid(&Shape::Sphere(*sphere), way, material) => return,
+            _ if !self.functions.triangles => return,
             _ => return self.facets(&facets::sphere(sphere), way, material),
         };
         let image = match self.reads_image(material) {

@@ -1,7 +1,7 @@
 //! Meshes before they are placed: divided, smoothed, and patches made of triangles. Which of them stand in more than one
 //! place is counted here as well.
 
-use super::Crafts;
+use super::WorldFunctions;
 use super::facets::Facet;
 use crate::effects::Effects;
 use crate::mesh::Mesh;
@@ -31,14 +31,14 @@ pub(super) struct Meshes {
 }
 
 impl Meshes {
-    pub fn new(scene: &Scene, effects: &Effects, crafts: &Crafts) -> Meshes {
+    pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> Meshes {
         let places = Places::count(scene);
-        let shared = |places: u64| places > 1 && !scene.quality.copies && crafts.placement.is_some();
+        let shared = |places: u64| places > 1 && !scene.quality.copies && functions.placement.is_some();
         let of_scene = scene.meshes.iter().enumerate().map(|(index, source)| {
             let smooth = effects.smooth_meshes.get(index) == Some(&true);
-            let (mesh, is_new) = divided(source, crafts);
+            let (mesh, is_new) = divided(source, functions);
             Ready {
-                normals: if smooth { normals_of(&mesh, is_new, crafts) } else { Vec::new() },
+                normals: if smooth { normals_of(&mesh, is_new, functions) } else { Vec::new() },
                 mesh,
                 materials: source.materials.clone(),
                 shared: shared(places.of_meshes[index]),
@@ -47,9 +47,9 @@ impl Meshes {
         });
         let patch = |(index, node): (usize, &Node)| {
             let Some(Shape::Bezier { patch, steps }) = &node.shape else { return None };
-            let mesh = patch_mesh(patch, *steps, crafts.bezier_point?);
+            let mesh = patch_mesh(patch, *steps, functions.bezier_point?);
             let ready = Ready {
-                normals: normals_of(&mesh, true, crafts),
+                normals: normals_of(&mesh, true, functions),
                 mesh: Arc::new(mesh),
                 materials: Vec::new(),
                 shared: shared(places.of_nodes[index]),
@@ -65,8 +65,8 @@ impl Meshes {
 }
 
 /// The mesh as the scene wants it, and whether that is another one than in its file.
-fn divided(source: &SceneMesh, crafts: &Crafts) -> (Arc<Mesh>, bool) {
-    match crafts.subdivide {
+fn divided(source: &SceneMesh, functions: &WorldFunctions) -> (Arc<Mesh>, bool) {
+    match functions.subdivide {
         Some(subdivide) if source.subdivisions > 0 => {
             let mut mesh = subdivide(&source.mesh);
             for _ in 1..source.subdivisions {
@@ -79,8 +79,8 @@ fn divided(source: &SceneMesh, crafts: &Crafts) -> (Arc<Mesh>, bool) {
 }
 
 /// Those of the file if they belong to this mesh, or averages.
-fn normals_of(mesh: &Mesh, is_new: bool, crafts: &Crafts) -> Vec<Vec3> {
-    match crafts.vertex_normals {
+fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3> {
+    match functions.vertex_normals {
         _ if !is_new && !mesh.normals.is_empty() => mesh.normals.clone(),
         Some(average) => average(mesh),
         None => Vec::new(),

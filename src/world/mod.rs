@@ -17,6 +17,7 @@ pub use solids::{Solid, SolidShape, around_ball};
 use crate::camera::Camera;
 use crate::effects::Effects;
 use crate::graph::{Graph, Placement};
+use crate::kit::{Function, StudentFunctions};
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::scene::Scene;
@@ -142,10 +143,10 @@ pub struct World {
 /// From the transforms from the root down to where a node stands.
 pub type Place = fn(&[Affine3A]) -> Option<Placement>;
 
-/// What students write and a world is made with. What is missing is done without.
-#[derive(Clone, Copy, Default)]
-pub struct Crafts {
-    /// Gives a mesh one unit normal a vertex; without it, meshes whose files have no normals are flat.
+/// The student functions that a world is made with, and the kinds of shapes that can be shown at all.
+#[derive(Clone, Copy)]
+pub struct WorldFunctions {
+    /// Gives a mesh one unit normal per vertex; without it, meshes whose files have no normals are flat.
     pub vertex_normals: Option<fn(&Mesh) -> Vec<Vec3>>,
     /// Composes the transforms from the root down; without it, all shapes are made of triangles and meshes copied.
     pub placement: Option<Place>,
@@ -153,18 +154,63 @@ pub struct Crafts {
     pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
     /// Four triangles for each; without it, meshes stay as coarse as they are.
     pub subdivide: Option<fn(&Mesh) -> Mesh>,
+    /// Whether spheres are shown.
+    pub spheres: bool,
+    /// Whether infinite planes are shown.
+    pub planes: bool,
+    /// Whether triangles are shown, and what is made of them.
+    pub triangles: bool,
+}
+
+impl Default for WorldFunctions {
+    fn default() -> Self {
+        WorldFunctions {
+            vertex_normals: None,
+            placement: None,
+            bezier_point: None,
+            subdivide: None,
+            spheres: true,
+            planes: true,
+            triangles: true,
+        }
+    }
+}
+
+impl WorldFunctions {
+    /// Those of `F` that are `written`.
+    pub fn of<F: StudentFunctions>(written: &dyn Fn(Function) -> bool) -> Self {
+        // A shape stays in a space of its own only if every function for that is there.
+        let in_spaces = [
+            Function::placement,
+            Function::ray_to_object,
+            Function::normal_to_world,
+            Function::bounds_to_world,
+            Function::cuboid,
+            Function::cylinder,
+            Function::cone,
+            Function::disk,
+            Function::polygon,
+        ];
+        WorldFunctions {
+            vertex_normals: written(Function::vertex_normals).then_some(F::vertex_normals),
+            placement: in_spaces.into_iter().all(written).then_some(F::placement),
+            bezier_point: written(Function::bezier_point).then_some(F::bezier_point),
+            subdivide: written(Function::loop_subdivide).then_some(F::loop_subdivide),
+            ..WorldFunctions::default()
+        }
+    }
 }
 
 impl World {
     /// Flattens `scene` as far as `effects` call for it.
-    pub fn new(scene: &Scene, effects: &Effects, crafts: &Crafts) -> World {
-        flatten::flatten(scene, effects, crafts)
+    pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
+        flatten::flatten(scene, effects, functions)
     }
 
     /// The same scene of triangles, spheres and planes alone, all where they stand when the shutter opens, whatever is
     /// written: what searches and tests of different kits can be compared on.
     pub fn plain(scene: &Scene) -> World {
-        World::new(scene, &Effects::default(), &Crafts::default())
+        World::new(scene, &Effects::default(), &WorldFunctions::default())
     }
 }
 

@@ -80,13 +80,13 @@ pub enum Need {
     Checks,
 }
 
-/// The cargo feature of `exercises` and `solutions` that builds the renderer; `None` while they always have one.
-const FRAMES: Option<&str> = None;
+/// The cargo feature of `exercises` and `solutions` that builds the renderer.
+const FRAMES: &str = "frames";
 
 impl Need {
     /// The feature that a worker must be built with.
     pub fn feature(self) -> Option<&'static str> {
-        FRAMES.filter(|_| self == Need::Frames)
+        (self == Need::Frames).then_some(FRAMES)
     }
 }
 

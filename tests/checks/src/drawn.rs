@@ -8,23 +8,21 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Which inputs: the check, the seed, and which of its draws. No draw depends on an answer.
 pub(crate) type Key = (&'static str, u64, &'static Location<'static>, u32);
 
+/// A `Vec` of inputs, for code that does not know their type.
+pub(crate) type Values = Arc<dyn Any + Send + Sync>;
+
 /// The inputs of each draw, kept. Drawing them takes as long as judging the answers.
 #[derive(Default)]
-pub struct Drawn(Mutex<HashMap<Key, Arc<dyn Any + Send + Sync>>>);
+pub struct Drawn(Mutex<HashMap<Key, Values>>);
 
 impl Drawn {
     /// Those of `key`, which `draw` draws if nobody has yet.
-    pub(crate) fn get<T: Send + Sync + 'static>(
-        &self,
-        key: Key,
-        draw: impl FnOnce() -> Vec<T>,
-    ) -> Arc<Vec<T>> {
+    pub(crate) fn get(&self, key: Key, draw: &dyn Fn() -> Values) -> Values {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let known = lock().get(&key).cloned();
-        if let Some(Ok(known)) = known.map(Arc::downcast) {
+        if let Some(known) = lock().get(&key).cloned() {
             return known;
         }
-        let drawn = Arc::new(draw());
+        let drawn = draw();
         lock().insert(key, drawn.clone());
         drawn
     }

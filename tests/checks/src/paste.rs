@@ -1,12 +1,13 @@
 //! Inputs as Rust that can be pasted into a test: every number with all its digits.
 
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{
     BuildQuery, InsideQuery, LightSample, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery, SlabQuery,
     SphereQuery, Surface, TriangleQuery,
 };
 use raykata::material::Material;
+use raykata::random::Stratum;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 
@@ -43,6 +44,18 @@ impl Paste for Vec3 {
 impl Paste for Vec2 {
     fn paste(&self) -> String {
         format!("vec2({}, {})", self.x.paste(), self.y.paste())
+    }
+}
+
+impl Paste for Stratum {
+    fn paste(&self) -> String {
+        let whole = |v: UVec2| format!("uvec2({}, {})", v.x, v.y);
+        format!(
+            "&Stratum {{ cell: {}, grid: {}, u: {} }}",
+            whole(self.cell),
+            whole(self.grid),
+            self.u.paste()
+        )
     }
 }
 

@@ -2,11 +2,12 @@
 //! every time.
 
 use crate::broken::{self, Broken, Outcome};
-use crate::drawn::Drawn;
+use crate::drawn::{Drawn, Values};
 use crate::rubric;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use raykata::kit::{Kit, Mishap, mishap};
+use std::any::Any;
 use std::cell::Cell;
 use std::panic::Location;
 use std::sync::{Arc, mpsc};
@@ -76,68 +77,160 @@ impl<'a> Trial<'a> {
     where
         S::Value: Clone + Send + Sync + 'static,
     {
-        let draw = || -> Vec<S::Value> { self.draw(cases, &inputs).iter().map(ValueTree::current).collect() };
-        let key = (self.name, self.seed, Location::caller(), self.draws.replace(self.draws.get() + 1));
+        self.hold(cases, &Judged { inputs, judge }, Location::caller())
+    }
+
+    /// The part of [`Trial::forall`] that is the same for all types, and so is compiled once.
+    fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> Outcome {
+        let draw = || law.draw(cases, &mut self.runner());
+        let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
         let values = match &self.drawn {
-            Some(drawn) => drawn.get(key, draw),
-            None => Arc::new(draw()),
+            Some(drawn) => drawn.get(key, &draw),
+            None => draw(),
         };
-        let broken = match mishap::catch(|| judge(&values)) {
+        let broken = match mishap::catch(|| law.judge(&*values)) {
             Ok(outcomes) => {
                 outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
             }
             // Some input of the batch made the code panic: ask one at a time which.
-            Err(Mishap::Panicked { .. }) => {
-                values.iter().enumerate().find_map(|(i, value)| Some((i, judge_one(&judge, value)?)))
-            }
+            Err(Mishap::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
+                let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
+                Some((i, judge_one(&judge, &input)?))
+            }),
             Err(mishap) => mishap::unwind(mishap),
         };
-        match broken {
-            None => Ok(()),
-            // What an input can shrink to is only needed here, so it is drawn again.
-            Some((index, broken)) => {
-                Err(shrink(self.draw(cases, &inputs).swap_remove(index), broken, |value| {
-                    judge_one(&judge, &value)
-                }))
-            }
+        let Some((index, broken)) = broken else { return Ok(()) };
+        // What an input can shrink to is only needed here, so it is drawn again.
+        match law.tree(cases, &mut self.runner(), index) {
+            Some(tree) => Err(shrink(tree, broken)),
+            None => Err(broken),
         }
     }
 
-    /// Inputs with all that they can shrink to: the same whenever it is asked.
-    fn draw<S: Strategy>(&self, cases: usize, inputs: &S) -> Vec<S::Tree> {
+    /// Makes the same random choices whenever it is asked.
+    fn runner(&self) -> TestRunner {
         let mut seed = [0; 32];
         seed[..8].copy_from_slice(&self.seed.to_le_bytes());
         seed[8..16].copy_from_slice(&fingerprint(self.name).to_le_bytes());
         let config = Config { failure_persistence: None, ..Config::default() };
-        let random = TestRng::from_seed(RngAlgorithm::ChaCha, &seed);
-        let mut runner = TestRunner::new_with_rng(config, random);
-        (0..cases).filter_map(|_| inputs.new_tree(&mut runner).ok()).collect()
+        TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &seed))
+    }
+}
+
+/// Inputs and how they are judged, for code that does not know their type. `values` is always a `Vec` of them.
+trait Law {
+    /// Draws so many inputs.
+    fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
+    /// How many inputs there are.
+    fn count(&self, values: &AnyValues) -> usize;
+    /// Judges all of them.
+    fn judge(&self, values: &AnyValues) -> Vec<Outcome>;
+    /// Judges one of them.
+    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome>;
+    /// One of them for a message.
+    fn words(&self, values: &AnyValues, index: usize) -> String;
+    /// What the input of this index can shrink to.
+    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
+}
+
+type AnyValues = dyn Any + Send + Sync;
+
+/// What a tree of smaller inputs is asked.
+trait Tree {
+    fn simplify(&mut self) -> bool;
+    fn complicate(&mut self) -> bool;
+    /// Judges the present input.
+    fn judge(&self) -> Vec<Outcome>;
+    /// The present input for a message.
+    fn words(&self) -> String;
+}
+
+struct Judged<S, J> {
+    inputs: S,
+    judge: J,
+}
+
+impl<S: Strategy, J: Fn(&[S::Value]) -> Vec<Outcome>> Law for Judged<S, J>
+where
+    S::Value: Send + Sync + 'static,
+{
+    fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values {
+        let mut values: Vec<S::Value> = Vec::with_capacity(cases);
+        for _ in 0..cases {
+            if let Ok(tree) = self.inputs.new_tree(runner) {
+                values.push(tree.current());
+            }
+        }
+        Arc::new(values)
+    }
+
+    fn count(&self, values: &AnyValues) -> usize {
+        values.downcast_ref::<Vec<S::Value>>().map_or(0, Vec::len)
+    }
+
+    fn judge(&self, values: &AnyValues) -> Vec<Outcome> {
+        values.downcast_ref::<Vec<S::Value>>().map_or_else(Vec::new, |values| (self.judge)(values))
+    }
+
+    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome> {
+        let values = values.downcast_ref::<Vec<S::Value>>();
+        values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
+    }
+
+    fn words(&self, values: &AnyValues, index: usize) -> String {
+        values
+            .downcast_ref::<Vec<S::Value>>()
+            .map_or_else(String::new, |values| format!("{:?}", values[index]))
+    }
+
+    fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
+        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(index)?;
+        Some(Box::new(JudgedTree { tree, judge: &self.judge }))
+    }
+}
+
+struct JudgedTree<'a, T, J> {
+    tree: T,
+    judge: &'a J,
+}
+
+impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T, J> {
+    fn simplify(&mut self) -> bool {
+        self.tree.simplify()
+    }
+
+    fn complicate(&mut self) -> bool {
+        self.tree.complicate()
+    }
+
+    fn judge(&self) -> Vec<Outcome> {
+        (self.judge)(&[self.tree.current()])
+    }
+
+    fn words(&self) -> String {
+        format!("{:?}", self.tree.current())
     }
 }
 
 /// What is wrong with the answer to one input, a panic included.
-fn judge_one<V: Clone + std::fmt::Debug>(judge: &impl Fn(&[V]) -> Vec<Outcome>, value: &V) -> Option<Broken> {
-    match mishap::catch(|| judge(std::slice::from_ref(value))) {
+fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Option<Broken> {
+    match mishap::catch(judge) {
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
         Err(Mishap::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Some(Broken::told(format!("{value:?}"), panic, "an answer", "the definition"))
+            Some(Broken::told(input(), panic, "an answer", "the definition"))
         }
         Err(mishap) => mishap::unwind(mishap),
     }
 }
 
 /// Looks for a smaller input that breaks the law as well.
-fn shrink<T: ValueTree>(
-    mut tree: T,
-    mut smallest: Broken,
-    judge: impl Fn(T::Value) -> Option<Broken>,
-) -> Broken {
+fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
     let mut steps = 0;
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
-        going = match judge(tree.current()) {
+        going = match judge_one(&|| tree.judge(), &|| tree.words()) {
             Some(broken) => {
                 smallest = broken;
                 tree.simplify()
@@ -203,11 +296,9 @@ pub fn verdict(check: &Check, examined: Result<Outcome, Mishap>) -> Verdict {
 }
 
 /// Runs the check of this name as a test of `kit`: prints what a student needs to know and ends the test.
-pub fn grade(stage: u8, name: &str, kit: Arc<dyn Kit + Send + Sync>) {
-    let checks =
-        crate::STAGES.iter().find(|(number, _)| *number == stage).map_or(&[][..], |(_, checks)| checks);
+pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
-        panic!("stage {stage} has no check `{name}`");
+        panic!("there is no check `{name}` in this stage");
     };
     match run(check, &kit, 0) {
         Verdict::Passed => return,

@@ -4,9 +4,9 @@ use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric;
-use checks::splitmix::Random;
 use grader::grade::report;
 use grader::grade::result::{CheckResult, Class, Graded, Outcome, Picture, Remark, Session};
+use oracle::splitmix::Random;
 use std::path::PathBuf;
 
 const N_STUDENTS: usize = 60;
@@ -51,7 +51,7 @@ fn student(i: usize, random: &mut Random) -> Graded {
     if !compiles {
         graded.compiler = "error[E0308]: mismatched types\n  --> exercises/src/stage3_bvh.rs:41:9\n   |\n41 |         None\n   |         ^^^^ expected `usize`, found `Option<_>`\n".to_owned();
     }
-    for (stage, checks) in checks::STAGES.iter().filter(|(stage, _)| *stage <= 4) {
+    for (stage, checks) in all_checks::STAGES.iter().filter(|(stage, _)| *stage <= 4) {
         for check in *checks {
             let outcome = match *stage {
                 3 if !compiles => Outcome::DoesNotCompile,

@@ -29,10 +29,10 @@ fn every_case_is_seen_to() {
         .iter()
         .map(|folder| sources(&root().join(folder)))
         .collect();
-    let stages: Vec<u8> = checks::STAGES.iter().map(|(stage, _)| *stage).collect();
+    let stages: Vec<u8> = all_checks::STAGES.iter().map(|(stage, _)| *stage).collect();
     for case in &cases {
         for check in &case.checks {
-            let exists = checks::STAGES.iter().any(|(_, all)| all.iter().any(|one| one.name == check));
+            let exists = all_checks::STAGES.iter().any(|(_, all)| all.iter().any(|one| one.name == check));
             assert!(exists, "{}: there is no check `{check}`", case.name);
         }
         for test in &case.tests {

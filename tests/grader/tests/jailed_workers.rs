@@ -40,7 +40,7 @@ fn crash(door: &Door<Worker>, radius: f32) -> String {
 
 #[test]
 fn an_honest_worker_passes_every_check_in_a_jail() {
-    for (_, checks) in checks::STAGES {
+    for (_, checks) in all_checks::STAGES {
         for check in *checks {
             // The patience of the tool: some checks take a while where others run at the same time.
             let kit = jailed(misbehaving(), 10);

@@ -2,8 +2,8 @@
 
 use crate::leak_table;
 use anyhow::Result;
-use checks::gauntlet::distributions::DISTRIBUTIONS;
-use checks::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
+use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
 use glam::Vec3;
 use raykata::kit::{Kit, TriangleHit, TriangleQuery, mishap};
 use raykata::ray::Ray;

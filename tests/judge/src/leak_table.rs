@@ -2,9 +2,9 @@
 
 use crate::gauntlet::{Answers, Input, Row};
 use anyhow::Result;
-use checks::gauntlet::leaks::{self, Aim, aimed};
-use checks::gauntlet::meshes::{Closed, closed};
-use checks::splitmix::Random;
+use oracle::gauntlet::leaks::{self, Aim, aimed};
+use oracle::gauntlet::meshes::{Closed, closed};
+use oracle::splitmix::Random;
 use raykata::ray::Ray;
 use raykata_cli::queue;
 

@@ -2,7 +2,8 @@
 
 use anyhow::Result;
 use checks::rubric::{self, RUBRIC};
-use checks::{Check, STAGES, Verdict};
+use all_checks::STAGES;
+use checks::{Check, Verdict};
 use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;
 use std::path::Path;

@@ -73,6 +73,6 @@ fn main() {
                 _ => {}
             }
         }
-        request.answer(&solutions::Kit, watch)
+        request.answer(&raykata::kit::Linked(solutions::Kit), watch)
     });
 }

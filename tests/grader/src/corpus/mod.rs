@@ -162,7 +162,8 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
 fn report_idle_checks(tried: &[Tried]) {
     let is_tried = |stage: u8| tried.iter().any(|one| one.entry.stage == stage);
     let fails = |name: &str| tried.iter().any(|one| one.failures.contains_key(name));
-    let checks = checks::STAGES.iter().filter(|(stage, _)| is_tried(*stage)).flat_map(|(_, checks)| *checks);
+    let checks =
+        all_checks::STAGES.iter().filter(|(stage, _)| is_tried(*stage)).flat_map(|(_, checks)| *checks);
     let idle: Vec<&str> = checks.map(|check| check.name).filter(|name| !fails(name)).collect();
     if !idle.is_empty() {
         println!("\nchecks that no mistake fails: {}", idle.join(", "));

@@ -1,7 +1,8 @@
 //! What came of an entry, and whether that is what had to come of it.
 
 use super::entry::{Claim, Entry};
-use checks::{Check, STAGES, Verdict};
+use all_checks::STAGES;
+use checks::{Check, Verdict};
 use std::collections::BTreeMap;
 use std::fmt;
 

@@ -2,7 +2,7 @@
 //! what lies 64 steps of a float behind it.
 
 use anyhow::{Result, anyhow, ensure};
-use checks::splitmix::Random;
+use oracle::splitmix::Random;
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;

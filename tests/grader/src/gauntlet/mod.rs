@@ -4,13 +4,15 @@
 pub mod agreement;
 mod leaving;
 mod long;
+mod methods;
+mod printed;
 mod scenes;
 
 use crate::kits::{Need, Source, Which};
 use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
-use checks::gauntlet::methods::METHODS;
+use methods::METHODS;
 use clap::Args;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
 use raykata::kit::Kit;

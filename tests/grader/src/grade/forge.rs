@@ -50,8 +50,7 @@ impl Forge {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
-        let mut pristine = crate::sync::pristine(root)?;
-        leave_out_frames(&mut pristine)?;
+        let pristine = crate::sync::pristine(root)?;
         Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine, walls })
     }
 
@@ -150,7 +149,8 @@ impl Forge {
         Ok(())
     }
 
-    /// Compiles the exercises.
+    /// Compiles the exercises, without the feature `frames`: no check asks for a frame, and the renderer is the larger
+    /// part of what the compiler would have to do for each submission.
     fn compile_exercises(&self, scratch: &Path) -> Result<Ended> {
         let arguments = [
             "exercises/src/lib.rs",
@@ -205,30 +205,6 @@ impl Forge {
         jail::run(command, &[], COMPILER_PATIENCE, MOST_MESSAGES).context("the compiler cannot be started")
     }
 }
-
-/// The connections without whole frames: no check asks for one, and they are the larger part of what the compiler would
-/// have to do for each submission.
-fn leave_out_frames(connections: &mut BTreeMap<String, String>) -> Result<()> {
-    let mut file = |name: &str| connections.remove(name).with_context(|| format!("no file {name}"));
-    let (mut glue, list) = (file("glue.rs")?, file("lib.rs")?);
-    for (call, nothing) in [
-        ("tracer::render(job, watch)", "{ let _ = (job, watch); None }"),
-        ("tracer::trace(job, x, y)", "{ let _ = (job, x, y); Vec::new() }"),
-        ("tracer::outlines(job, depth)", "{ let _ = (job, depth); Vec::new() }"),
-        ("tracer::first_hits(job, rays)", "{ let _ = (job, rays); Vec::new() }"),
-        (", tracer,\n", ",\n"),
-    ] {
-        ensure!(glue.matches(call).count() == 1, "glue.rs no longer says `{call}` once");
-        glue = glue.replace(call, nothing);
-    }
-    let kept: Vec<&str> = list.lines().filter(|line| !line.ends_with(FOR_FRAMES)).collect();
-    connections.insert("lib.rs".into(), kept.join("\n") + "\n");
-    connections.insert("glue.rs".into(), glue);
-    Ok(())
-}
-
-/// How lib.rs marks a module that only frames need.
-const FOR_FRAMES: &str = "; // nothing to do here: for frames";
 
 fn option(name: &str, path: &Path) -> OsString {
     let mut option = OsString::from(name);

@@ -6,7 +6,7 @@ use super::judge::Judge;
 use super::result::Session;
 use crate::jail::{self, Walls};
 use anyhow::{Context, Result, ensure};
-use checks::STAGES;
+use all_checks::STAGES;
 use clap::Args;
 use sha2::{Digest, Sha256};
 use std::fs;

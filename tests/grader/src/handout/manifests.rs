@@ -47,7 +47,7 @@ fn workspace(
     built: &BTreeSet<String>,
     present: &dyn Fn(&str) -> bool,
 ) -> String {
-    let text = with_members(text, present);
+    let text = with_settings_of(built, &with_members(text, present));
     let mut of_workspace = false;
     cut(&text, |lines, kept| {
         let header = lines.iter().find(|line| line.starts_with('['));
@@ -66,9 +66,34 @@ fn workspace(
             });
         kept.retain(|line| {
             let dependency = line.split_once(" = ").filter(|_| of_workspace && !line.starts_with('#'));
-            !unused && !missing && dependency.is_none_or(|(name, _)| wanted.contains(name))
+            !missing && dependency.is_none_or(|(name, _)| wanted.contains(name))
         });
     })
+}
+
+/// The text with the settings of packages that are built, and of no others: cargo warns of those.
+fn with_settings_of(built: &BTreeSet<String>, text: &str) -> String {
+    let mut keep = true;
+    let mut kept = String::new();
+    for line in text.lines() {
+        if line.is_empty() || line.starts_with('[') || line.starts_with('#') {
+            let of_package = line.strip_prefix("[profile.").and_then(|rest| rest.split_once(".package."));
+            let name = of_package.map(|(_, name)| name.trim_end_matches(']').trim_matches('"'));
+            keep = name.is_none_or(|name| name == "*" || built.contains(name));
+        }
+        if keep {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    // A comment about nothing.
+    let stood_alone = |part: &str| text.split("\n\n").any(|one| one.trim_end() == part.trim_end());
+    let parts = kept.split("\n\n").filter(|part| !is_comment(part) || stood_alone(part));
+    parts.collect::<Vec<_>>().join("\n\n")
+}
+
+fn is_comment(paragraph: &str) -> bool {
+    paragraph.lines().all(|line| line.starts_with('#'))
 }
 
 /// The text with only those members, and default members, that are present.

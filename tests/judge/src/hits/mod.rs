@@ -8,8 +8,8 @@ mod search;
 mod surface;
 
 use anyhow::{Result, ensure};
-use checks::exact::{Body, meet};
-use checks::splitmix::Random;
+use oracle::exact::{Body, meet};
+use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
 use raykata::ray::Ray;
 use raykata::scene::Scene;

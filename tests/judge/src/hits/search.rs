@@ -1,9 +1,9 @@
 //! What a ray exactly meets first, among many bodies.
 
 use super::Asked;
-use checks::exact::{Body, aabb, meet, triangle};
-use checks::stage10::STABLE;
 use glam::Vec3;
+use oracle::STABLE;
+use oracle::exact::{Body, aabb, meet, triangle};
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
 use raykata::shape::Shape;

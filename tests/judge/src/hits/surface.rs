@@ -1,8 +1,8 @@
 //! Where a surface is closed, as it is seen from one place.
 
-use checks::exact::Body;
-use checks::splitmix::Random;
 use glam::{DVec3, Vec3};
+use oracle::exact::Body;
+use oracle::splitmix::Random;
 use raykata::shape::Triangle;
 use std::collections::HashMap;
 

@@ -6,7 +6,7 @@
 use super::source::{self, Function};
 use crate::kits::{Need, Source, Which, root};
 use anyhow::{Result, bail, ensure};
-use checks::STAGES;
+use all_checks::STAGES;
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 use super::*;
 use crate::grade::result::{CheckResult, Graded, Outcome, Remark};
 use crate::queue;
-use checks::{STAGES, rubric};
+use all_checks::STAGES;
+use checks::rubric;
 use std::collections::BTreeSet;
 use std::os::unix::fs::FileTypeExt;
 

@@ -2,7 +2,7 @@
 
 use super::make::CANARY;
 use crate::grade::result::{Graded, Outcome};
-use checks::STAGES;
+use all_checks::STAGES;
 use checks::rubric;
 use serde::Deserialize;
 

@@ -1,0 +1,101 @@
+//! From the static trait to the door: a kit whose functions are linked into this program.
+
+use super::functions::StudentFunctions;
+use super::types::*;
+use super::*;
+use crate::bvh::PrimitiveHit;
+use crate::frame::Watch;
+
+/// The functions of a crate behind the door.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Linked<F>(pub F);
+
+/// What renders with the functions of a crate, if it was built with the feature `frames`.
+pub trait Renders {
+    /// The renderer.
+    const FRAMES: Option<&'static dyn Frames>;
+}
+
+/// A plain loop: iterators that are mapped and collected the compiler would have to write out for each of a hundred
+/// functions, and it compiles them for every submission that is graded.
+fn each<Q, A>(queries: &[Q], mut answer: impl FnMut(&Q) -> A) -> Vec<A> {
+    let mut answers = Vec::with_capacity(queries.len());
+    for query in queries {
+        answers.push(answer(query));
+    }
+    answers
+}
+
+/// Runs a search on a table; gives its answer with what it asked.
+pub(super) fn search(
+    query: &SearchQuery,
+    find: impl FnOnce(&mut TableProbe<'_>) -> Option<PrimitiveHit>,
+) -> SearchAnswer {
+    let mut probe = TableProbe::new(query);
+    let hit = find(&mut probe);
+    probe.answer(hit)
+}
+
+/// Runs a search of cells on a table; gives its answer with what it did.
+pub(super) fn look<S>(
+    query: &CellsQuery<S>,
+    find: impl FnOnce(&mut CellsProbe<'_>) -> Option<PrimitiveHit>,
+) -> CellsAnswer {
+    let mut probe = CellsProbe::new(&query.hits);
+    let hit = find(&mut probe);
+    CellsAnswer { hit, ..probe.answer }
+}
+
+/// Divides a copy of `primitives`; gives their new order.
+pub(super) fn divide(
+    primitives: &[PrimitiveRef],
+    split: impl FnOnce(&mut [PrimitiveRef]) -> Option<usize>,
+) -> SplitAnswer {
+    let mut primitives = primitives.to_vec();
+    let middle = split(&mut primitives);
+    SplitAnswer { order: primitives.iter().map(|primitive| primitive.id).collect(), middle }
+}
+
+macro_rules! linked {
+    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
+            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+    })*) => {
+        $(impl<F: StudentFunctions> $Trait for Linked<F> {
+            $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
+                each(queries, |query| {
+                    let $query = query;
+                    $adapter
+                })
+            })*
+        })*
+    };
+}
+
+crate::student_functions! { linked }
+
+impl<F: Renders> Frames for Linked<F> {
+    fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
+        frames::<F>().render(job, watch)
+    }
+
+    fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
+        frames::<F>().trace(job, x, y)
+    }
+
+    fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
+        frames::<F>().outlines(job, depth)
+    }
+
+    fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
+        frames::<F>().first_hits(job, rays)
+    }
+}
+
+fn frames<F: Renders>() -> &'static dyn Frames {
+    F::FRAMES.unwrap_or_else(|| {
+        mishap::unwind(Mishap::Nonsense {
+            what: "a frame was asked of a kit that was built without frames".into(),
+        })
+    })
+}

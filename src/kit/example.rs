@@ -1,0 +1,182 @@
+//! The simplest question of each kind: asked to find out whether a function is written.
+
+use super::types::*;
+use crate::material::{Emitter, Falloff};
+use glam::UVec2;
+use std::sync::Arc;
+
+/// A type with a simplest value.
+pub(super) trait Example: Sized {
+    /// That value.
+    fn example() -> Self;
+}
+
+/// `Example` for a type, by an expression in which `example()` gives the example of any other type.
+macro_rules! examples {
+    ($($Type:ty => $value:expr;)*) => {
+        $(impl Example for $Type {
+            fn example() -> Self {
+                $value
+            }
+        })*
+    };
+}
+
+fn example<T: Example>() -> T {
+    T::example()
+}
+
+impl<T: Example, U: Example> Example for (T, U) {
+    fn example() -> Self {
+        (example(), example())
+    }
+}
+
+impl<T: Example, U: Example, V: Example> Example for (T, U, V) {
+    fn example() -> Self {
+        (example(), example(), example())
+    }
+}
+
+impl<T: Example> Example for Option<T> {
+    fn example() -> Self {
+        None
+    }
+}
+
+impl<T: Example, const N: usize> Example for [T; N] {
+    fn example() -> Self {
+        std::array::from_fn(|_| example())
+    }
+}
+
+impl<S: Example> Example for SolidQuery<S> {
+    fn example() -> Self {
+        SolidQuery { ray: example(), solid: example() }
+    }
+}
+
+impl<S: Example> Example for CellsQuery<S> {
+    fn example() -> Self {
+        CellsQuery { cells: example(), ray: example(), hits: Vec::new() }
+    }
+}
+
+examples! {
+    f32 => 1.0;
+    u8 => 1;
+    u32 => 1;
+    Vec2 => Vec2::ZERO;
+    Vec3 => Vec3::Z;
+    Ray => Ray::new(Vec3::ZERO, Vec3::Z);
+    Aabb => Aabb::new(Vec3::ZERO, Vec3::ONE);
+    Sphere => Sphere { center: 2.0 * Vec3::Z, radius: 1.0 };
+    Triangle => Triangle { a: Vec3::Z, b: Vec3::X, c: Vec3::Y };
+    Cuboid => Cuboid { min: Vec3::ZERO, max: Vec3::ONE };
+    Cylinder => Cylinder { base: Vec3::ZERO, top: Vec3::Y, radius: 1.0 };
+    Cone => Cone { base: Vec3::ZERO, apex: Vec3::Y, radius: 1.0 };
+    Disk => Disk { center: Vec3::ZERO, normal: Vec3::Y, radius: 1.0 };
+    Polygon => Polygon { corners: vec![Vec3::ZERO, Vec3::X, Vec3::Y] };
+    BezierPatch => BezierPatch { rows: [[Vec3::ZERO; 4]; 4] };
+    Mesh => Mesh::default();
+    Material => Material::default();
+    Quality => Quality::default();
+    Effects => Effects::default();
+    Stratum => Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u: Vec2::ZERO };
+    Sampler => Sampler::Jittered;
+    Camera => Camera::new(Vec3::ZERO, Vec3::Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along z");
+    Scene => Scene::empty(example());
+    Surface => Surface {
+        point: Vec3::ZERO,
+        error: Vec3::ZERO,
+        geometric_normal: Vec3::Z,
+        shading_normal: Vec3::Z,
+    };
+    Light => Light {
+        emitter: Emitter::Point { position: Vec3::Z, falloff: Falloff::None },
+        color: Vec3::ONE,
+        intensity: 1.0,
+        shadows: true,
+    };
+    LightSample => LightSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE };
+    Texture => Texture { width: 1, height: 1, pixels: Arc::new(vec![Vec3::ONE]), wrap: Wrap::Repeat };
+    Child => Child { bounce: Bounce::Reflection, direction: Vec3::Z, weight: Vec3::ONE };
+    Grid => Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };
+    Octree => Octree::empty();
+    KdTree => KdTree::new(Aabb::EMPTY);
+    Bsp => Bsp::default();
+
+    Vec<PrimitiveRef> => [0, 1].map(|id| PrimitiveRef { id, bounds: example(), centroid: Vec3::splat(0.5) }).into();
+    Vec<WeightedColor> => Vec::new();
+    Vec<Affine3A> => Vec::new();
+    Vec<Vec3> => vec![Vec3::ZERO];
+
+    RootQuery => RootQuery { roots: [1.0, 2.0], ray: example() };
+    SphereQuery => SphereQuery { ray: example(), sphere: example() };
+    PlaneQuery => PlaneQuery {
+        ray: example(),
+        plane: crate::shape::Plane { point: Vec3::Z, normal: Vec3::Z },
+    };
+    TriangleQuery => TriangleQuery { ray: example(), triangle: example() };
+    InsideQuery => InsideQuery { ray: example(), point: Vec3::Z, triangle: example() };
+    InterpolateQuery => InterpolateQuery { weights: Vec3::X, corners: [Vec3::ZERO; 3] };
+    SearchQuery => SearchQuery { bvh: Bvh::default(), ray: example(), table: Table::default() };
+    SlabQuery => SlabQuery { ray: example(), bounds: example() };
+    BuildQuery => BuildQuery { bounds: Vec::new(), split: Split::SurfaceArea, leaf_size: 1 };
+    TermQuery => TermQuery { normal: Vec3::Z, to_light: Vec3::Z, to_viewer: Vec3::Z, exponent: 1.0 };
+    ShadowQuery => ShadowQuery { surface: example(), light: example() };
+    ShadeQuery => ShadeQuery {
+        surface: example(),
+        to_viewer: Vec3::Z,
+        material: example(),
+        ambient: Vec3::ONE,
+        lights: Vec::new(),
+        visible: Vec::new(),
+    };
+    RefractQuery => RefractQuery { dir: Vec3::NEG_Z, normal: Vec3::Z, n1: 1.0, n2: 1.5 };
+    FresnelQuery => FresnelQuery { cos_theta: 1.0, n1: 1.0, n2: 1.5 };
+    ChildrenQuery => ChildrenQuery {
+        dir: Vec3::NEG_Z,
+        normal: Vec3::Z,
+        entering: true,
+        material: example(),
+        weight: Vec3::ONE,
+        depth: 0,
+        limits: Limits { max_depth: 0, min_contribution: 0.0 },
+    };
+    LensQuery => LensQuery {
+        camera: example(),
+        pinhole: example::<Camera>().ray(0.5, 0.5),
+        lens: Lens { aperture: 0.0, focal_distance: 1.0 },
+        on_lens: Vec2::ZERO,
+    };
+    RectangleQuery => RectangleQuery { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Y), u: Vec2::ZERO };
+    BallQuery => BallQuery { ball: example(), from: Vec3::ZERO, u: Vec2::ZERO };
+    GlossQuery => GlossQuery { ideal: Vec3::Y, normal: Vec3::Y, roughness: 0.0, u: Vec2::ZERO };
+    TimeQuery => TimeQuery { shutter: Shutter { open: 0.0, close: 1.0 }, slot: 1, slots: 1, u: 0.0 };
+    LightQuery => LightQuery { light: example(), quality: example() };
+    MaterialQuery => MaterialQuery { material: example(), lights: Vec::new(), quality: example() };
+    BoundQuery => BoundQuery { scene: example(), effects: example() };
+    HitsQuery => HitsQuery { hits: Vec::new(), effects: example(), quality: example() };
+    TexelQuery => TexelQuery { index: 0, size: 1, wrap: Wrap::Repeat };
+    TextureQuery => TextureQuery { texture: example(), uv: Vec2::ZERO };
+    ObjectRayQuery => ObjectRayQuery { ray: example(), to_object: Affine3A::IDENTITY };
+    NormalQuery => NormalQuery { normal: Vec3::Z, to_object: Affine3A::IDENTITY };
+    BoundsQuery => BoundsQuery { to_world: Affine3A::IDENTITY, bounds: Aabb::EMPTY };
+    BallEntryQuery => BallEntryQuery { ray: example(), ball: example() };
+    GraphQuery => GraphQuery {
+        graph: Graph::default(),
+        ray: example(),
+        savings: Savings::default(),
+        table: Table::default(),
+    };
+    PatchQuery => PatchQuery { patch: example(), uv: Vec2::ZERO };
+    ResolutionQuery => ResolutionQuery { bounds: Aabb::EMPTY, n_primitives: 0, density: 1.0 };
+    GridQuery => GridQuery { bounds: Vec::new(), resolution: UVec3::ONE };
+    OctreeQuery => OctreeQuery { bounds: Vec::new(), leaf_size: 1, max_depth: 1 };
+    KdQuery => KdQuery { bounds: Vec::new(), heuristics: KdHeuristics::default(), leaf_size: 1 };
+    BspQuery => BspQuery { hulls: Vec::new(), leaf_size: 1, max_depth: 1 };
+    CachedQuery => CachedQuery { last: None, ray: example(), hits: Vec::new(), entries: Vec::new() };
+    PacketQuery => PacketQuery { bvh: Bvh::default(), rays: Vec::new(), tables: Vec::new() };
+    OffsetQuery => OffsetQuery { point: Vec3::ZERO, error: Vec3::ZERO, normal: Vec3::Z, direction: Vec3::Z };
+}

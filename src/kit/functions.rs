@@ -1,0 +1,168 @@
+//! The student's functions as code that can be called: the static trait, the names of the functions, and whether each is
+//! written. All three are generated from the list (`list.rs`).
+
+use super::adapters::{divide, look, search};
+use super::example::Example;
+use super::types::*;
+use super::{Mishap, mishap};
+use std::cell::Cell as Local;
+use std::fmt;
+
+/// Calls a function of the student; if it unwinds, its name is kept for [`take_unwound`].
+///
+/// The guard costs nothing where nothing panics: it is forgotten before it is dropped.
+#[doc(hidden)]
+pub struct Running(pub Function);
+
+impl Running {
+    /// The function has come back.
+    #[inline(always)]
+    pub fn finished(self) {
+        std::mem::forget(self);
+    }
+}
+
+impl Drop for Running {
+    #[cold]
+    fn drop(&mut self) {
+        // Guards are dropped from the inside out, and the innermost function is the one that gave up.
+        UNWOUND.with(|unwound| unwound.set(unwound.get().or(Some(self.0))));
+    }
+}
+
+thread_local! {
+    static UNWOUND: Local<Option<Function>> = const { Local::new(None) };
+}
+
+/// The function of the student that unwound on this thread since this was last asked, if any did.
+pub fn take_unwound() -> Option<Function> {
+    UNWOUND.take()
+}
+
+/// Says on this thread what [`take_unwound`] said on another.
+pub(crate) fn note_unwound(function: Option<Function>) {
+    UNWOUND.set(function);
+}
+
+macro_rules! functions {
+    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
+            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+    })*) => {
+        /// All student functions, called directly: what the renderer and the adapters of [`Linked`](super::Linked) use.
+        ///
+        /// [`student_kit!`](crate::student_kit) implements it for the functions of a crate.
+        pub trait StudentFunctions: Sync + 'static {
+            $($($(#[$doc])* #[allow(clippy::too_many_arguments, missing_docs)]
+            fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return;)*)*
+        }
+
+        /// The name of a student function, as the list has it.
+        #[allow(non_camel_case_types)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Function {
+            $($($(#[$doc])* $name,)*)*
+        }
+
+        impl Function {
+            /// All of them, in the order of the stages.
+            pub const ALL: &'static [Function] = &[$($(Function::$name),*),*];
+
+            /// The stage that asks for it.
+            pub fn stage(self) -> u8 {
+                match self {
+                    $($(Function::$name)|* => $stage,)*
+                }
+            }
+
+            /// Its own name in the file of the student.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $($(Function::$name => stringify!($function),)*)*
+                }
+            }
+
+            /// The file that holds it, without `.rs`.
+            pub fn file(self) -> &'static str {
+                match self {
+                    $($(Function::$name => stringify!($file),)*)*
+                }
+            }
+        }
+
+        /// Whether `function` does more than say `todo!` when it is asked about the simplest input there is. A `todo!`
+        /// that only other inputs reach is found when a frame reaches it.
+        pub fn is_written<F: StudentFunctions>(function: Function) -> bool {
+            let call: fn() = match function {
+                $($(Function::$name => || {
+                    let query = <$Query as Example>::example();
+                    let $query = &query;
+                    let _ = $adapter;
+                },)*)*
+            };
+            let written = !matches!(mishap::catch(call), Err(Mishap::NotWritten { .. }));
+            take_unwound();
+            written
+        }
+    };
+}
+
+crate::student_functions! { functions }
+
+impl fmt::Display for Function {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}` of stage {}", self.name(), self.stage())
+    }
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! implement_student_functions {
+    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
+            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+    })*) => {
+        impl $crate::kit::StudentFunctions for crate::Kit {
+            $($(
+            #[inline(always)]
+            fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return {
+                let running = $crate::kit::Running($crate::kit::Function::$name);
+                let answer = crate::$file::$function($($argument),*);
+                running.finished();
+                answer
+            }
+            )*)*
+        }
+    };
+}
+
+/// Makes a kit of the functions of a crate: `pub struct Kit`, which tests, workers and frames use.
+///
+/// The crate declares one module per file that the list names. With its feature `frames` the kit renders; without it, a
+/// kit answers checks and nothing else, and compiles in a fraction of the time.
+#[macro_export]
+macro_rules! student_kit {
+    () => {
+        /// The functions of this crate, as the kit calls them.
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct Kit;
+
+        #[doc(hidden)]
+        mod student_functions {
+            #[allow(unused_imports)]
+            use $crate::kit::types::*;
+            $crate::student_functions! { $crate::implement_student_functions }
+        }
+
+        #[cfg(feature = "frames")]
+        impl $crate::kit::Renders for Kit {
+            const FRAMES: Option<&'static dyn $crate::kit::Frames> =
+                Some(&$crate::tracer::Renderer::<Kit>::NEW);
+        }
+
+        #[cfg(not(feature = "frames"))]
+        impl $crate::kit::Renders for Kit {
+            const FRAMES: Option<&'static dyn $crate::kit::Frames> = None;
+        }
+    };
+}

@@ -1,0 +1,95 @@
+//! From the samples of a pixel to rays, and from their colours to that of the pixel, through the functions of stage 6.
+
+use super::plan::Plan;
+use crate::camera::Camera;
+use crate::frame::CameraSample;
+use crate::kit::{StudentFunctions, WeightedColor};
+use crate::random::Stratum;
+use crate::ray::Ray;
+use crate::scene::{Sampler, Scene};
+use crate::world::camera_for;
+use glam::{Vec2, Vec3, uvec2};
+use std::marker::PhantomData;
+
+/// Makes rays out of samples.
+pub struct CameraSampler<F> {
+    camera: Camera,
+    sampler: Sampler,
+    /// Width and height of the film in pixels.
+    film: Vec2,
+    /// Whether samples have places of their own in the pixel.
+    positions: bool,
+    /// Whether the samples of a pixel are weighted.
+    weights: bool,
+    functions: PhantomData<F>,
+}
+
+impl<F: StudentFunctions> CameraSampler<F> {
+    /// For the camera and the film of `scene`.
+    pub fn new(scene: &Scene, plan: &Plan) -> Self {
+        CameraSampler {
+            camera: camera_for(scene),
+            sampler: scene.quality.sampler,
+            film: uvec2(scene.film.width, scene.film.height).as_vec2(),
+            positions: plan.positions,
+            weights: plan.weights,
+            functions: PhantomData,
+        }
+    }
+
+    /// The ray of a sample.
+    #[inline(always)]
+    pub fn ray(&self, sample: &CameraSample) -> Ray {
+        let on_film = (uvec2(sample.column, sample.row).as_vec2() + self.place(sample)) / self.film;
+        let mut ray = self.camera.ray(on_film.x, on_film.y);
+        if let (Some(lens), Some(stratum)) = (&self.camera.lens, &sample.lens) {
+            ray = F::lens_ray(&self.camera, &ray, lens, F::on_disk(F::jittered(stratum)));
+        }
+        ray.time = self.time(sample);
+        ray
+    }
+
+    /// How much a sample counts in its pixel.
+    #[inline(always)]
+    pub fn weight(&self, sample: &CameraSample) -> f32 {
+        match self.sampler {
+            Sampler::Gaussian if self.weights => F::gaussian_weight(self.place(sample) - 0.5),
+            _ => 1.0,
+        }
+    }
+
+    /// Where in its pixel a sample lies.
+    #[inline(always)]
+    fn place(&self, sample: &CameraSample) -> Vec2 {
+        match &sample.pixel {
+            None => Vec2::splat(0.5),
+            Some(stratum) if self.positions => F::pixel_position(self.sampler, stratum),
+            Some(stratum) => stratum.u,
+        }
+    }
+
+    #[inline(always)]
+    fn time(&self, sample: &CameraSample) -> f32 {
+        let Some(shutter) = &self.camera.shutter else { return 0.0 };
+        let Some(stratum) = &sample.time else { return shutter.open };
+        let (slot, slots) = match (self.sampler, &sample.pixel) {
+            // The cells of all pixels together are one large grid, which the table covers.
+            (Sampler::Jittered | Sampler::Gaussian, Some(Stratum { cell, grid, .. })) => {
+                let cell = uvec2(sample.column, sample.row) * *grid + *cell;
+                (F::temporal_slot(cell.x, cell.y), 16)
+            }
+            _ => (1, 1),
+        };
+        F::time_in_shutter(shutter, slot, slots, stratum.u.x)
+    }
+
+    /// The colour that the samples of a pixel make.
+    #[inline(always)]
+    pub fn filter_pixel(&self, samples: &[WeightedColor]) -> Vec3 {
+        match samples {
+            [only] => only.color,
+            _ if self.weights => F::develop(samples),
+            _ => samples.iter().map(|sample| sample.color).sum::<Vec3>() / samples.len() as f32,
+        }
+    }
+}

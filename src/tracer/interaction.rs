@@ -1,0 +1,289 @@
+//! From a hit to the point that is shaded: its place with a bound on the rounding error, its normals, what it is made of,
+//! and where it lies in an image.
+
+use super::hit::{Detail, Hit, Target};
+use super::intersection::ShapeTests;
+use super::motion::{geometry_at, plane_at};
+use super::solids::intersect_solid;
+use crate::graph::Placement;
+use crate::kit::{StudentFunctions, Surface};
+use crate::ray::Ray;
+use crate::shape::{Plane, Sphere, Triangle};
+use crate::world::{Geometry, Instance, Primitive, Solid, SolidShape, World, around_ball};
+use glam::{DVec3, Vec2, Vec3, vec2};
+
+/// A point at which a ray meets a surface.
+pub struct SurfaceInteraction {
+    /// The point, as the functions of students see it.
+    pub surface: Surface,
+    /// Whether the ray comes from outside.
+    pub entering: bool,
+    /// Index of the material.
+    pub material: usize,
+}
+
+/// How surfaces are looked at.
+#[derive(Clone, Copy)]
+pub struct Looks {
+    /// By which functions rays are tested against shapes.
+    pub tests: ShapeTests,
+    /// Whether normals are interpolated over smooth meshes.
+    pub smooth: bool,
+    /// Whether normals are turned to the side from which the ray comes.
+    pub facing: bool,
+}
+
+/// A point of a shape, before it is known from which side it is seen.
+struct Point {
+    point: Vec3,
+    /// How far `point` may be from the shape, along each axis.
+    error: Vec3,
+    /// Unit normal, outwards.
+    normal: Vec3,
+    /// The interpolated normal of a smooth mesh.
+    smooth: Option<Vec3>,
+}
+
+impl SurfaceInteraction {
+    /// Of `ray` at `hit`.
+    #[inline(always)]
+    pub fn new<F: StudentFunctions>(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Self {
+        let (point, material) = match hit.target {
+            Target::Plane(index) => {
+                let plane = &world.planes[index as usize];
+                (on_plane(ray, hit.t, &plane_at::<F>(plane, ray.time).0), plane.material)
+            }
+            Target::Primitive(index) => {
+                let primitive = &world.primitives[index as usize];
+                let point = match geometry_at::<F>(world, primitive, ray.time) {
+                    Geometry::Sphere(sphere) => on_sphere::<F>(ray, hit.t, &sphere),
+                    Geometry::Triangle(triangle) => {
+                        on_triangle::<F>(world, looks, ray, primitive, &triangle, hit.detail)
+                    }
+                    Geometry::Solid(index) => {
+                        on_solid::<F>(looks.tests, ray, hit, &world.solids[index as usize])
+                    }
+                    // A search answers for an instance with what it has hit inside.
+                    Geometry::Instance(_) => unreachable!("an instance is not a surface"),
+                };
+                (point, primitive.material)
+            }
+            Target::Instance(outer, inner) => in_instance::<F>(world, looks, ray, outer, inner, hit.detail),
+        };
+        let Point { point, error, normal, smooth } = point;
+        let geometric_normal = if looks.facing { F::face_viewer(normal, ray.dir) } else { normal };
+        let shading_normal = match smooth {
+            Some(_) => F::shading_normal(geometric_normal, smooth, ray.dir),
+            None => geometric_normal,
+        };
+        let surface = Surface { point, error, geometric_normal, shading_normal };
+        SurfaceInteraction { surface, entering: normal.dot(ray.dir) < 0.0, material: material as usize }
+    }
+}
+
+#[cold]
+fn in_instance<F: StudentFunctions>(
+    world: &World,
+    looks: Looks,
+    ray: &Ray,
+    outer: u32,
+    inner: u32,
+    detail: Detail,
+) -> (Point, u32) {
+    let (instance, primitive, material) = inside(world, outer, inner);
+    let ray = F::ray_to_object(ray, &instance.placement.to_object);
+    let Geometry::Triangle(triangle) = &primitive.geometry else {
+        unreachable!("shared meshes are triangles")
+    };
+    let point = on_triangle::<F>(world, looks, &ray, primitive, triangle, detail);
+    (to_world::<F>(point, &instance.placement), material)
+}
+
+/// The instance that is primitive `outer`, primitive `inner` of its mesh, and what that is made of.
+fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32) {
+    let outer = &world.primitives[outer as usize];
+    let Geometry::Instance(index) = outer.geometry else { unreachable!("only instances have an inside") };
+    let instance = &world.instances[index as usize];
+    let primitive = &world.parts[instance.part as usize].primitives[inner as usize];
+    let inherits = primitive.material == Primitive::INHERITED;
+    (instance, primitive, if inherits { outer.material } else { primitive.material })
+}
+
+fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
+    // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
+    let normal = F::sphere_normal(sphere.center, ray.at(t));
+    let point = sphere.center + sphere.radius * normal;
+    let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
+    Point { point, error, normal, smooth: None }
+}
+
+#[inline(always)]
+fn on_triangle<F: StudentFunctions>(
+    world: &World,
+    looks: Looks,
+    ray: &Ray,
+    primitive: &Primitive,
+    triangle: &Triangle,
+    detail: Detail,
+) -> Point {
+    let weights = barycentric::<F>(looks.tests, ray, triangle, detail);
+    let Triangle { a, b, c } = *triangle;
+    // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far the ray came
+    // from.
+    let terms = [weights.x * a, weights.y * b, weights.z * c];
+    let point = terms[0] + terms[1] + terms[2];
+    let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+    let normal = (b - a).cross(c - a).normalize_or(Vec3::Z);
+    let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
+        let at = |index: usize| F::interpolate(weights, world.normals[index]);
+        match primitive.end.get() {
+            None => at(index),
+            Some(_) => at(index).lerp(at(index + 1), ray.time),
+        }
+    });
+    Point { point, error, normal, smooth }
+}
+
+/// Barycentric coordinates `(α, β, γ)` of the hit, none below 0. Where the search did not keep those that the test
+/// found, the triangle is tested once more.
+#[inline(always)]
+fn barycentric<F: StudentFunctions>(
+    tests: ShapeTests,
+    ray: &Ray,
+    triangle: &Triangle,
+    detail: Detail,
+) -> Vec3 {
+    let (beta, gamma) = match detail {
+        Detail::Triangle(beta, gamma) => (beta, gamma),
+        _ => test_again::<F>(tests, ray, triangle),
+    };
+    Vec3::new((1.0 - beta - gamma).max(0.0), beta, gamma)
+}
+
+#[cold]
+fn test_again<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, triangle: &Triangle) -> (f32, f32) {
+    let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+    let hit = tests.triangle::<F>(&unbounded, triangle);
+    hit.map_or((1.0 / 3.0, 1.0 / 3.0), |hit| (hit.beta, hit.gamma))
+}
+
+/// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.
+fn on_plane(ray: &Ray, t: f32, plane: &Plane) -> Point {
+    let rough = ray.at(t);
+    let normal = plane.normal.normalize();
+    let offset = rough - plane.point;
+    let point = rough - offset.dot(normal) * normal;
+    let error = rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element()));
+    Point { point, error, normal: plane.normal, smooth: None }
+}
+
+#[cold]
+fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid: &Solid) -> Point {
+    let placement = &solid.placement;
+    let own = F::ray_to_object(ray, &placement.to_object);
+    if let SolidShape::Ball(ball) = &solid.shape {
+        return to_world::<F>(on_sphere::<F>(&own, hit.t, ball), placement);
+    }
+    let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(-own.dir.normalize_or(Vec3::Z));
+    let point = own.at(hit.t);
+    // The rounding of t moves the point along the ray, and the sum and the product are rounded as well; twice that for
+    // tests that are not in double.
+    let error = 4.0 * HALF_STEP * (hit.t * own.dir).abs() + 2.0 * HALF_STEP * point.abs();
+    to_world::<F>(Point { point, error, normal, smooth: None }, placement)
+}
+
+/// The normal that the test of the solid found, in the space of the solid.
+fn normal_of_solid<F: StudentFunctions>(
+    tests: ShapeTests,
+    ray: &Ray,
+    hit: &Hit,
+    solid: &Solid,
+) -> Option<Vec3> {
+    match hit.detail {
+        Detail::Solid(normal) => Some(normal),
+        _ => intersect_solid::<F>(tests, ray, solid).map(|hit| hit.normal),
+    }
+}
+
+/// A point in the space of an object, in the world.
+fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
+    let (up, down) = (placement.to_world.as_daffine3(), placement.to_object.as_daffine3());
+    let point = up.transform_point3(own.point.as_dvec3()).as_vec3();
+    // How far from the point a ray would start that is carried back: what both transforms and the rounding of the
+    // point add up to, measured and not estimated.
+    let back = down.transform_point3(point.as_dvec3());
+    let residue = (back - own.point.as_dvec3()).abs();
+    // A ray that goes on from here is carried back and rounded, too.
+    let rounded = f64::from(HALF_STEP) * back.abs();
+    let in_object = own.error.as_dvec3() + residue + 2.0 * rounded;
+    let in_world = [up.matrix3.x_axis, up.matrix3.y_axis, up.matrix3.z_axis]
+        .into_iter()
+        .zip(in_object.to_array())
+        .map(|(axis, reach)| axis.abs() * reach)
+        .sum::<DVec3>();
+    Point {
+        point,
+        error: in_world.as_vec3() + HALF_STEP * point.abs(),
+        normal: F::normal_to_world(own.normal, &placement.to_object),
+        smooth: own.smooth.map(|normal| F::normal_to_world(normal, &placement.to_object)),
+    }
+}
+
+/// The texture coordinates of a hit at `point`; the middle of the image where the shape has none.
+pub fn texture_coordinates<F: StudentFunctions>(
+    world: &World,
+    tests: ShapeTests,
+    ray: &Ray,
+    hit: &Hit,
+    point: Vec3,
+) -> Vec2 {
+    let middle = vec2(0.5, 0.5);
+    match hit.target {
+        Target::Plane(index) => {
+            let (plane, axes) = plane_at::<F>(&world.planes[index as usize], ray.time);
+            let along = |axis: Vec3| (point - plane.point).dot(axis) / axis.length_squared();
+            vec2(along(axes[0]), along(axes[1]))
+        }
+        Target::Primitive(index) => {
+            let primitive = &world.primitives[index as usize];
+            if let Geometry::Solid(index) = primitive.geometry {
+                let solid = &world.solids[index as usize];
+                let own = solid.placement.to_object.transform_point3(point);
+                let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(Vec3::Y);
+                return solid.shape.texture_coordinates(own, normal);
+            }
+            let Some(image) = primitive.image.get() else { return middle };
+            match geometry_at::<F>(world, primitive, ray.time) {
+                Geometry::Sphere(sphere) => around_ball(world.ball_axes[image] * (point - sphere.center)),
+                Geometry::Triangle(triangle) => {
+                    uv_on_triangle(world, image, barycentric::<F>(tests, ray, &triangle, hit.detail))
+                }
+                Geometry::Solid(_) | Geometry::Instance(_) => middle,
+            }
+        }
+        Target::Instance(outer, inner) => {
+            let (instance, primitive, _) = inside(world, outer, inner);
+            match (primitive.image.get(), &primitive.geometry) {
+                (Some(image), Geometry::Triangle(triangle)) => {
+                    let ray = F::ray_to_object(ray, &instance.placement.to_object);
+                    uv_on_triangle(world, image, barycentric::<F>(tests, &ray, triangle, hit.detail))
+                }
+                _ => middle,
+            }
+        }
+    }
+}
+
+fn uv_on_triangle(world: &World, image: usize, weights: Vec3) -> Vec2 {
+    let [a, b, c] = world.uvs[image];
+    weights.x * a + weights.y * b + weights.z * c
+}
+
+/// Half the distance between 1 and the next number: what rounding takes at most.
+const HALF_STEP: f32 = f32::EPSILON / 2.0;
+
+/// `γ_n`, the largest relative error that `n` roundings can add up to (Higham).
+fn rounding(n: u32) -> f32 {
+    let nu = n as f32 * HALF_STEP;
+    nu / (1.0 - nu)
+}

@@ -1,0 +1,189 @@
+//! Frames out of student functions: whatever is written is used, and a picture says what it lacks.
+//!
+//! [`Renderer`] answers for the frames of a kit. `plan` decides what is computed and what stands in for functions that
+//! are not written; `frame` puts together `camera_sampler`, which makes rays, and `intersector`, which finds what they
+//! meet: through a `structure`, whose search asks a `probe`, which tests triangles and spheres by `intersection` and
+//! shapes in spaces of their own by `solids`. `path` follows a ray through the tree of rays that it makes, from
+//! `interaction` to interaction. `record` writes rays down, `outlines` draws structures.
+
+mod camera_sampler;
+mod frame;
+mod hit;
+mod interaction;
+mod intersection;
+mod intersector;
+mod motion;
+mod outlines;
+mod packets;
+mod path;
+mod plan;
+mod probe;
+mod random_choices;
+mod record;
+mod solids;
+mod structure;
+mod written;
+
+use crate::bvh::PrimitiveHit;
+use crate::count::{Counts, Event, Tally, Uncounted};
+use crate::film::Film;
+use crate::frame::{CameraSample, Unwatched, Watch};
+use crate::kit::{
+    Frames, Mishap, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor, mishap,
+    take_unwound,
+};
+use crate::ray::Ray;
+use crate::world::World;
+use frame::Frame;
+use glam::Vec3;
+use hit::{Hit, Target};
+use intersector::Intersector;
+use packets::PACKET;
+use path::{Path, Scratch};
+use plan::Plan;
+use record::{NoRecord, Rays};
+use std::marker::PhantomData;
+use std::time::Instant;
+use written::Written;
+
+/// Renders with the functions of `F`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Renderer<F>(PhantomData<F>);
+
+impl<F> Renderer<F> {
+    /// The renderer, which has no state.
+    pub const NEW: Renderer<F> = Renderer(PhantomData);
+}
+
+impl<F: StudentFunctions> Frames for Renderer<F> {
+    fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
+        let (rendering, notes) = with_what_is_written::<F, _>(|written| render(job, written, watch));
+        rendering.map(|mut rendering| {
+            rendering.notes.extend(notes);
+            rendering
+        })
+    }
+
+    fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
+        with_what_is_written::<F, _>(|written| trace(job, written, x, y)).0
+    }
+
+    fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
+        let outlines = |written: &Written<F>| {
+            let frame = Frame::new(job, written, &Unwatched);
+            outlines::outlines(&frame.intersector.scene.structure, depth as usize)
+        };
+        with_what_is_written::<F, _>(outlines).0
+    }
+
+    fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
+        with_what_is_written::<F, _>(|written| first_hits(job, written, rays)).0
+    }
+}
+
+/// Does `work` with what is written. Where it reaches a `todo!` all the same, it begins again without that function; gives
+/// a note for each of those.
+fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
+    let mut written = Written::all();
+    let mut notes = Vec::new();
+    loop {
+        take_unwound();
+        let mishap = match mishap::catch(|| work(&written)) {
+            Ok(result) => return (result, notes),
+            Err(mishap) => mishap,
+        };
+        match (&mishap, take_unwound()) {
+            (Mishap::NotWritten { task, place }, Some(function)) if written.leave_out(function) => {
+                notes.push(format!("{function} is left out, because it is not finished: {place}: {task}"));
+            }
+            _ => mishap::unwind(mishap),
+        }
+    }
+}
+
+fn render<F: StudentFunctions>(
+    job: &RenderJob,
+    written: &Written<F>,
+    watch: &dyn Watch,
+) -> Option<Rendering> {
+    let started = Instant::now();
+    let frame = Frame::new(job, written, watch);
+    let build_seconds = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    let (film, counts) =
+        if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
+    let scene = &frame.intersector.scene;
+    Some(Rendering {
+        film,
+        counts,
+        primitives: (scene.world.primitives.len() + scene.world.planes.len()) as u64,
+        structure: scene.structure.size(),
+        bytes_of_parts: frame.intersector.bytes_of_parts(),
+        build_seconds,
+        render_seconds: started.elapsed().as_secs_f64(),
+        notes: [frame.plan.notes.as_slice(), scene.world.notes.as_slice()].concat(),
+    })
+}
+
+fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch) -> Option<(Film, Counts)> {
+    let (settings, packets) = (frame.settings(), frame.intersector.takes_batches());
+    let radiance = |sample: &CameraSample, scratch: &mut Scratch<T>| {
+        scratch.note(Event::Primary);
+        let before = (frame.job.view == View::Work).then(|| scratch.counts());
+        let ray = frame.camera.ray(sample);
+        let hit = if packets {
+            let Scratch { packets, tally, .. } = scratch;
+            packets.first_hit(sample, &settings, &frame.camera, &frame.intersector, tally)
+        } else {
+            frame.closest_hit(&ray, scratch)
+        };
+        let path = Path::from_camera(ray, sample.points);
+        let mut color = match frame.plan.view {
+            View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
+            View::Shaded | View::Work => frame.radiance(path, hit, scratch, &mut NoRecord),
+        };
+        if let Some(before) = before {
+            color = work(&before, &scratch.counts());
+        }
+        WeightedColor { color, weight: frame.camera.weight(sample) }
+    };
+    crate::frame::render(&settings, watch, radiance, |samples| frame.camera.filter_pixel(samples))
+}
+
+/// What was done between two counts, as a colour.
+fn work(before: &Counts, after: &Counts) -> Vec3 {
+    let nodes = after.node_visits - before.node_visits;
+    let boxes = after.box_tests - before.box_tests;
+    let primitives = after.primitive_tests - before.primitive_tests;
+    Vec3::new(nodes as f32, boxes as f32, primitives as f32)
+}
+
+fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: u32) -> Vec<TracedRay> {
+    let frame = Frame::new(job, written, &Unwatched);
+    let sample = CameraSample::draw(&frame.settings(), x, y, 0);
+    let path = Path::from_camera(frame.camera.ray(&sample), sample.points);
+    let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
+    let mut scratch = Scratch::<Uncounted>::default();
+    let hit = frame.closest_hit(&path.ray, &mut scratch);
+    match frame.plan.view {
+        View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),
+        View::Shaded | View::Work => frame.radiance(path, hit, &mut scratch, &mut record),
+    };
+    record.rays
+}
+
+fn first_hits<F: StudentFunctions>(
+    job: &RenderJob,
+    written: &Written<F>,
+    rays: &[Ray],
+) -> Vec<Option<PrimitiveHit>> {
+    let plan = Plan::new(job, written);
+    let intersector = Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality);
+    let n_primitives = intersector.scene.world.primitives.len() as u32;
+    let primitive_of = |hit: Hit| match hit.target {
+        Target::Plane(index) => PrimitiveHit { t: hit.t, primitive: n_primitives + index },
+        Target::Primitive(primitive) | Target::Instance(primitive, _) => PrimitiveHit { t: hit.t, primitive },
+    };
+    let hits = rays.chunks(PACKET).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
+    hits.map(|hit| hit.map(primitive_of)).collect()
+}

@@ -1,0 +1,49 @@
+//! Where moving shapes are at the time of a ray.
+
+use crate::kit::StudentFunctions;
+use crate::shape::{Plane, Sphere, Triangle};
+use crate::world::{EndlessPlane, Geometry, Primitive, World};
+use glam::Vec3;
+
+/// The shape of `primitive` at `time`.
+#[inline]
+pub fn geometry_at<F: StudentFunctions>(world: &World, primitive: &Primitive, time: f32) -> Geometry {
+    match primitive.end.get() {
+        None => primitive.geometry,
+        Some(end) => moved::<F>(&primitive.geometry, &world.ends[end], time),
+    }
+}
+
+#[cold]
+fn moved<F: StudentFunctions>(start: &Geometry, end: &Geometry, time: f32) -> Geometry {
+    match (start, end) {
+        (Geometry::Sphere(start), Geometry::Sphere(end)) => Geometry::Sphere(Sphere {
+            center: F::between(start.center, end.center, time),
+            radius: F::between(Vec3::splat(start.radius), Vec3::splat(end.radius), time).x,
+        }),
+        (Geometry::Triangle(start), Geometry::Triangle(end)) => {
+            Geometry::Triangle(triangle_at::<F>(start, end, time))
+        }
+        _ => *start, // A primitive keeps its kind, and solids stand still.
+    }
+}
+
+fn triangle_at<F: StudentFunctions>(start: &Triangle, end: &Triangle, time: f32) -> Triangle {
+    Triangle {
+        a: F::between(start.a, end.a, time),
+        b: F::between(start.b, end.b, time),
+        c: F::between(start.c, end.c, time),
+    }
+}
+
+/// Where a plane is at `time`, and the axes of its texture.
+pub fn plane_at<F: StudentFunctions>(plane: &EndlessPlane, time: f32) -> (Plane, [Vec3; 2]) {
+    match &plane.motion {
+        None => (plane.plane, plane.axes),
+        Some([start, end]) => {
+            let Triangle { a, b, c } = triangle_at::<F>(start, end, time);
+            let axes = [b - a, c - a];
+            (Plane { point: a, normal: axes[0].cross(axes[1]).normalize() }, axes)
+        }
+    }
+}

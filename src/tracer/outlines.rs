@@ -1,0 +1,87 @@
+//! The boxes and cells of a structure as lines that can be drawn.
+
+use super::structure::{Structure, Volumes};
+use crate::aabb::Aabb;
+use crate::bvh::{Bvh, Contents};
+use crate::graph::Graph;
+use crate::partition::corners;
+use crate::shape::Sphere;
+use glam::Vec3;
+use std::f32::consts::TAU;
+
+/// The edges of the boxes or cells at this depth, the root being at depth 0, and of the leaves above it; of a BSP tree the
+/// polygons in which its planes above this depth cut each other.
+pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
+    let edges = |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(edges_of).collect();
+    match structure {
+        Structure::List | Structure::Painter => Vec::new(),
+        Structure::Hierarchy(bvh) => edges(boxes_at(bvh, depth)),
+        Structure::Graph { graph, volumes: Volumes::Boxes(boxes) } => {
+            edges(nodes_at(graph, depth).into_iter().map(|node| boxes[node as usize]).collect())
+        }
+        Structure::Graph { graph, volumes: Volumes::Balls(balls) } => {
+            let balls = nodes_at(graph, depth).into_iter().filter_map(|node| balls[node as usize]);
+            balls.flat_map(|ball| circles(&ball)).collect()
+        }
+        Structure::Grid(grid) => edges(grid.cells(depth)),
+        Structure::Octree { tree, .. } => edges(tree.cells(depth)),
+        Structure::KdTree(tree) => edges(tree.cells(depth)),
+        Structure::Bsp { tree, around } => {
+            let polygons = tree.polygons(around, depth).into_iter();
+            let around = |polygon: Vec<glam::DVec3>| {
+                let corners: Vec<Vec3> = polygon.iter().map(|corner| corner.as_vec3()).collect();
+                (0..corners.len()).map(move |i| [corners[i], corners[(i + 1) % corners.len()]])
+            };
+            polygons.flat_map(around).collect()
+        }
+    }
+}
+
+fn edges_of(bounds: &Aabb) -> Vec<[Vec3; 2]> {
+    let corners = corners(bounds);
+    let from =
+        |corner: usize| (0..3).filter(move |axis| corner >> axis & 1 == 0).map(move |axis| (corner, axis));
+    (0..8).flat_map(from).map(|(corner, axis)| [corners[corner], corners[corner | 1 << axis]]).collect()
+}
+
+/// Three circles around the axes.
+fn circles(ball: &Sphere) -> Vec<[Vec3; 2]> {
+    const CORNERS: usize = 48;
+    let circle = |axis: usize| {
+        let at = move |i: usize| {
+            let (sin, cos) = (TAU * i as f32 / CORNERS as f32).sin_cos();
+            ball.center + ball.radius * (cos * Vec3::AXES[(axis + 1) % 3] + sin * Vec3::AXES[(axis + 2) % 3])
+        };
+        (0..CORNERS).map(move |i| [at(i), at(i + 1)])
+    };
+    (0..3).flat_map(circle).collect()
+}
+
+fn boxes_at(bvh: &Bvh, depth: usize) -> Vec<Aabb> {
+    let mut boxes = Vec::new();
+    let mut waiting: Vec<(u32, usize)> = bvh.root().map(|root| (root, 0)).into_iter().collect();
+    while let Some((node, level)) = waiting.pop() {
+        let node = &bvh.nodes[node as usize];
+        match node.contents {
+            Contents::Inner { left, right } if level < depth => {
+                waiting.extend([(left, level + 1), (right, level + 1)]);
+            }
+            _ => boxes.push(node.bounds),
+        }
+    }
+    boxes
+}
+
+fn nodes_at(graph: &Graph, depth: usize) -> Vec<u32> {
+    let mut nodes = Vec::new();
+    let mut waiting: Vec<(u32, usize)> = if graph.nodes.is_empty() { Vec::new() } else { vec![(0, 0)] };
+    while let Some((node, level)) = waiting.pop() {
+        let children = &graph.nodes[node as usize].children;
+        if level == depth || children.is_empty() {
+            nodes.push(node);
+        } else {
+            waiting.extend(children.iter().map(|&child| (child, level + 1)));
+        }
+    }
+    nodes
+}

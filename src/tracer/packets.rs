@@ -1,0 +1,50 @@
+//! Rays from the camera in packets, one pixel beside the other.
+
+use super::camera_sampler::CameraSampler;
+use super::hit::Hit;
+use super::intersector::Intersector;
+use crate::count::Tally;
+use crate::frame::{CameraSample, FrameSettings, TILE};
+use crate::kit::StudentFunctions;
+use crate::ray::Ray;
+use std::collections::HashMap;
+
+/// Columns and rows of pixels that share a packet. They divide a tile evenly, so that no two threads trace the same one.
+const BLOCK: (u32, u32) = (4, 2);
+const _: () = assert!(TILE.is_multiple_of(BLOCK.0) && TILE.is_multiple_of(BLOCK.1));
+
+/// Rays of a packet.
+pub const PACKET: usize = (BLOCK.0 * BLOCK.1) as usize;
+
+/// What the packets of a tile have met so far.
+#[derive(Default)]
+pub struct Packets {
+    /// By column, row and number of the sample.
+    hits: HashMap<(u32, u32, u32), Option<Hit>>,
+}
+
+impl Packets {
+    /// What the ray of a sample meets. The first sample of a block traces the rays of all its pixels.
+    pub fn first_hit<F: StudentFunctions, T: Tally>(
+        &mut self,
+        sample: &CameraSample,
+        settings: &FrameSettings,
+        camera: &CameraSampler<F>,
+        intersector: &Intersector<F>,
+        tally: &mut T,
+    ) -> Option<Hit> {
+        let place = (sample.column, sample.row, sample.sample);
+        if let Some(hit) = self.hits.remove(&place) {
+            return hit;
+        }
+        let (left, top) = (sample.column - sample.column % BLOCK.0, sample.row - sample.row % BLOCK.1);
+        let (right, bottom) = (settings.width.min(left + BLOCK.0), settings.height.min(top + BLOCK.1));
+        let pixels = (top..bottom).flat_map(|row| (left..right).map(move |column| (column, row)));
+        let samples: Vec<CameraSample> =
+            pixels.map(|(column, row)| CameraSample::draw(settings, column, row, sample.sample)).collect();
+        let rays: Vec<Ray> = samples.iter().map(|sample| camera.ray(sample)).collect();
+        let hits = intersector.closest_hits(&rays, tally);
+        self.hits.extend(samples.iter().zip(hits).map(|(s, hit)| ((s.column, s.row, s.sample), hit)));
+        self.hits.remove(&place).flatten()
+    }
+}

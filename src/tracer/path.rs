@@ -1,0 +1,249 @@
+//! The light along one ray, through the tree of rays that it makes: Whitted's algorithm with a list of rays that wait.
+
+use super::frame::Frame;
+use super::hit::Hit;
+use super::interaction::{SurfaceInteraction, texture_coordinates};
+use super::packets::Packets;
+use super::random_choices::{area_of, sample_area_light, sample_rough_surface};
+use super::record::Record;
+use crate::count::{Counts, Event, Tally};
+use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions};
+use crate::material::Material;
+use crate::random::Points;
+use crate::ray::Ray;
+use glam::Vec3;
+use std::borrow::Cow;
+
+/// A ray that is followed, and what its light counts in the pixel.
+#[derive(Clone, Copy)]
+pub struct Path {
+    /// The ray.
+    pub ray: Ray,
+    /// Where its random numbers are looked up.
+    pub points: Points,
+    /// What the light along it counts in the pixel.
+    pub weight: Vec3,
+    /// Mirrorings and refractions behind it.
+    pub depth: u32,
+    /// Why it is followed.
+    pub kind: RayKind,
+    /// The number of the ray that it goes on from, in the record.
+    pub parent: Option<usize>,
+}
+
+impl Path {
+    /// A ray from the camera.
+    pub fn from_camera(ray: Ray, points: Points) -> Path {
+        Path { ray, points, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None }
+    }
+}
+
+/// State of one thread: its counts, and lists that are filled anew for every hit.
+#[derive(Default)]
+pub struct Scratch<T> {
+    /// What was counted.
+    pub tally: T,
+    lights: Vec<LightSample>,
+    /// For each of `lights`, whether it casts shadows.
+    shadows: Vec<bool>,
+    waiting: Vec<Path>,
+    /// The primitive that the ray before met.
+    last: Option<u32>,
+    /// Rays from the camera that were traced ahead.
+    pub packets: Packets,
+}
+
+impl<T: Tally> Tally for Scratch<T> {
+    fn note(&mut self, event: Event) {
+        self.tally.note(event);
+    }
+    fn counts(&self) -> Counts {
+        self.tally.counts()
+    }
+}
+
+impl<F: StudentFunctions> Frame<'_, F> {
+    /// The light that comes back along `path` from the camera, which meets `hit` first.
+    #[inline(always)]
+    pub fn radiance<T: Tally>(
+        &self,
+        mut path: Path,
+        mut hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let mut color = Vec3::ZERO;
+        loop {
+            // Add the light from where the path ends, and find the rays that go on from there.
+            if let Some(hit) = hit {
+                color += path.weight * self.light_from(&path, &hit, scratch, record);
+            } else {
+                record.miss(&path);
+                color += path.weight * self.job.scene.background;
+            }
+            // Follow the ray that was added last.
+            let Some(next) = scratch.waiting.pop() else { return color };
+            path = next;
+            hit = self.closest_hit(&path.ray, scratch);
+        }
+    }
+
+    /// What the ray meets first.
+    #[inline(always)]
+    pub fn closest_hit<T: Tally>(&self, ray: &Ray, scratch: &mut Scratch<T>) -> Option<Hit> {
+        self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.last)
+    }
+
+    /// The light that the surface at `hit` sends back along the path; the secondary rays join those that wait.
+    #[inline(always)]
+    fn light_from<T: Tally>(
+        &self,
+        path: &Path,
+        hit: &Hit,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        scratch.note(Event::Hit);
+        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
+        let number = record.hit(path, hit.t, at.material);
+        let material = self.material(&path.ray, hit, &at, &mut scratch.tally);
+        self.sample_lights(path, &at, scratch);
+        let color = self.shade(path, &at, &material, scratch, |ray, blocked| {
+            record.shadow(path, number, ray, blocked);
+        });
+        self.scatter(path, number, &at, &material, scratch);
+        color
+    }
+
+    /// What the surface is made of, with its image.
+    #[inline(always)]
+    fn material<T: Tally>(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        at: &SurfaceInteraction,
+        tally: &mut T,
+    ) -> Cow<'_, Material> {
+        let world = &self.intersector.scene.world;
+        let material = &world.materials[at.material];
+        let image = match material.texture {
+            Some(texture) if self.plan.effects.materials[at.material].texture => &world.textures[texture],
+            _ => return Cow::Borrowed(material),
+        };
+        tally.note(Event::TextureRead);
+        let uv = texture_coordinates::<F>(world, self.looks.tests, ray, hit, at.surface.point);
+        let color = F::texture_color(image, uv);
+        let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
+        Cow::Owned(Material { ambient, diffuse, ..material.clone() })
+    }
+
+    /// Puts the light that can arrive at a surface into `scratch.lights`.
+    #[inline(always)]
+    fn sample_lights<T: Tally>(&self, path: &Path, at: &SurfaceInteraction, scratch: &mut Scratch<T>) {
+        scratch.lights.clear();
+        scratch.shadows.clear();
+        let effects = &self.plan.effects;
+        for &index in &effects.materials[at.material].lights {
+            let (light, takes) = (&self.intersector.scene.world.lights[index], effects.lights[index]);
+            match area_of(light) {
+                Some(shape) if takes.area => {
+                    for part in 0..takes.samples {
+                        scratch.note(Event::RandomNumber);
+                        scratch.note(Event::RandomNumber);
+                        let parts = (part, takes.samples);
+                        let light = (index, light, shape);
+                        scratch.lights.push(sample_area_light::<F>(light, &at.surface, &path.points, parts));
+                    }
+                }
+                _ if takes.samples > 0 => scratch.lights.push(light.from_its_middle(at.surface.point)),
+                _ => {}
+            }
+            scratch.shadows.resize(scratch.lights.len(), takes.shadows);
+        }
+    }
+
+    /// Direct light by the student's `shade`, which asks for a shadow ray per light; `record` gets those that are traced.
+    #[inline(always)]
+    fn shade<T: Tally>(
+        &self,
+        path: &Path,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scratch: &mut Scratch<T>,
+        mut record: impl FnMut(&Ray, bool),
+    ) -> Vec3 {
+        let Scratch { tally, lights, shadows, .. } = scratch;
+        let to_viewer = -path.ray.dir.normalize();
+        let ambient = self.job.scene.ambient;
+        F::shade(&at.surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
+            if !shadows[light] {
+                return true;
+            }
+            tally.note(Event::Shadow);
+            let ray = Ray { time: path.ray.time, ..*shadow_ray };
+            let blocked = self.intersector.any_hit(&ray, tally);
+            record(&ray, blocked);
+            !blocked
+        })
+    }
+
+    /// Adds the secondary rays of a surface to those that wait; `number` is that of the path in the record.
+    #[inline(always)]
+    fn scatter<T: Tally>(
+        &self,
+        path: &Path,
+        number: usize,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scratch: &mut Scratch<T>,
+    ) {
+        let takes = &self.plan.effects.materials[at.material];
+        if !(takes.mirror || takes.transmission) {
+            return;
+        }
+        let dir = path.ray.dir.normalize();
+        let normal = at.surface.shading_normal;
+        let (weight, depth) = (path.weight, path.depth);
+        let children = F::children(dir, normal, at.entering, material, weight, depth, &self.limits);
+        let parts = if takes.gloss { self.quality().gloss_samples } else { 1 };
+        for child in children {
+            let (event, kind) = match child.bounce {
+                Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
+                Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
+            };
+            for part in 0..parts {
+                scratch.note(event);
+                let child = if takes.gloss {
+                    scratch.note(Event::RandomNumber);
+                    scratch.note(Event::RandomNumber);
+                    let (surface, points) = (&at.surface, &path.points);
+                    sample_rough_surface::<F>(&child, surface, material.roughness, points, (part, parts))
+                } else {
+                    child
+                };
+                let ray = Ray { time: path.ray.time, ..F::leave(&at.surface, &child) };
+                let points = path.points.beyond(child.bounce, part, parts);
+                let (weight, depth) = (child.weight, path.depth + 1);
+                scratch.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(number) });
+            }
+        }
+    }
+
+    /// The normal of the surface at `hit` as a colour, or the background.
+    pub fn normal_as_color<T: Tally>(
+        &self,
+        path: &Path,
+        hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let Some(hit) = hit else {
+            record.miss(path);
+            return self.job.scene.background;
+        };
+        scratch.note(Event::Hit);
+        let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, &hit);
+        record.hit(path, hit.t, at.material);
+        0.5 * at.surface.shading_normal + 0.5
+    }
+}

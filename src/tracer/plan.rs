@@ -1,0 +1,319 @@
+//! What a frame will compute, and what it leaves out while exercises are not written yet.
+
+use super::intersection::ShapeTests;
+use super::written::Written;
+use crate::effects::Effects;
+use crate::kit::{Function, RenderJob, StudentFunctions, View};
+use crate::material::{Emitter, Light, Material};
+use crate::scene::{Accelerator, Precision, Quality, Sampler, Scene, TriangleMethod};
+use crate::shape::Shape;
+use crate::world::WorldFunctions;
+use glam::Vec3;
+
+/// What a frame will compute.
+pub struct Plan {
+    /// What the scene calls for, as far as it is written.
+    pub effects: Effects,
+    /// The structure that finds what rays meet; `None` if no search is written.
+    pub accelerator: Option<Accelerator>,
+    /// By which functions rays are tested against shapes.
+    pub tests: ShapeTests,
+    /// What is shown.
+    pub view: View,
+    /// What the world is made with.
+    pub world: WorldFunctions,
+    /// Whether normals are interpolated over smooth meshes.
+    pub smooth: bool,
+    /// Whether normals are turned to the side from which the ray comes.
+    pub facing: bool,
+    /// Whether samples have places of their own in the pixel.
+    pub positions: bool,
+    /// Whether the samples of a pixel are weighted.
+    pub weights: bool,
+    /// What the picture will lack, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Plan {
+    /// For `job`, with the functions that are `written`.
+    pub fn new<F: StudentFunctions>(job: &RenderJob, written: &Written<F>) -> Plan {
+        let scene = &job.scene;
+        let mut notes = Vec::new();
+        // Without stage 7 the picture is the same and costs more.
+        let effects =
+            if written.has(Function::effects) { F::effects(scene) } else { Effects::everything(scene) };
+        let mut plan = Plan {
+            accelerator: choose_accelerator(&scene.quality, written, &mut notes),
+            tests: choose_tests(&scene.quality, written, &mut notes),
+            view: choose_view(job.view, written, &mut notes),
+            world: WorldFunctions::of::<F>(&|function| written.has(function)),
+            smooth: written.has_all(&[Function::shading_normal, Function::interpolate]),
+            facing: written.has(Function::face_viewer),
+            positions: written.has(Function::pixel_position),
+            weights: written.has_all(&[Function::develop, Function::gaussian_weight]),
+            effects,
+            notes,
+        };
+        plan.leave_out_shapes(scene, written);
+        plan.leave_out_normals(scene, written);
+        plan.leave_out_mirrors(scene, written);
+        plan.leave_out_distribution(scene, written);
+        plan.leave_out_images(scene, written);
+        plan.leave_out_spaces(scene);
+        plan
+    }
+
+    fn leave_out_shapes<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        let sphere = match self.tests {
+            ShapeTests::InDouble => Function::sphere_in_double,
+            _ => Function::sphere_algebraic,
+        };
+        let is_sphere = |shape: &Shape| matches!(shape, Shape::Sphere(_));
+        let is_plane = |shape: &Shape| matches!(shape, Shape::Plane(_));
+        for function in [sphere, Function::sphere_normal] {
+            if self.world.spheres && !written.has(function) {
+                self.world.spheres = false;
+                self.note_if(
+                    shows(scene, is_sphere),
+                    &format!("spheres are left out: {function} is not written yet"),
+                );
+            }
+        }
+        if !written.has(Function::plane) {
+            self.world.planes = false;
+            self.note_if(
+                shows(scene, is_plane),
+                &format!("planes are left out: {} is not written yet", Function::plane),
+            );
+        }
+        let functions: &[Function] = match self.tests {
+            ShapeTests::Watertight => &[Function::triangle_choice],
+            ShapeTests::Cramer => &[Function::triangle_cramer],
+            ShapeTests::Gram => &[Function::gram_scalars, Function::triangle_gram],
+            ShapeTests::InDouble => &[Function::triangle_in_double],
+        };
+        if let Some(missing) = functions.iter().find(|&&function| !written.has(function)) {
+            self.world.triangles = false;
+            let in_triangles = |shape: &Shape| {
+                matches!(shape, Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. })
+                    || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
+            };
+            let shown = shows(scene, in_triangles);
+            self.note_if(shown, &format!("triangles and meshes are left out: {missing} is not written yet"));
+        }
+        self.note_if(
+            !self.facing,
+            "surfaces that are seen from inside are dark: `face_viewer` of stage 1 is not written yet",
+        );
+    }
+
+    fn leave_out_normals<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        let mut smooth = scene.meshes.iter().filter(|mesh| mesh.smooth);
+        let averaged = smooth.clone().any(|mesh| mesh.mesh.normals.is_empty());
+        self.note_if(
+            self.smooth && self.world.vertex_normals.is_none() && averaged,
+            "smooth meshes whose files have no normals are flat: `vertex_normals` of stage 2 is not written yet",
+        );
+        let missing = [Function::shading_normal, Function::interpolate];
+        if let Some(missing) = missing.into_iter().find(|&function| !written.has(function)) {
+            self.note_if(
+                smooth.next().is_some(),
+                &format!("smooth meshes are flat: {missing} is not written yet"),
+            );
+        }
+    }
+
+    fn leave_out_mirrors<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        if written.has_all(&[Function::children, Function::leave]) {
+            return;
+        }
+        let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;
+        self.note_if(
+            scene.materials.iter().any(wanted),
+            "mirrors and glass send no ray on: stage 5 is not written yet",
+        );
+        for material in &mut self.effects.materials {
+            (material.mirror, material.transmission, material.gloss) = (false, false, false);
+        }
+    }
+
+    fn leave_out_distribution<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        let quality = &scene.quality;
+        let spreads = quality.sampler.spreads(quality.samples_per_pixel);
+        self.note_if(
+            spreads && !self.positions && quality.sampler != Sampler::LowDiscrepancy,
+            "the samples of a pixel lie anywhere in it: `pixel_position` of stage 6 is not written yet",
+        );
+        self.note_if(
+            quality.sampler == Sampler::Gaussian && !self.weights,
+            "all samples of a pixel count alike: `develop` and `gaussian_weight` of stage 6 are not written yet",
+        );
+        let jittered = written.has(Function::jittered);
+        if !(jittered && written.has_all(&[Function::on_disk, Function::lens_ray])) {
+            let lens = scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0);
+            self.note_if(lens, "the lens is a pinhole: stage 6 is not written yet");
+            self.effects.lens = false;
+        }
+        let area_lights = [Function::on_rectangle, Function::on_lamp_disk, Function::toward_ball];
+        if !(jittered && written.has_all(&area_lights)) {
+            let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
+            self.note_if(
+                scene.lights.iter().any(area) && quality.light_samples > 0,
+                "area lights shine from their middle: stage 6 is not written yet",
+            );
+            for light in &mut self.effects.lights {
+                (light.samples, light.area) = (light.samples.min(1), false);
+            }
+        }
+        if !(jittered && written.has(Function::gloss)) {
+            let gloss = self.effects.materials.iter().any(|m| m.gloss && (m.mirror || m.transmission));
+            self.note_if(gloss, "rough mirrors and glass are sharp: stage 6 is not written yet");
+            for material in &mut self.effects.materials {
+                material.gloss = false;
+            }
+        }
+        let motion = [Function::temporal_slot, Function::time_in_shutter, Function::between, Function::sweep];
+        if !written.has_all(&motion) {
+            self.note_if(
+                scene.shown().iter().any(|shown| shown.moves),
+                "what moves stands still: stage 6 is not written yet",
+            );
+            self.effects.motion = false;
+        }
+    }
+
+    fn leave_out_images<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        if written.has(Function::texture_color) {
+            return;
+        }
+        self.note_if(
+            scene.materials.iter().any(|material| material.texture.is_some()),
+            "images are left out: `texture_color` of stage 7 is not written yet",
+        );
+        for material in &mut self.effects.materials {
+            material.texture = false;
+        }
+    }
+
+    fn leave_out_spaces(&mut self, scene: &Scene) {
+        let round = |shape: &Shape| matches!(shape, Shape::Cylinder(_) | Shape::Cone(_) | Shape::Disk(_));
+        self.note_if(
+            self.world.placement.is_none() && self.world.triangles && shows(scene, round),
+            "cylinders, cones and disks are made of triangles: stage 8 is not written yet",
+        );
+        self.note_if(
+            self.world.subdivide.is_none() && scene.meshes.iter().any(|mesh| mesh.subdivisions > 0),
+            "meshes are as coarse as their files: `loop_subdivide` of stage 8 is not written yet",
+        );
+        self.note_if(
+            self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
+            "curved surfaces are left out: `bezier_point` of stage 8 is not written yet",
+        );
+    }
+
+    fn note_if(&mut self, missing: bool, what: &str) {
+        if missing {
+            self.notes.push(what.into());
+        }
+    }
+}
+
+/// Whether any node that is shown has a shape of this kind.
+fn shows(scene: &Scene, wanted: impl Fn(&Shape) -> bool) -> bool {
+    scene.shown().iter().any(|shown| scene.nodes[shown.node].shape.as_ref().is_some_and(&wanted))
+}
+
+fn choose_view<F: StudentFunctions>(wanted: View, written: &Written<F>, notes: &mut Vec<String>) -> View {
+    if wanted != View::Normals && !written.has(Function::shade) {
+        notes.push("normals are shown as colours: stage 4 is not written yet".into());
+        return View::Normals;
+    }
+    wanted
+}
+
+/// The tests that the scene asks for, as far as they are written.
+fn choose_tests<F: StudentFunctions>(
+    quality: &Quality,
+    written: &Written<F>,
+    notes: &mut Vec<String>,
+) -> ShapeTests {
+    let single = match quality.triangle_method {
+        TriangleMethod::Watertight => ShapeTests::Watertight,
+        TriangleMethod::Cramer => ShapeTests::Cramer,
+        TriangleMethod::Gram => ShapeTests::Gram,
+    };
+    if quality.precision == Precision::Single {
+        return single;
+    }
+    let triangles = written.has(Function::triangle_in_double);
+    let missing = match (triangles, written.has(Function::sphere_in_double)) {
+        (true, true) => return ShapeTests::InDouble,
+        (false, true) => "`triangle_in_double` of stage 10 is",
+        (true, false) => "`sphere_in_double` of stage 10 is",
+        (false, false) => "`triangle_in_double` and `sphere_in_double` of stage 10 are",
+    };
+    notes.push(format!("rays are tested in single precision: {missing} not written yet"));
+    single
+}
+
+/// The structure that the scene asks for, as far as it is written.
+fn choose_accelerator<F: StudentFunctions>(
+    quality: &Quality,
+    written: &Written<F>,
+    notes: &mut Vec<String>,
+) -> Option<Accelerator> {
+    let wanted = quality.accelerator;
+    if wanted != Accelerator::BruteForce {
+        if written.has_all(HIERARCHY) {
+            let (stage, functions) = own_functions(wanted);
+            if written.has_all(functions) {
+                return Some(wanted);
+            }
+            let name = wanted.name();
+            notes.push(format!("a hierarchy stands in for `{name}`: stage {stage} is not written yet"));
+            return Some(Accelerator::Bvh);
+        }
+        notes.push("every ray tests every primitive: stage 3 is not written yet".into());
+    }
+    if written.has(Function::brute_force) {
+        return Some(Accelerator::BruteForce);
+    }
+    notes.push(
+        "later shapes are painted over earlier ones, near or far: `brute_force` of stage 2 is not written yet".into(),
+    );
+    None
+}
+
+/// What a hierarchy takes, and every structure: the boxes around primitives.
+const HIERARCHY: &[Function] = &[
+    Function::triangle_bounds,
+    Function::sphere_bounds,
+    Function::union,
+    Function::slab,
+    Function::build,
+    Function::closest_hit,
+    Function::any_hit,
+];
+
+/// The functions that a structure takes beside those of a hierarchy, and their stage.
+fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
+    match accelerator {
+        Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
+        Accelerator::BoundingBoxes => (8, &[Function::closest_hit_in_graph]),
+        Accelerator::BoundingSpheres => {
+            (8, &[Function::closest_hit_in_graph, Function::bounding_ball, Function::enter_ball])
+        }
+        Accelerator::CachedBvh => (9, &[Function::cached_search]),
+        Accelerator::PacketBvh => (9, &[Function::packet_search]),
+        Accelerator::Grid => (
+            9,
+            &[Function::cell_span, Function::grid_resolution, Function::grid_build, Function::grid_search],
+        ),
+        Accelerator::Octree => (9, &[Function::cell_span, Function::octree_build, Function::octree_search]),
+        Accelerator::OctreeByCells => {
+            (9, &[Function::cell_span, Function::octree_build, Function::octree_by_cells])
+        }
+        Accelerator::KdTree => (9, &[Function::cell_span, Function::kd_build, Function::kd_search]),
+        Accelerator::Bsp => (9, &[Function::cell_span, Function::bsp_build, Function::bsp_search]),
+    }
+}

@@ -1,0 +1,48 @@
+//! What is drawn at random on the way of a ray, through the functions of stage 6: a point of an area light, a direction
+//! off or through a rough surface.
+
+use crate::kit::{Bounce, Child, LightSample, StudentFunctions, Surface};
+use crate::material::{AreaShape, Emitter, Light};
+use crate::random::{Points, Purpose};
+
+/// The light from part `part` of `parts` of the area light number `index`: its part of the whole.
+pub fn sample_area_light<F: StudentFunctions>(
+    (index, light, shape): (usize, &Light, &AreaShape),
+    surface: &Surface,
+    points: &Points,
+    (part, parts): (u32, u32),
+) -> LightSample {
+    let u = F::jittered(&points.stratum(Purpose::Light(index as u32), part, parts));
+    let at = surface.point;
+    let sample = match shape {
+        AreaShape::Rectangle { corner, edges } => light.from_place(F::on_rectangle(*corner, *edges, u), at),
+        AreaShape::Disk(disk) => light.from_place(F::on_lamp_disk(disk, u), at),
+        AreaShape::Sphere(ball) => light.from_ball(ball, F::toward_ball(ball, at, u), at),
+    };
+    LightSample { radiance: sample.radiance / parts as f32, ..sample }
+}
+
+/// The outline of an area light.
+pub fn area_of(light: &Light) -> Option<&AreaShape> {
+    match &light.emitter {
+        Emitter::Area { shape, .. } => Some(shape),
+        Emitter::Point { .. } | Emitter::Directional { .. } => None,
+    }
+}
+
+/// Part `part` of `parts` of the rays that a rough surface makes of `child`: its part of the weight.
+pub fn sample_rough_surface<F: StudentFunctions>(
+    child: &Child,
+    surface: &Surface,
+    roughness: f32,
+    points: &Points,
+    (part, parts): (u32, u32),
+) -> Child {
+    let u = F::jittered(&points.stratum(Purpose::Gloss(child.bounce), part, parts));
+    let side = match child.bounce {
+        Bounce::Reflection => surface.geometric_normal,
+        Bounce::Transmission => -surface.geometric_normal,
+    };
+    let direction = F::gloss(child.direction, side, roughness, u);
+    Child { direction, weight: child.weight / parts as f32, ..*child }
+}

@@ -1,0 +1,285 @@
+//! The structure over a set of primitives: built by the functions of stages 3, 8 and 9, and searched by them.
+
+use crate::aabb::Aabb;
+use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
+use crate::count::Event;
+use crate::graph::{Graph, Savings};
+use crate::kit::{StructureSize, StudentFunctions};
+use crate::partition::{Bsp, Cells, Grid, KdTree, MOST_CELLS_ALONG, Octree, corners};
+use crate::ray::Ray;
+use crate::scene::{Accelerator, Quality};
+use crate::shape::Sphere;
+use glam::{UVec3, Vec3};
+use std::marker::PhantomData;
+
+/// What a search goes through.
+#[derive(Debug)]
+pub enum Structure {
+    /// Nothing: every primitive is tested.
+    List,
+    /// Nothing, and no search is written: later primitives are painted over earlier ones, near or far.
+    Painter,
+    /// A bounding volume hierarchy.
+    Hierarchy(Bvh),
+    /// The scene graph, with a volume around each node.
+    Graph {
+        /// Its nodes.
+        graph: Graph,
+        /// One per node.
+        volumes: Volumes,
+    },
+    /// A uniform grid.
+    Grid(Grid),
+    /// An octree.
+    Octree {
+        /// Its nodes.
+        tree: Octree,
+        /// Whether it is searched from cell to cell, and not from the root down.
+        by_cells: bool,
+    },
+    /// A kd-tree.
+    KdTree(KdTree),
+    /// A binary space partition.
+    Bsp {
+        /// Its nodes.
+        tree: Bsp,
+        /// The box around all primitives.
+        around: Aabb,
+    },
+}
+
+/// One volume per node of a scene graph; nothing for a node that holds nothing.
+#[derive(Debug)]
+pub enum Volumes {
+    /// Boxes.
+    Boxes(Vec<Aabb>),
+    /// Spheres.
+    Balls(Vec<Option<Sphere>>),
+}
+
+/// The primitives below a structure, as searches ask about them.
+pub trait Primitives: Probe + Cells {
+    /// How many they are.
+    fn n_primitives(&self) -> u32;
+
+    /// Counts an event.
+    fn count(&mut self, event: Event);
+
+    /// The reciprocal of the ray's direction.
+    fn inverse_dir(&self) -> Vec3;
+}
+
+/// Cells per primitive, if the scene does not say how many (Wald et al., "Ray Tracing Animated Scenes Using Coherent
+/// Grid Traversal", 2006, find 2 to 5 best).
+const DENSITY: f32 = 4.0;
+
+/// Deeper octants are a thousandth of a thousandth of the scene wide.
+const DEEPEST_OCTANT: usize = 20;
+
+impl Structure {
+    /// Over primitives in these boxes, by `accelerator`; `None` if no search is written. A shared mesh has no graph, and
+    /// gets a hierarchy in its place. `hull` gives the corners of a primitive that is flat.
+    pub fn build<F: StudentFunctions>(
+        bounds: &[Aabb],
+        graph: Option<Graph>,
+        hull: impl Fn(usize) -> Option<Vec<Vec3>>,
+        accelerator: Option<Accelerator>,
+        quality: &Quality,
+    ) -> Structure {
+        let leaf_size = quality.leaf_size as usize;
+        let octree = |by_cells| Structure::Octree {
+            tree: F::octree_build(bounds, leaf_size, DEEPEST_OCTANT),
+            by_cells,
+        };
+        match (accelerator, graph) {
+            (None, _) => Structure::Painter,
+            (Some(Accelerator::BruteForce), _) => Structure::List,
+            (Some(Accelerator::BoundingBoxes), Some(graph)) => {
+                let volumes = Volumes::Boxes(boxes::<F>(&graph, bounds));
+                Structure::Graph { graph, volumes }
+            }
+            (Some(Accelerator::BoundingSpheres), Some(graph)) => {
+                let volumes =
+                    Volumes::Balls(boxes::<F>(&graph, bounds).iter().map(ball_around::<F>).collect());
+                Structure::Graph { graph, volumes }
+            }
+            (Some(Accelerator::Grid), _) => {
+                Structure::Grid(F::grid_build(bounds, resolution::<F>(bounds, quality)))
+            }
+            (Some(Accelerator::Octree), _) => octree(false),
+            (Some(Accelerator::OctreeByCells), _) => octree(true),
+            (Some(Accelerator::KdTree), _) => {
+                Structure::KdTree(F::kd_build(bounds, &quality.kd_heuristics, leaf_size))
+            }
+            (Some(Accelerator::Bsp), _) => {
+                let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
+                let hulls: Vec<Vec<Vec3>> = bounds.iter().enumerate().map(hull).collect();
+                let depth = KdTree::most_depth(hulls.len());
+                Structure::Bsp { tree: F::bsp_build(&hulls, leaf_size, depth), around: around(bounds) }
+            }
+            (
+                Some(
+                    Accelerator::Bvh
+                    | Accelerator::CachedBvh
+                    | Accelerator::PacketBvh
+                    | Accelerator::BoundingBoxes
+                    | Accelerator::BoundingSpheres,
+                ),
+                _,
+            ) => Structure::Hierarchy(F::build(bounds, quality.split, leaf_size)),
+        }
+    }
+
+    /// The closest hit of `ray` with the primitives behind `probe`.
+    #[inline(always)]
+    pub fn closest_hit<F: StudentFunctions, P: Primitives>(
+        &self,
+        probe: &mut P,
+        ray: &Ray,
+        savings: Savings,
+    ) -> Option<PrimitiveHit> {
+        match self {
+            Structure::Hierarchy(bvh) => F::closest_hit(bvh, probe, ray),
+            Structure::Graph { graph, volumes } => {
+                let mut probe = GraphProbe::<F, P> { probe, volumes, functions: PhantomData };
+                F::closest_hit_in_graph(graph, &mut probe, ray, savings)
+            }
+            Structure::Grid(grid) => F::grid_search(grid, probe, ray),
+            Structure::Octree { tree, by_cells: true } => F::octree_by_cells(tree, probe, ray),
+            Structure::Octree { tree, by_cells: false } => F::octree_search(tree, probe, ray),
+            Structure::KdTree(tree) => F::kd_search(tree, probe, ray),
+            Structure::Bsp { tree, .. } => F::bsp_search(tree, probe, ray),
+            Structure::List => F::brute_force(probe.n_primitives(), probe, ray),
+            Structure::Painter => last_hit(probe, ray),
+        }
+    }
+
+    /// Whether `ray` has any hit with the primitives behind `probe`.
+    #[inline(always)]
+    pub fn any_hit<F: StudentFunctions, P: Primitives>(
+        &self,
+        probe: &mut P,
+        ray: &Ray,
+        savings: Savings,
+    ) -> bool {
+        match self {
+            Structure::Hierarchy(bvh) => F::any_hit(bvh, probe, ray),
+            Structure::List | Structure::Painter => last_hit(probe, ray).is_some(),
+            other => other.closest_hit::<F, P>(probe, ray, savings).is_some(),
+        }
+    }
+
+    /// The nodes of a hierarchy.
+    pub fn nodes(&self) -> &[Node] {
+        match self {
+            Structure::Hierarchy(bvh) => &bvh.nodes,
+            _ => &[],
+        }
+    }
+
+    /// How large it is, if there is anything.
+    pub fn size(&self) -> Option<StructureSize> {
+        fn bytes<T>(list: &[T]) -> usize {
+            std::mem::size_of_val(list)
+        }
+        fn tree<Node>(nodes: &[Node], levels: usize, items: &[u32]) -> (usize, usize, usize, usize) {
+            (nodes.len(), levels, items.len(), bytes(nodes) + bytes(items))
+        }
+        let (nodes, levels, references, bytes) = match self {
+            Structure::List | Structure::Painter => return None,
+            Structure::Hierarchy(bvh) => tree(&bvh.nodes, bvh.depth(), &bvh.order),
+            Structure::Graph { graph, volumes } => {
+                let lists: usize =
+                    graph.nodes.iter().map(|n| bytes(&n.children) + bytes(&n.primitives)).sum();
+                let volumes = match volumes {
+                    Volumes::Boxes(boxes) => bytes(boxes),
+                    Volumes::Balls(balls) => bytes(balls),
+                };
+                let references = graph.nodes.iter().map(|node| node.primitives.len()).sum();
+                (graph.nodes.len(), graph.depth(), references, bytes(&graph.nodes) + lists + volumes)
+            }
+            Structure::Grid(grid) => {
+                (grid.n_nodes(), grid.depth(), grid.items.len(), bytes(&grid.starts) + bytes(&grid.items))
+            }
+            Structure::Octree { tree: octree, .. } => tree(&octree.nodes, octree.depth(), &octree.items),
+            Structure::KdTree(kd_tree) => tree(&kd_tree.nodes, kd_tree.depth(), &kd_tree.items),
+            Structure::Bsp { tree: bsp, .. } => tree(&bsp.nodes, bsp.depth(), &bsp.items),
+        };
+        let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
+        Some(StructureSize { nodes, levels, references, bytes })
+    }
+}
+
+/// The last primitive in the order of the scene that the ray meets.
+fn last_hit<P: Primitives>(probe: &mut P, ray: &Ray) -> Option<PrimitiveHit> {
+    (0..probe.n_primitives())
+        .rev()
+        .find_map(|primitive| Cells::hit(probe, primitive, ray).map(|t| PrimitiveHit { t, primitive }))
+}
+
+/// A probe for a scene graph, whose nodes have volumes of their own.
+struct GraphProbe<'p, F, P> {
+    probe: &'p mut P,
+    volumes: &'p Volumes,
+    functions: PhantomData<F>,
+}
+
+impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
+    #[inline]
+    fn open(&mut self, node: u32) -> Contents {
+        self.probe.open(node)
+    }
+
+    #[inline]
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        self.probe.count(Event::BoxTest);
+        match self.volumes {
+            Volumes::Boxes(boxes) => {
+                let bounds = &boxes[node as usize];
+                F::slab(ray, self.probe.inverse_dir(), bounds).map(|(enter, _)| enter)
+            }
+            Volumes::Balls(balls) => F::enter_ball(ray, balls[node as usize].as_ref()?),
+        }
+    }
+
+    #[inline]
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        Probe::hit(self.probe, primitive, ray)
+    }
+}
+
+/// As many cells along the longest side as the scene says, and cubes; or what the formula gives.
+fn resolution<F: StudentFunctions>(bounds: &[Aabb], quality: &Quality) -> UVec3 {
+    let around = around(bounds);
+    let longest = (around.max - around.min).max_element();
+    match quality.grid_resolution {
+        0 => F::grid_resolution(&around, bounds.len(), DENSITY),
+        n if longest > 0.0 && longest.is_finite() => {
+            let cells = n as f32 * ((around.max - around.min) / longest);
+            cells.ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(MOST_CELLS_ALONG))
+        }
+        _ => UVec3::ONE,
+    }
+}
+
+/// The box around all boxes that are not empty.
+fn around(bounds: &[Aabb]) -> Aabb {
+    let boxes = bounds.iter().filter(|one| !one.is_empty());
+    boxes.fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
+}
+
+/// A box around each node of a graph and all below it.
+fn boxes<F: StudentFunctions>(graph: &Graph, bounds: &[Aabb]) -> Vec<Aabb> {
+    let mut boxes = vec![Aabb::EMPTY; graph.nodes.len()];
+    // Children have higher numbers than their parents.
+    for (index, node) in graph.nodes.iter().enumerate().rev() {
+        let own = node.primitives.iter().map(|&primitive| bounds[primitive as usize]);
+        let below = node.children.iter().map(|&child| boxes[child as usize]);
+        boxes[index] = own.chain(below).fold(Aabb::EMPTY, |all, one| F::union(&all, &one));
+    }
+    boxes
+}
+
+fn ball_around<F: StudentFunctions>(bounds: &Aabb) -> Option<Sphere> {
+    (!bounds.is_empty()).then(|| F::bounding_ball(&corners(bounds)))
+}

@@ -1,0 +1,52 @@
+//! Stage 1: spheres and planes.
+//!
+//! `roots` · `spheres` (laws for both methods; how they are judged is in `sphere_method`) · `planes` · `picture`
+
+mod picture;
+mod planes;
+mod roots;
+mod sphere_method;
+mod spheres;
+
+use picture::picture_of_a_ball_on_a_plane;
+use planes::{
+    face_viewer_turns_the_normal_to_the_ray, plane_agrees_with_double_precision, plane_far_from_the_origin,
+    plane_is_missed_by_rays_along_it,
+};
+use roots::{nearest_root_is_the_smaller_one_that_counts, nearest_root_of_nan_is_the_other_one};
+use spheres::{
+    sphere_algebraic_agrees_with_double_precision, sphere_algebraic_counts_lengths_of_the_direction,
+    sphere_algebraic_far_away_and_tiny, sphere_algebraic_leaves_the_surface,
+    sphere_algebraic_respects_the_range, sphere_algebraic_starts_inside, sphere_algebraic_survives_nonsense,
+    sphere_algebraic_touches, sphere_geometric_agrees_with_double_precision,
+    sphere_geometric_counts_lengths_of_the_direction, sphere_geometric_far_away_and_tiny,
+    sphere_geometric_leaves_the_surface, sphere_geometric_respects_the_range, sphere_geometric_starts_inside,
+    sphere_geometric_survives_nonsense, sphere_geometric_touches, sphere_normal_points_outwards,
+};
+
+checks::stage! { ($ crate) 1 [
+    nearest_root_is_the_smaller_one_that_counts
+    nearest_root_of_nan_is_the_other_one
+    sphere_algebraic_agrees_with_double_precision
+    sphere_algebraic_starts_inside
+    sphere_algebraic_counts_lengths_of_the_direction
+    sphere_algebraic_respects_the_range
+    sphere_algebraic_far_away_and_tiny
+    sphere_algebraic_touches
+    sphere_algebraic_leaves_the_surface
+    sphere_algebraic_survives_nonsense
+    sphere_geometric_agrees_with_double_precision
+    sphere_geometric_starts_inside
+    sphere_geometric_counts_lengths_of_the_direction
+    sphere_geometric_respects_the_range
+    sphere_geometric_far_away_and_tiny
+    sphere_geometric_touches
+    sphere_geometric_leaves_the_surface
+    sphere_geometric_survives_nonsense
+    sphere_normal_points_outwards
+    plane_agrees_with_double_precision
+    plane_is_missed_by_rays_along_it
+    plane_far_from_the_origin
+    face_viewer_turns_the_normal_to_the_ray
+    picture_of_a_ball_on_a_plane
+] }

@@ -1,0 +1,214 @@
+//! Triangles with all their digits, and odd numbers.
+
+use super::triangles::{aim_again, draw};
+use super::{Odd, SPECIAL};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use glam::Vec3;
+use oracle::STABLE;
+use oracle::exact::{Body, meet, t_error_in_ulps, triangle};
+use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+/// Of how many roundings of single precision the worst wrong verdict in double may be away from flipping. A rounding in
+/// double is 2^-29 of one. Of 192,000 inputs, plane and Gram erred once by more than 1e-6 of one (by 5e-4, on a sliver:
+/// the condition of its matrix is the square of length by width), all other methods never; what is rounded in single errs
+/// by 0.3 to 0.7 on edges.
+const IN_DOUBLE: f64 = 0.1;
+
+/// A million times as long as wide: there the square is 1e12, and plane and Gram loses whole weights even in double. The
+/// exercise is about digits and leaves the method free.
+const TOO_THIN_FOR_GRAM: &str = "needle";
+
+const CONVERTED_LATE: &str = "what was rounded before it was converted stays rounded: convert the corners and the origin, \
+                              and subtract then";
+
+/// A wrong verdict.
+struct Wrong {
+    query: TriangleQuery,
+    yours: Option<TriangleHit>,
+    /// The exact answer, and by how many roundings of single precision.
+    exact: Option<f32>,
+    margin: f64,
+}
+
+/// The distribution with rays at all three edges and beside them.
+fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
+    let mut queries = draw(trial, name, 400);
+    queries.extend(aim_again(trial, &queries));
+    for (index, TriangleQuery { triangle, .. }) in queries.iter_mut().enumerate() {
+        let Triangle { a, b, c } = *triangle;
+        // All of them aim at the edge between the first two corners.
+        *triangle =
+            [Triangle { a, b, c }, Triangle { a: b, b: c, c: a }, Triangle { a: c, b: a, c: b }][index % 3];
+    }
+    queries
+}
+
+pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> Outcome {
+    for distribution in DISTRIBUTIONS.iter().filter(|one| one.name != TOO_THIN_FOR_GRAM) {
+        let queries = at_all_edges(trial, distribution.name);
+        let answers = trial.kit.triangle_in_double(&queries);
+        let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
+            let exact = meet(&query.ray, Body::Triangle(query.triangle))?;
+            let margin = triangle::margin(&query.ray, &query.triangle)?;
+            let right = yours.is_some() == exact.verdict.is_hit() || margin <= IN_DOUBLE;
+            (!right).then_some(Wrong { query: *query, yours, exact: exact.t, margin })
+        };
+        let wrong: Vec<Wrong> = queries.iter().zip(answers).filter_map(judge).collect();
+        let Some(worst) = wrong.iter().max_by(|p, q| p.margin.total_cmp(&q.margin)) else { continue };
+        let yours = format!("{:?}", worst.yours.map(|hit| hit.t));
+        let expected = format!("{:?}, {}", worst.exact, told(worst.margin));
+        let broken = Broken::told(worst.query.call("triangle_in_double"), yours, expected, "exactly");
+        return Err(broken.looks_like(known(diagnosis(trial, &wrong, worst))));
+    }
+    Ok(())
+}
+
+/// How sure a verdict is, in roundings of single precision.
+pub(super) fn told(margin: f64) -> String {
+    if margin > STABLE {
+        return "and no rounding comes near that".into();
+    }
+    format!("{margin:.2} roundings of single precision from anything else")
+}
+
+fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str {
+    let Wrong { query, yours, margin, .. } = worst;
+    let endless = TriangleQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
+    let on_the_line =
+        meet(&endless.ray, Body::Triangle(query.triangle)).is_some_and(|it| it.verdict.is_hit());
+    let beyond_the_third_edge = || {
+        let weights = triangle::weights(&query.ray, &query.triangle).flatten();
+        weights.is_some_and(|[beta, gamma]| beta >= 0.0 && gamma >= 0.0)
+    };
+    let explained = |rule: fn(&TriangleQuery) -> Option<f32>| {
+        wrong.iter().all(|one| rule(&one.query).is_some() == one.yours.is_some())
+    };
+    match yours {
+        None if trial.kit.triangle_in_double(&[enlarged(query)])[0].is_some() => {
+            "a determinant that is small is not 0: the triangle is small, and enlarged it is hit"
+        }
+        Some(_) if on_the_line => {
+            "a hit behind the origin or beyond the range: t counts only within the range of the ray"
+        }
+        Some(_) if *margin > STABLE && beyond_the_third_edge() => {
+            "outside where β + γ > 1: α = 1 - β - γ must not be below 0 either"
+        }
+        Some(_) if *margin > STABLE => "a hit where there is none: no weight may be below 0",
+        _ if explained(differences_in_single) => CONVERTED_LATE,
+        _ if *margin <= STABLE => "as wrong as single precision: something is rounded to f32 on the way",
+        _ => "",
+    }
+}
+
+/// All of it a power of two times as large, about a million in size, which moves no rounding.
+fn enlarged(query: &TriangleQuery) -> TriangleQuery {
+    let (Triangle { a, b, c }, ray) = (query.triangle, query.ray);
+    let largest =
+        [a, b, c, ray.origin].map(|point| point.abs().max_element()).into_iter().fold(0.0, f32::max);
+    let size = (20.0 - largest.log2().floor()).max(0.0).exp2();
+    TriangleQuery {
+        ray: Ray { origin: size * ray.origin, dir: size * ray.dir, ..ray },
+        triangle: Triangle { a: size * a, b: size * b, c: size * c },
+    }
+}
+
+/// A known mistake: Cramer's rule in double on differences in single.
+fn differences_in_single(TriangleQuery { ray, triangle }: &TriangleQuery) -> Option<f32> {
+    let Triangle { a, b, c } = *triangle;
+    let [u, v, s, d] = [b - a, c - a, ray.origin - a, ray.dir].map(Vec3::as_dvec3);
+    let (p, q) = (d.cross(v), s.cross(u));
+    let determinant = u.dot(p);
+    let (beta, gamma) = (s.dot(p) / determinant, d.dot(q) / determinant);
+    let t = (v.dot(q) / determinant) as f32;
+    (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0 && ray.contains(t)).then_some(t)
+}
+
+pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
+    for distribution in &DISTRIBUTIONS {
+        let queries = draw(trial, distribution.name, 400);
+        let answers = trial.kit.triangle_in_double(&queries);
+        let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
+            let (yours, body) = (yours?.t, Body::Triangle(query.triangle));
+            let off = t_error_in_ulps(&query.ray, body, yours)?;
+            // Rounding what is right to more digits leaves half a step; a whole one says that t is one of two neighbours.
+            (off.abs() > 1.0).then_some((*query, yours, off))
+        };
+        let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+        let Some((query, yours, off)) = wrong.first() else { continue };
+        let converted_late = wrong.iter().all(|(query, yours, _)| {
+            differences_in_single(query)
+                .is_some_and(|t| t == *yours || t.next_up() == *yours || t.next_down() == *yours)
+        });
+        let diagnosis = match () {
+            () if converted_late => CONVERTED_LATE,
+            () if off.abs() < 1e5 => {
+                "t has the digits of single precision: round the quotient, and nothing before it"
+            }
+            () => "",
+        };
+        let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
+        let expected =
+            format!("{exact:?}, or a neighbour: this is {:.1} steps of the last digit off", off.abs());
+        let broken =
+            Broken::told(query.call("triangle_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
+        return Err(broken.looks_like(known(diagnosis)));
+    }
+    Ok(())
+}
+
+pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
+    let mut odd = Odd::new(trial, 16);
+    let triangles = odd.triangles();
+    let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
+        let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
+        let nan = [ray.origin, ray.dir, *a, *b, *c].iter().any(|vector| vector.is_nan());
+        match yours {
+            Some(hit) if nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
+                let input = query.call("triangle_in_double");
+                let yours = format!("{hit:?}");
+                let broken = Broken::told(input, yours, "finite numbers, or None", "the definition");
+                Err(broken.looks_like(Some("NaN is no hit: ask for what is true of a hit, which NaN fails")))
+            }
+            _ => Ok(()),
+        }
+    };
+    compare(&triangles, trial.kit.triangle_in_double(&triangles), judge).into_iter().collect::<Outcome>()?;
+
+    // Straight at the centre, so that nothing but the radius decides.
+    let centred = |radius: f32| {
+        let sphere = Sphere { center: Vec3::ZERO, radius };
+        SphereQuery { ray: Ray::new(Vec3::new(0.0, 0.0, -4.0), Vec3::Z), sphere }
+    };
+    let mut spheres: Vec<SphereQuery> =
+        [-1.0, -2.0, 0.0, -0.0].into_iter().chain(SPECIAL).map(centred).collect();
+    spheres.extend((0..3000).map(|_| {
+        let sphere = Sphere { center: odd.vector(), radius: odd.vector().x };
+        SphereQuery { ray: odd.ray(), sphere }
+    }));
+    let judge = |query: &SphereQuery, yours: Option<f32>| {
+        let SphereQuery { ray, sphere } = query;
+        let nan = ray.origin.is_nan() || ray.dir.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
+        let broken = |expected: &str, diagnosis: &'static str| {
+            let input = query.call("sphere_in_double");
+            Err(Broken::told(input, format!("{yours:?}"), expected, "the definition")
+                .looks_like(Some(diagnosis)))
+        };
+        match yours {
+            Some(t) if nan || !t.is_finite() => broken(
+                "a finite number, or None",
+                "NaN is no hit: ask for what is true of a hit, which NaN fails",
+            ),
+            Some(_) if sphere.radius <= 0.0 => {
+                broken("None", "r² forgets the sign: only a radius above 0 makes a sphere")
+            }
+            _ => Ok(()),
+        }
+    };
+    compare(&spheres, trial.kit.sphere_in_double(&spheres), judge).into_iter().collect()
+}

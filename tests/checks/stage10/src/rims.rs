@@ -1,0 +1,196 @@
+//! Spheres with all their digits.
+
+use super::doubles::told;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::double::U;
+use checks::judge::known;
+use checks::paste::Arguments;
+use glam::DVec3;
+use oracle::STABLE;
+use oracle::exact::{Body, meet, sphere, t_in_double};
+use oracle::splitmix::Random;
+use raykata::kit::SphereQuery;
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+/// A verdict may be wrong where r² and |f⊥|² differ by less than this much of |f|², for f from the centre to the origin.
+/// The plainest way, b² - a c in double, rounds there by 16 times 2^-53 at most: both products have eight roundings.
+const UNDECIDED: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// By how much of |f| / |d| the nearest `t` may be off besides a step of its last digit: `t_ca - t_hc` in double loses
+/// 2^-48 of it for an origin near the surface, where both are as long as r, and a chord at least half as long.
+const CANCELLED: f64 = 1.0 / (1u64 << 46) as f64;
+
+const CONVERTED_LATE: &str = "what was rounded before it was converted stays rounded: convert the origin and the centre, and subtract then";
+
+/// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away` radii
+/// from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is rounded in
+/// single precision.
+fn aimed(random: &mut Random, away: f64, aside: f64) -> SphereQuery {
+    let radius = 10f32.powf(2.0 * random.signed());
+    let reach = (f64::from(radius) * away) as f32;
+    let center = reach * random.in_cube();
+    let origin = center + reach * random.direction();
+
+    let from_center = origin.as_dvec3() - center.as_dvec3();
+    let back = -from_center.normalize();
+    let across = back.cross(random.direction().as_dvec3()).normalize();
+    let sin = (aside * f64::from(radius) / from_center.length()).min(1.0);
+    let cos = (1.0 - sin * sin).sqrt();
+    let dir = from_center.length() * cos * (cos * back + sin * across);
+    SphereQuery { ray: Ray::new(origin, dir.as_vec3()), sphere: Sphere { center, radius } }
+}
+
+/// Powers of ten.
+fn ten_to(random: &mut Random, low: f64, high: f64) -> f64 {
+    10f64.powf(low + (high - low) * f64::from(random.unit()))
+}
+
+/// Rays at the rim of a sphere 1 to 100,000 radii away; and some for which the range decides, from there or from inside.
+fn at_rim(random: &mut Random) -> SphereQuery {
+    let away = ten_to(random, 0.3, 5.0);
+    // Half way to the rim at most: then either root is at least 8e-6 from t = 1.
+    let well_inside = 0.5 * f64::from(random.unit());
+    let ranged = |random: &mut Random, t_min: f32, t_max: f32| {
+        let query = aimed(random, away, well_inside);
+        SphereQuery { ray: query.ray.with_range(t_min, t_max), ..query }
+    };
+    match random.below(12) {
+        0 => {
+            let query = aimed(random, away, well_inside);
+            SphereQuery { ray: Ray::new(query.ray.origin, -query.ray.dir), ..query }
+        }
+        1 => ranged(random, 0.0, 0.4),
+        2 => ranged(random, 2.0, f32::INFINITY),
+        3 => ranged(random, 1.0, f32::INFINITY),
+        4 => from_inside(random, well_inside),
+        _ => {
+            let beside = ten_to(random, -7.0, -1.0);
+            let aside = if random.below(2) == 0 { 1.0 - beside } else { 1.0 + beside };
+            aimed(random, away, aside)
+        }
+    }
+}
+
+/// A ray that starts `away` radii from the centre, below 1.
+fn from_inside(random: &mut Random, away: f64) -> SphereQuery {
+    let query = aimed(random, away.max(0.01), 0.0);
+    SphereQuery { ray: Ray::new(query.ray.origin, query.sphere.radius * random.direction()), ..query }
+}
+
+/// What roundings can turn: `|r² - |f⊥|²| / |f|²`.
+fn margin(SphereQuery { ray, sphere }: &SphereQuery) -> f64 {
+    let (f, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.dir.as_dvec3());
+    (f64::from(sphere.radius).powi(2) - f.cross(d).length_squared() / d.length_squared()).abs()
+        / f.length_squared()
+}
+
+/// A known mistake: all in double, but with `f` in single.
+fn difference_in_single(SphereQuery { ray, sphere }: &SphereQuery) -> Option<f32> {
+    let (f, d) = ((ray.origin - sphere.center).as_dvec3(), ray.dir.as_dvec3());
+    let (a, b, r) = (d.length_squared(), -f.dot(d), f64::from(sphere.radius));
+    let discriminant = r * r - (f + (b / a) * d).length_squared();
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    let roots = [(f.length_squared() - r * r) / q, q / a].map(|t| t as f32);
+    let [near, far] = [roots[0].min(roots[1]), roots[0].max(roots[1])];
+    [near, far].into_iter().find(|&t| discriminant >= 0.0 && ray.contains(t))
+}
+
+pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 17);
+    let queries: Vec<SphereQuery> = (0..8000).map(|_| at_rim(&mut random)).collect();
+    let judge = |(query, yours): (&SphereQuery, Option<f32>)| {
+        let exact = meet(&query.ray, Body::Sphere(query.sphere))?;
+        let right = yours.is_some() == exact.verdict.is_hit() || margin(query) <= UNDECIDED;
+        (!right).then_some((*query, yours, exact.t))
+    };
+    let answers = trial.kit.sphere_in_double(&queries);
+    let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+    let plainest = wrong.iter().max_by(|(p, ..), (q, ..)| margin(p).total_cmp(&margin(q)));
+    let Some((query, yours, exact)) = plainest else { return Ok(()) };
+    let endless = SphereQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
+    let on_the_line = meet(&endless.ray, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
+    let only_the_far_root =
+        sphere::roots(&query.ray, &query.sphere).is_some_and(|it| !it.near_counts && it.far_counts);
+    let diagnosis = match yours {
+        Some(_) if on_the_line => {
+            "a hit behind the origin or beyond the range: a root counts only within the range of the ray"
+        }
+        None if only_the_far_root => {
+            "the near root does not count, but the far one does: the ray starts inside"
+        }
+        _ if wrong
+            .iter()
+            .all(|(query, yours, _)| difference_in_single(query).is_some() == yours.is_some()) =>
+        {
+            CONVERTED_LATE
+        }
+        _ if margin(query) <= STABLE * U => {
+            "as wrong as single precision: something is rounded to f32 on the way"
+        }
+        _ => "",
+    };
+    let expected = format!("{exact:?}, {}", told(margin(query) / U));
+    let broken = Broken::told(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
+    Err(broken.looks_like(known(diagnosis)))
+}
+
+/// Rays that go well through a sphere, from afar, from near its surface on either side, and from inside.
+fn through(random: &mut Random) -> SphereQuery {
+    let aside = 0.9 * f64::from(random.unit());
+    let off = ten_to(random, -6.0, -1.0);
+    match random.below(4) {
+        0 => {
+            let away = ten_to(random, 0.3, 5.0);
+            aimed(random, away, aside)
+        }
+        1 => aimed(random, 1.0 + off, aside),
+        2 => from_inside(random, 1.0 - off),
+        _ => from_inside(random, aside),
+    }
+}
+
+pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 18);
+    let mut queries: Vec<SphereQuery> = (0..4000).map(|_| through(&mut random)).collect();
+    // Near a tangent both roots are as uncertain as the root of a difference that is nearly 0.
+    queries.retain(|query| {
+        let (f, d) = (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.dir.as_dvec3());
+        let aside = f.cross(d).length() / d.length();
+        aside < 0.96 * f64::from(query.sphere.radius)
+    });
+    let allowed = |SphereQuery { ray, sphere }: &SphereQuery, rounded: f32| {
+        let step = f64::from(rounded.next_up()) - f64::from(rounded);
+        let f: DVec3 = ray.origin.as_dvec3() - sphere.center.as_dvec3();
+        step + CANCELLED * f.length() / ray.dir.as_dvec3().length()
+    };
+    let judge = |(query, yours): (&SphereQuery, Option<f32>)| {
+        let (yours, body) = (yours?, Body::Sphere(query.sphere));
+        let (exact, rounded) = (t_in_double(&query.ray, body)??, meet(&query.ray, body)?.t?);
+        let off = (f64::from(yours) - exact).abs() / allowed(query, rounded);
+        (!(off <= 1.0)).then_some((*query, yours, rounded, off))
+    };
+    let answers = trial.kit.sphere_in_double(&queries);
+    let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+    let worst = wrong.iter().max_by(|(.., p), (.., q)| p.total_cmp(q));
+    let Some((query, yours, rounded, _)) = worst else { return Ok(()) };
+    let converted_late = |(query, yours, ..): &(SphereQuery, f32, f32, f64)| {
+        let known = difference_in_single(query);
+        known.is_some_and(|t| f64::from((t - yours).abs()) <= allowed(query, t))
+    };
+    let close = (yours - rounded).abs() <= 1e-2 * rounded.abs();
+    let diagnosis = match () {
+        () if !query.ray.contains(*yours) => {
+            "the near root is behind the ray: the nearest that counts is the far one"
+        }
+        () if wrong.iter().all(converted_late) => CONVERTED_LATE,
+        () if close => "t has the digits of single precision: round the root, and nothing before it",
+        () if yours > rounded => "the far root, and the near one counts as well",
+        () => "",
+    };
+    let expected = format!("Some({rounded:?}), or a neighbour");
+    let broken =
+        Broken::told(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
+    Err(broken.looks_like(known(diagnosis)))
+}

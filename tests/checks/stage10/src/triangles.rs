@@ -1,0 +1,236 @@
+//! Watertight triangles.
+
+use super::Odd;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use glam::Vec3;
+use oracle::STABLE;
+use oracle::exact::{Body, meet, t_in_double, triangle};
+use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::leaks::{Aim, aimed};
+use oracle::gauntlet::meshes::closed;
+use oracle::splitmix::Random;
+use raykata::kit::{TriangleHit, TriangleQuery};
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+
+/// Inputs of a distribution.
+pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
+    let mut random = Random::new(trial.seed, name.len() as u64);
+    let found = DISTRIBUTIONS.iter().find(|distribution| distribution.name == name);
+    let draw = found.map(|distribution| distribution.draw).expect("a distribution of the gauntlet");
+    (0..count)
+        .map(|_| {
+            let (ray, triangle) = draw(&mut random);
+            TriangleQuery { ray, triangle }
+        })
+        .collect()
+}
+
+/// The triangles of a distribution from the same places, aimed well inside or a little beside an edge, where more than
+/// roundings decide; and the same rays turned round, or ended before they arrive.
+pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
+    let mut random = Random::new(trial.seed, 4);
+    let again = |TriangleQuery { ray, triangle }: &TriangleQuery| {
+        let beside = -(10f64.powf(-1.0 - 4.0 * f64::from(random.unit())));
+        let gamma = if random.below(2) == 0 { beside } else { 0.2 };
+        let beta = f64::from(0.1 + 0.6 * random.unit());
+        let [o, a, b, c] = [ray.origin, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+        let way = a + beta * (b - a) + gamma * (c - a) - o;
+        let ray = match random.below(6) {
+            0 => Ray::new(ray.origin, (-way).as_vec3()),
+            1 => Ray::new(ray.origin, way.as_vec3()).with_range(0.0, 0.5),
+            2 => Ray::new(ray.origin, way.as_vec3()).with_range(2.0, f32::INFINITY),
+            _ => Ray::new(ray.origin, way.as_vec3()),
+        };
+        TriangleQuery { ray, triangle: *triangle }
+    };
+    queries.iter().map(again).collect()
+}
+
+// The margin is that of the nearest edge. Rays that are turned round or ended miss by half their range or more, which no
+// rounding bridges.
+pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> Outcome {
+    for distribution in &DISTRIBUTIONS {
+        let mut queries = draw(trial, distribution.name, 400);
+        queries.extend(aim_again(trial, &queries));
+        let answers = trial.kit.watertight(&queries);
+        let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
+            let body = Body::Triangle(query.triangle);
+            let Some(exact) = meet(&query.ray, body) else { return Ok(()) };
+            let Some(margin) = triangle::margin(&query.ray, &query.triangle) else { return Ok(()) };
+            if yours.is_some() == exact.verdict.is_hit() || margin <= STABLE {
+                return Ok(());
+            }
+            let endless = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let on_the_line = meet(&endless, body).is_some_and(|exact| exact.verdict.is_hit());
+            let diagnosis = match (distribution.name, yours) {
+                (_, Some(_)) if on_the_line => {
+                    "a hit behind the origin or beyond the range: t counts only within the range of the ray"
+                }
+                (_, Some(_)) => "a hit where there is none, and not for a rounding",
+                ("1e14", None) => "products of three sizes overflow: the normal alone is 1e28 long",
+                ("1e-14", None) => "a determinant that is small is not 0: the triangle is small",
+                ("needle", None) => "t has lost all digits on a needle: take it from the plane",
+                _ => "a miss where there is a hit, and not for a rounding",
+            };
+            Err(Broken::told(
+                query.call("watertight"),
+                format!("{:?}", yours.map(|hit| hit.t)),
+                format!("{:?}, {margin:.0} roundings from anything else", exact.t),
+                "exactly",
+            )
+            .looks_like(known(diagnosis)))
+        };
+        compare(&queries, answers, judge).into_iter().collect::<Outcome>()?;
+    }
+    Ok(())
+}
+
+pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
+    for mesh in closed() {
+        let mut random = Random::new(trial.seed, 3);
+        let rays: Vec<(Aim, Ray, u32)> = (0..600)
+            .map(|n| {
+                let aim = Aim::ALL[n % 2];
+                let (ray, vertex) = aimed(&mesh, aim, &mut random);
+                (aim, ray, vertex)
+            })
+            .collect();
+        // First the triangles around the vertex: nearly every ray hits one of them.
+        let fan = |vertex: u32| mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index));
+        let near: Vec<TriangleQuery> = rays
+            .iter()
+            .flat_map(|&(_, ray, vertex)| fan(vertex).map(move |triangle| TriangleQuery { ray, triangle }))
+            .collect();
+        let mut answers = trial.kit.watertight(&near).into_iter();
+        for (aim, ray, vertex) in &rays {
+            let count = mesh.fans[*vertex as usize].len();
+            if answers.by_ref().take(count).filter(Option::is_some).count() > 0 {
+                continue;
+            }
+            let all: Vec<TriangleQuery> =
+                mesh.all().into_iter().map(|triangle| TriangleQuery { ray: *ray, triangle }).collect();
+            if trial.kit.watertight(&all).iter().any(Option::is_some) {
+                continue;
+            }
+            let aimed_at = match aim {
+                Aim::Edge => "an edge",
+                Aim::Vertex => "a vertex",
+            };
+            let input = format!(
+                "watertight of {:?}\nagainst each of the {} triangles of a closed mesh ({}), from inside, aimed at {aimed_at}",
+                ray,
+                mesh.triangles.len(),
+                mesh.name
+            );
+            let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let hits = |ray: Ray| {
+                let near: Vec<TriangleQuery> =
+                    fan(*vertex).map(|triangle| TriangleQuery { ray, triangle }).collect();
+                trial.kit.watertight(&near).iter().any(Option::is_some)
+            };
+            let middle = fan(*vertex).next().map_or(Vec3::ZERO, |Triangle { a, b, c }| (a + b + c) / 3.0);
+            let diagnosis = match () {
+                () if !hits(Ray::new(ray.origin, middle - ray.origin)) && mesh.name.contains("1e14") => {
+                    "products of three sizes overflow: not even what lies in the middle is hit"
+                }
+                () if !hits(Ray::new(ray.origin, middle - ray.origin)) => {
+                    "not even the middle of a triangle is hit: a determinant that is small is not 0"
+                }
+                () if mesh.name.contains("needle") && hits(endless) => {
+                    "t has lost all digits and its sign: take it from the plane"
+                }
+                () => {
+                    "the ray is beside both neighbours of an edge: decide an edge by its two ends alone, in the same \
+                     way for both, and count 0 as inside"
+                }
+            };
+            return Err(
+                Broken::told(input, "no hit", "a hit", "the mesh is closed").looks_like(Some(diagnosis))
+            );
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
+    for name in ["interior", "needle", "1e-14", "1e14"] {
+        let queries = draw(trial, name, 400);
+        let answers = trial.kit.watertight(&queries);
+        let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
+            let exact = t_in_double(&query.ray, Body::Triangle(query.triangle)).flatten();
+            let (Some(exact), Some(yours)) = (exact, yours) else { return Ok(()) };
+            let normal = {
+                let Triangle { a, b, c } = query.triangle;
+                let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+                (b - a).cross(c - a).normalize_or_zero()
+            };
+            // t is the worse known the flatter the ray meets the plane: a thousandth at right angles is generous to
+            // every formula that uses the plane, and tells those that lose all digits.
+            let slope = normal.dot(query.ray.dir.as_dvec3().normalize()).abs();
+            let tolerance = 1e-3 * exact.abs() / slope.max(1e-3);
+            if (f64::from(yours.t) - exact).abs() <= tolerance {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if name == "needle" => {
+                    "t has lost its digits on a needle: take it from the plane of the triangle"
+                }
+                () if yours.t < 0.0 => "t has the wrong sign",
+                () => "",
+            };
+            Err(Broken::new(query.call("watertight"), yours.t, exact, "exactly").looks_like(known(diagnosis)))
+        };
+        compare(&queries, answers, judge).into_iter().collect::<Outcome>()?;
+    }
+    Ok(())
+}
+
+pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
+    // Times a power of two nothing is rounded differently, as long as nothing over- or underflows.
+    let queries = draw(trial, "edge", 300);
+    let plain = trial.kit.watertight(&queries);
+    for exponent in [-30, 30] {
+        let size = 2f32.powi(exponent);
+        let scaled: Vec<TriangleQuery> = queries
+            .iter()
+            .map(|query| {
+                let Triangle { a, b, c } = query.triangle;
+                TriangleQuery {
+                    ray: Ray::new(size * query.ray.origin, size * query.ray.dir),
+                    triangle: Triangle { a: size * a, b: size * b, c: size * c },
+                }
+            })
+            .collect();
+        for ((query, yours), plain) in scaled.iter().zip(trial.kit.watertight(&scaled)).zip(&plain) {
+            if yours != *plain {
+                let broken = Broken::told(
+                    query.call("watertight"),
+                    format!("{yours:?}"),
+                    format!("{plain:?}, as without the factor 2^{exponent}"),
+                    "a power of two moves no rounding",
+                );
+                return Err(
+                    broken.looks_like(Some("a fixed epsilon decides: sizes have no meaning of their own"))
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
+    let queries = Odd::new(trial, 6).triangles();
+    let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
+        Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
+            let broken =
+                Broken::new(query.call("watertight"), hit, "finite numbers, or None", "the definition");
+            Err(broken.looks_like(Some("NaN is no hit: compare so that NaN fails")))
+        }
+        _ => Ok(()),
+    };
+    compare(&queries, trial.kit.watertight(&queries), judge).into_iter().collect()
+}

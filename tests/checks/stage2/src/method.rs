@@ -1,0 +1,149 @@
+//! The three ways to intersect a triangle: how their answers are judged, and what a wrong one looks like.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::double::{self, Expected};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::kit::{Kit, TriangleHit, TriangleQuery};
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+
+/// One of the ways to intersect a triangle.
+#[derive(Clone, Copy)]
+pub(super) struct Method {
+    pub(super) name: &'static str,
+    pub(super) ask: fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>,
+}
+
+pub(super) const CRAMER: Method =
+    Method { name: "triangle_cramer", ask: |kit, queries| kit.triangle_cramer(queries) };
+
+pub(super) const GRAM: Method =
+    Method { name: "triangle_gram", ask: |kit, queries| kit.triangle_gram(queries) };
+
+pub(super) const CHOICE: Method =
+    Method { name: "triangle_choice", ask: |kit, queries| kit.triangle_choice(queries) };
+
+impl Method {
+    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Outcome> {
+        compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
+            let expected = double::triangle(&query.ray, &query.triangle);
+            if expected.accepts(yours) {
+                return Ok(());
+            }
+            let broken =
+                Broken::told(query.call(self.name), told(yours), expected.words(), "double precision");
+            Err(broken.looks_like(triangle_diagnosis(self.name, query, yours, &expected)))
+        })
+    }
+
+    pub(super) fn judge_exact(
+        self,
+        trial: &Trial<'_>,
+        cases: &[(TriangleQuery, Option<TriangleHit>, &str)],
+    ) -> Outcome {
+        let queries: Vec<TriangleQuery> = cases.iter().map(|case| case.0).collect();
+        for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
+            if yours != *expected {
+                let broken =
+                    Broken::told(query.call(self.name), told(yours), told(*expected), "exact arithmetic");
+                return Err(broken.looks_like(known(diagnosis)));
+            }
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn told(hit: Option<TriangleHit>) -> String {
+    hit.map_or("None".into(), |hit| {
+        format!("t = {:?}, beta = {:?}, gamma = {:?}", hit.t, hit.beta, hit.gamma)
+    })
+}
+
+pub(super) fn triangle_diagnosis(
+    method: &str,
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    expected: &double::TriangleExpected,
+) -> Option<&'static str> {
+    let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= 2.0 * expected.tolerance;
+    let (beta, gamma) = (expected.beta, expected.gamma);
+    let alpha = 1.0 - beta - gamma;
+    Some(match (yours, expected.t) {
+        (Some(hit), _) if hit.t.is_nan() || hit.beta.is_nan() => "NaN is no hit: compare so that NaN fails",
+        (Some(hit), _) if hit.t <= query.ray.t_min => {
+            "a hit at or behind the start of the ray: ask ray.contains(t)"
+        }
+        (Some(hit), _) if hit.t >= query.ray.t_max => "a hit beyond the end of the ray: ask ray.contains(t)",
+        (Some(_), Expected::Miss) if beta < 0.0 || gamma < 0.0 => {
+            "a point outside with one weight below 0: 0 ≤ s + t ≤ 1 is not enough, s ≥ 0 and t ≥ 0 as well"
+        }
+        (Some(_), Expected::Miss) if alpha < 0.0 => "a point beyond the third side: β + γ ≤ 1 is not tested",
+        _ if method == CRAMER.name && slide_determinant_explains(query, yours, expected) => {
+            "the determinant as the slide prints it: it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+        }
+        (Some(hit), _) if !near(hit.beta, beta) && near(hit.beta, gamma) && near(hit.gamma, beta) => {
+            "β and γ look swapped"
+        }
+        (Some(hit), _)
+            if !near(hit.beta, beta) && near(hit.beta, alpha)
+                || !near(hit.gamma, gamma) && near(hit.gamma, alpha) =>
+        {
+            "a weight of corner a: β belongs to b and γ to c"
+        }
+        (Some(hit), Expected::Hit { t, .. }) if f64::from(hit.t) * t < 0.0 => "the sign of t is wrong",
+        (Some(hit), Expected::Hit { t, .. })
+            if (f64::from(hit.t) - t * f64::from(query.ray.dir.length())).abs() <= 1e-3 * t.abs() =>
+        {
+            "your t counts world units; it must count lengths of dir"
+        }
+        (None, Expected::Hit { .. }) => {
+            "a hit was lost: is the triangle tested from one side only, or a - o turned around?"
+        }
+        _ => return None,
+    })
+}
+
+/// Whether the determinant that the slide prints differs much from the true one here, and gives this answer.
+fn slide_determinant_explains(
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    expected: &double::TriangleExpected,
+) -> bool {
+    let [x, y, z] = [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.dir];
+    let s = query.triangle.a - query.ray.origin;
+    let slide = x.x * (y.y * z.z - z.y * y.z) + y.x * (z.y * s.z - s.y * z.z) + z.x * (s.y * y.z - y.y * s.z);
+    let right = x.dot(y.cross(z));
+    let Expected::Hit { t, .. } = expected.t else { return false };
+    if (slide - right).abs() <= 1e-3 * right.abs() {
+        return false;
+    }
+    // Numerators are right, so all three results are off by one factor.
+    let factor = f64::from(right) / f64::from(slide);
+    let [t, beta, gamma] = [t, expected.beta, expected.gamma].map(|value| factor * value);
+    match yours {
+        Some(hit) => t.is_finite() && (f64::from(hit.t) - t).abs() <= 1e-3 * t.abs(),
+        None => {
+            !t.is_finite() || !query.ray.contains(t as f32) || beta < 0.0 || gamma < 0.0 || beta + gamma > 1.0
+        }
+    }
+}
+
+/// A ray that is aimed at the point `(β, γ)` of a triangle, inside or out.
+pub(super) fn aimed(
+    triangles: impl Strategy<Value = Triangle> + Clone,
+    origins: impl Strategy<Value = Vec3> + Clone,
+) -> impl Strategy<Value = TriangleQuery> + Clone {
+    (triangles, origins, -4..=12i32, -4..=12i32, 1..=16i32).prop_map(
+        |(triangle, origin, beta, gamma, length)| {
+            let (beta, gamma) = (beta as f32 / 8.0, gamma as f32 / 8.0);
+            let target = triangle.a + beta * (triangle.b - triangle.a) + gamma * (triangle.c - triangle.a);
+            let to_target = target - origin;
+            let dir = if to_target == Vec3::ZERO { Vec3::X } else { to_target.normalize() };
+            TriangleQuery { ray: Ray::new(origin, length as f32 / 4.0 * dir), triangle }
+        },
+    )
+}

@@ -1,0 +1,160 @@
+//! Whole trees.
+
+use super::divided::boxes;
+use super::slabs::UNIT_BOX;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use checks::{Trial, golden, tree};
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{BuildQuery, Mishap, mishap};
+use raykata::scene::Split;
+
+pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.build(queries), |query, yours| {
+        match tree::fault(&yours, &query.bounds, query.leaf_size) {
+            None => Ok(()),
+            Some((yours, expected)) => {
+                let diagnosis = build_diagnosis(&yours);
+                let broken = Broken::told(query.call("build"), yours, expected, "what makes a hierarchy");
+                Err(broken.looks_like(known(diagnosis)))
+            }
+        }
+    })
+}
+
+/// What goes wrong where a tree has this fault.
+fn build_diagnosis(fault: &str) -> &'static str {
+    match fault {
+        _ if fault.ends_with("in 0 leaves") => "a primitive was left out: both halves together must hold all",
+        _ if fault.ends_with("leaves") => "a primitive got into both halves: where one ends the other begins",
+        _ if fault.contains(" holds ") => {
+            "the wrong leaf size: a leaf is made if n ≤ leaf_size, and only then"
+        }
+        _ if fault.contains("sticks out") => "the box of a node must be around all that lies below it",
+        _ if fault.ends_with("nodes") => "nothing needs no tree: add no node",
+        _ => "",
+    }
+}
+
+pub(super) fn split() -> impl Strategy<Value = Split> + Clone {
+    prop::sample::select(Split::ALL.to_vec())
+}
+
+pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> Outcome {
+    let inputs = (boxes(40), split(), 1..=5usize).prop_map(|(bounds, split, leaf_size)| BuildQuery {
+        bounds,
+        split,
+        leaf_size,
+    });
+    trial.forall(400, inputs, |queries| judge_builds(trial, queries))
+}
+
+/// Builds with every split and two leaf sizes.
+pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
+    for split in Split::ALL {
+        for leaf_size in [1, 4] {
+            let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size };
+            match mishap::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
+                Ok(outcomes) => outcomes.into_iter().collect::<Outcome>()?,
+                Err(Mishap::Panicked { message, place }) => {
+                    let diagnosis = match bounds.len() <= leaf_size {
+                        true => "so few primitives are a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
+                        false => "a split put everything on one side: fall back on one that divides",
+                    };
+                    let panic = format!("a panic at {place}: {message}");
+                    let broken = Broken::told(query.call("build"), panic, "a tree", "what makes a hierarchy");
+                    return Err(broken.looks_like(Some(diagnosis)));
+                }
+                Err(mishap) => mishap::unwind(mishap),
+            }
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Outcome {
+    build_all_ways(trial, &vec![UNIT_BOX; 1000])?;
+    let concentric: Vec<Aabb> =
+        (1..=64).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
+    build_all_ways(trial, &concentric)?;
+    let line: Vec<Aabb> =
+        (0..64).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32, 0.0, 0.0))).collect();
+    build_all_ways(trial, &line)?;
+    // Halving each time: a spatial median takes one box off at every level.
+    let halving: Vec<Aabb> = (0..100)
+        .map(|i| {
+            let x = 2f32.powi(-i);
+            Aabb::new(Vec3::splat(x), Vec3::splat(x))
+        })
+        .collect();
+    build_all_ways(trial, &halving)
+}
+
+pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> Outcome {
+    build_all_ways(trial, &[])?;
+    build_all_ways(trial, &[UNIT_BOX])?;
+    build_all_ways(trial, &[UNIT_BOX, Aabb::new(Vec3::splat(3.0), Vec3::splat(4.0))])?;
+    // A leaf of exactly leaf_size is a leaf.
+    let four: Vec<Aabb> =
+        (0..4).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 1.0, 1.0, 1.0))).collect();
+    build_all_ways(trial, &four)
+}
+
+pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> Outcome {
+    let mut bounds: Vec<Aabb> =
+        (0..20).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
+    bounds[7] = Aabb::new(Vec3::NAN, Vec3::NAN);
+    bounds[13] = Aabb::new(Vec3::NAN, Vec3::NAN);
+    build_all_ways(trial, &bounds).map_err(|broken| {
+        broken.looks_like(Some(
+            "a NaN got into a box: Vec3::min keeps NaN in some orders, f32::min on each axis drops it",
+        ))
+    })
+}
+
+pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
+    let n = 512;
+    let bounds: Vec<Aabb> = (0..n)
+        .map(|i| {
+            let p = vec3((i * 7 % n) as f32, (i % 5) as f32, 0.0);
+            Aabb::new(p, p + 0.5)
+        })
+        .collect();
+    let query = BuildQuery { bounds, split: Split::ObjectMedian, leaf_size: 1 };
+    let bvh = &trial.kit.build(std::slice::from_ref(&query))[0];
+    let (depth, nodes) = (bvh.depth(), bvh.nodes.len());
+    if (depth, nodes) == (10, 1023) {
+        return Ok(());
+    }
+    let told = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
+    Err(Broken::told(
+        "build of 512 boxes, ObjectMedian, leaf_size 1",
+        told(depth, nodes),
+        told(10, 1023),
+        "log₂ 512 + 1",
+    ))
+}
+
+pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> Outcome {
+    // Along x at 1, 2, 3, 4, 10, 20, 40, 80: no ties, so each rule has one tree.
+    let bounds: Vec<Aabb> = [40.0, 1.0, 3.0, 20.0, 2.0, 80.0, 4.0, 10.0]
+        .map(|x| Aabb::new(vec3(x, 0.0, 0.0), vec3(x + 0.5, 1.0, 1.0)))
+        .to_vec();
+    for (split, name) in [
+        (Split::ObjectMedian, "object_median"),
+        (Split::SpatialMedian, "spatial_median"),
+        (Split::SurfaceArea, "surface_area"),
+    ] {
+        let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 1 };
+        let bvh = &trial.kit.build(std::slice::from_ref(&query))[0];
+        golden::compare(
+            &format!("stage3_tree_{name}"),
+            &format!("build of eight boxes along x, {split:?}, leaf_size 1"),
+            &tree::as_text(bvh),
+        )?;
+    }
+    Ok(())
+}

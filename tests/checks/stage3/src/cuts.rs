@@ -1,0 +1,103 @@
+//! The cheapest cut, and what a dearer one looks like.
+
+use super::divided::{boxes, divided, judge_splits};
+use checks::broken::Outcome;
+use checks::{Trial, tree};
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::bvh::PrimitiveRef;
+use raykata::scene::Split;
+
+pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> Outcome {
+    // First two sets on which each way to go wrong gives another cut: scattered boxes of all sizes, and a row with gaps.
+    let cubes = |all: &[(f32, f32, f32, f32)]| -> Vec<Aabb> {
+        all.iter()
+            .map(|&(x, y, z, size)| Aabb::new(vec3(x, y, z), vec3(x, y, z) + Vec3::splat(size)))
+            .collect()
+    };
+    let scattered = cubes(&[
+        (3.0, 0.0, 5.0, 1.0),
+        (1.0, 1.5, 7.0, 0.5),
+        (6.0, 3.0, 1.0, 0.25),
+        (0.0, 10.0, 2.0, 1.5),
+        (5.0, 30.0, 4.0, 2.0),
+        (2.0, 33.0, 0.0, 0.5),
+        (4.0, 36.0, 3.0, 3.0),
+    ]);
+    let row = cubes(&[
+        (0.0, 0.25, 0.5, 1.0),
+        (30.0, 0.75, 0.0, 1.0),
+        (40.0, 0.5, 0.75, 1.0),
+        (41.5, 0.0, 0.25, 1.0),
+        (43.0, 1.0, 1.25, 1.0),
+        (44.5, 1.25, 1.0, 1.0),
+    ]);
+    let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest);
+    judge(&[scattered, row]).into_iter().collect::<Outcome>()?;
+    trial.forall(500, boxes(16), judge)
+}
+
+/// What is wrong with a cut: yours, expected, and the diagnosis.
+fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, &'static str)> {
+    let (best, _, _) = tree::best_cut(ordered);
+    let leaf = tree::leaf_is_cheaper(ordered, best);
+    if middle == 0 {
+        let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
+        let too_soon =
+            "the leaf is taken too soon: C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) against C_i A(P) n(P)";
+        return (leaf == Some(false)).then(|| (String::new(), expected, too_soon));
+    }
+    if leaf == Some(true) {
+        let yours = format!("a cut before {middle}");
+        let left_out = "TRAVERSAL_COST is left out, so a cut always looks cheaper";
+        return Some((yours, "None: a leaf is cheaper than any cut".into(), left_out));
+    }
+    let yours = tree::cut_cost(ordered, middle);
+    // Coincident centroids may be sorted in any order, which changes the cost of cuts between them; those sets are
+    // judged by the best cut that some order gives only if centroids differ.
+    (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
+        let told = format!("cost {yours:.4} (cut before {middle})");
+        (told, format!("cost {best:.4}"), cut_diagnosis(ordered, middle))
+    })
+}
+
+/// The rule by which such a cut would be the best.
+fn cut_diagnosis(ordered: &[PrimitiveRef], middle: usize) -> &'static str {
+    let area = |part: &[PrimitiveRef]| tree::half_area(&tree::around(part.iter().map(|p| &p.bounds)));
+    let areas = |all: &[PrimitiveRef], at: usize| area(&all[..at]) + area(&all[at..]);
+    let counts = |all: &[PrimitiveRef], at: usize| at.max(all.len() - at) as f64;
+    let least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], usize) -> f64| {
+        let sorted = axes.iter().map(|&axis| {
+            let mut sorted = ordered.to_vec();
+            sorted.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
+            sorted
+        });
+        let costs = sorted.flat_map(|all| (1..all.len()).map(|at| cost(&all, at)).collect::<Vec<_>>());
+        costs.fold(f64::INFINITY, f64::min)
+    };
+    let is_least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], usize) -> f64| {
+        cost(ordered, middle) <= least(axes, cost) * 1.0001
+    };
+    match () {
+        () if !(0..3).any(|axis| divided(ordered, middle, axis)) => "not sorted along any axis",
+        () if (0..3).any(|axis| divided(ordered, middle, axis) && is_least(&[axis], &tree::cut_cost)) => {
+            "only one axis tried: the best cut is along another"
+        }
+        () if middle == tree::best_cut(ordered).2 => {
+            "sorted along another axis than that of the cut: sort again along the best axis"
+        }
+        () if is_least(&[0, 1, 2], &areas) => "a cut by areas alone: the counts are left out",
+        () if ordered.len() > 3 && is_least(&[0, 1, 2], &counts) => {
+            "a cut by counts alone: the areas are left out"
+        }
+        () => "not every cut is tried",
+    }
+}
+
+fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {
+    (0..3).all(|axis| {
+        let mut at: Vec<f32> = primitives.iter().map(|p| p.centroid[axis]).collect();
+        at.sort_by(f32::total_cmp);
+        at.windows(2).all(|pair| pair[0] < pair[1])
+    })
+}

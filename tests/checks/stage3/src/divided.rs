@@ -1,0 +1,90 @@
+//! How divisions are judged: nothing is lost, something is on either side, and then the law of the strategy.
+
+use checks::broken::{Broken, Outcome};
+use checks::generate::{point, rough_point};
+use checks::judge::{compare, known};
+use checks::paste::list;
+use checks::{Trial, tree};
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::bvh::PrimitiveRef;
+use raykata::kit::{SplitAnswer, SplitQuery};
+use raykata::scene::Split;
+
+/// Two boxes or more; every third set is on a coarse grid, so that many centroids coincide.
+pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
+    let small = (rough_point(8.0), point(1)).prop_map(|(p, size)| Aabb::new(p, p + size.abs()));
+    let coarse = point(1).prop_map(|p| Aabb::new(p.round(), p.round() + 1.0));
+    let flat = (0..9i32).prop_map(|i| Aabb::new(Vec3::ZERO, vec3(i as f32, 0.0, 0.0)));
+    prop_oneof![
+        3 => prop::collection::vec(small, 2..most),
+        1 => prop::collection::vec(coarse, 2..most),
+        1 => prop::collection::vec(flat, 2..most),
+    ]
+}
+
+/// Judges splits: both sides hold something, and nothing is lost; then `law` looks at `(order, middle)`.
+pub(super) fn judge_splits(
+    trial: &Trial<'_>,
+    split: Split,
+    sets: &[Vec<Aabb>],
+    law: impl Fn(&[PrimitiveRef], usize) -> Option<(String, String, &'static str)>,
+) -> Vec<Outcome> {
+    let queries: Vec<SplitQuery> =
+        sets.iter().map(|boxes| SplitQuery { split, primitives: tree::references(boxes) }).collect();
+    compare(&queries, trial.kit.split(&queries), |query, yours| {
+        let n = query.primitives.len();
+        let input = format!("{split:?} of {n} boxes\n{}", list(query.primitives.iter().map(|p| &p.bounds)));
+        let SplitAnswer { order, middle } = yours;
+        let mut ids = order.clone();
+        ids.sort_unstable();
+        if ids != (0..n as u32).collect::<Vec<_>>() {
+            let all = format!("the primitives 0..{n} in some order");
+            let broken = Broken::told(input, format!("{order:?}"), all, "nothing may be lost");
+            return Err(broken.looks_like(Some("a primitive was overwritten: swap the two")));
+        }
+        let Some(middle) = middle else {
+            return match law(&query.primitives, 0) {
+                None => Ok(()),
+                Some((_, expected, diagnosis)) => {
+                    Err(Broken::told(input, "None, a leaf", expected, "brute force")
+                        .looks_like(known(diagnosis)))
+                }
+            };
+        };
+        if middle == 0 || middle >= n {
+            let broken = Broken::told(
+                input,
+                format!("{middle} left, {} right", n - middle.min(n)),
+                "something on both sides",
+                "or the build never ends",
+            );
+            return Err(broken
+                .looks_like(Some("all centroids are on one side of the cut: fall back on another split")));
+        }
+        let ordered: Vec<PrimitiveRef> = order.iter().map(|&id| query.primitives[id as usize]).collect();
+        match law(&ordered, middle) {
+            None => Ok(()),
+            Some((yours, expected, diagnosis)) => {
+                Err(Broken::told(input, yours, expected, "brute force").looks_like(known(diagnosis)))
+            }
+        }
+    })
+}
+
+/// Whether all centroids before `middle` are at or before all others, along `axis`.
+pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
+    let left = ordered[..middle].iter().map(|p| p.centroid[axis]).fold(f32::NEG_INFINITY, f32::max);
+    let right = ordered[middle..].iter().map(|p| p.centroid[axis]).fold(f32::INFINITY, f32::min);
+    left <= right
+}
+
+/// Axes along which a median split may cut: the longest of the box around all boxes, or around all centroids.
+pub(super) fn split_axes(primitives: &[PrimitiveRef]) -> Vec<usize> {
+    let all = tree::around(primitives.iter().map(|p| &p.bounds));
+    let centroids: Vec<Aabb> = primitives.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
+    let mut axes = tree::longest_axes(&all);
+    axes.extend(tree::longest_axes(&tree::around(&centroids)));
+    axes
+}

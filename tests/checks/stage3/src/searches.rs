@@ -1,0 +1,197 @@
+//! The three searches, against brute force over tables of answers.
+
+use checks::broken::{Broken, Outcome};
+use checks::generate::{point, unit};
+use checks::judge::{compare, known};
+use checks::tree::closest_in_table;
+use checks::{Trial, tree};
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::bvh::Bvh;
+use raykata::kit::{SearchAnswer, SearchQuery, Table};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+/// Questions about up to 30 spheres and a ray, with a tree and a table.
+pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
+    let spheres = prop::collection::vec((point(6), 1..=8i32), 0..30);
+    (spheres, point(10), unit(), 1..=4usize, 0..=4i32, 0..=9i32).prop_map(
+        |(spheres, origin, dir, leaf_size, t_min, t_max)| {
+            let spheres: Vec<Sphere> =
+                spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
+            // Every third scene has each sphere twice: two hits at one t.
+            let twice = if t_min % 3 == 0 { spheres.clone() } else { Vec::new() };
+            let spheres: Vec<Sphere> = twice.into_iter().chain(spheres).collect();
+            let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
+            let mut bvh = tree::build(&boxes, leaf_size);
+            if t_min % 2 == 0 {
+                // Numbered from the other end, so that of two hits at one t the larger number may come first.
+                let last = spheres.len() as u32;
+                bvh.order.iter_mut().for_each(|id| *id = last - 1 - *id);
+            }
+            let spheres: Vec<Sphere> =
+                if t_min % 2 == 0 { spheres.into_iter().rev().collect() } else { spheres };
+            // Half of the rays look at the middle of things.
+            let dir = if leaf_size % 2 == 0 && origin != Vec3::ZERO {
+                (-origin.normalize() + 0.2 * dir).normalize()
+            } else {
+                dir
+            };
+            let t_max = if t_max == 0 { f32::INFINITY } else { 3.0 * t_max as f32 };
+            tree::search_query(&bvh, &spheres, &Ray::new(origin, dir).with_range(t_min as f32 / 2.0, t_max))
+        },
+    )
+}
+
+pub(super) fn describe_search(query: &SearchQuery) -> String {
+    let hits: Vec<String> = query
+        .table
+        .primitives
+        .iter()
+        .enumerate()
+        .filter(|(_, t)| t.is_finite())
+        .map(|(i, t)| format!("{i} at t = {t}"))
+        .collect();
+    format!(
+        "{} primitives in {} nodes, ray range {:?}..{:?}, hits: {}",
+        query.table.primitives.len(),
+        query.bvh.nodes.len(),
+        query.ray.t_min,
+        query.ray.t_max,
+        hits.join(", ")
+    )
+}
+
+pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> Outcome {
+    let expected = closest_in_table(query);
+    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+    if found == expected {
+        return Ok(());
+    }
+    let diagnosis = match (found, expected) {
+        (Some((_, t)), _) if !query.ray.contains(t) => "a hit outside of the ray's range",
+        (Some((_, yours)), Some((_, best))) if yours == best => {
+            "of two hits at one t the smaller primitive number wins"
+        }
+        (Some(_), Some(_)) => {
+            "the search stopped before it had seen the nearer hit (all of a leaf? the other child?)"
+        }
+        (None, Some(_)) => "a subtree or part of a leaf was left out",
+        _ => "",
+    };
+    Err(Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)")
+        .looks_like(known(diagnosis)))
+}
+
+/// Two trees so small that an answer tells the mistake: a leaf of four, and two boxes that overlap.
+fn drawn_searches() -> [SearchQuery; 2] {
+    let bounds = Aabb::new(Vec3::ZERO, Vec3::splat(9.0));
+    let ids = tree::references(&[bounds; 4]);
+    let ray = Ray::new(Vec3::NEG_X, Vec3::X);
+    let mut leaf = Bvh::for_primitives(4);
+    let root = leaf.add_node(bounds);
+    leaf.set_leaf(root, &ids);
+    let mut two = Bvh::for_primitives(2);
+    let (root, near, far) = (two.add_node(bounds), two.add_node(bounds), two.add_node(bounds));
+    two.set_leaf(near, &ids[..1]);
+    two.set_leaf(far, &ids[1..2]);
+    two.set_children(root, near, far);
+    let table = |boxes: Vec<(f32, f32)>, primitives: Vec<f32>| Table { boxes, primitives };
+    [
+        SearchQuery { bvh: leaf, ray, table: table(vec![(1.0, 9.0)], vec![3.0, 5.0, 4.0, 2.0]) },
+        SearchQuery { bvh: two, ray, table: table(vec![(1.0, 9.0), (1.0, 8.0), (2.0, 9.0)], vec![6.0, 4.0]) },
+    ]
+}
+
+fn judge_drawn_searches(yours: &[SearchAnswer]) -> Outcome {
+    let queries = drawn_searches();
+    let diagnosis = |index: usize, yours: &SearchAnswer| match (index, yours.hit.map(|hit| hit.t)) {
+        (_, None) => "a subtree or part of a leaf was left out",
+        (0, _) if yours.counts.primitive_tests == 1 => "the first hit of a leaf is taken: ask all of a leaf",
+        (0, Some(5.0)) | (1, Some(6.0)) if yours.counts.primitive_tests >= 2 => {
+            "the farther of two hits is kept"
+        }
+        (0, _) => "part of a leaf was left out: its last primitive?",
+        _ => {
+            "boxes overlap: the search stopped before it had seen the nearer hit, which is in the other child"
+        }
+    };
+    for (index, (query, yours)) in queries.iter().zip(yours).enumerate() {
+        let (found, expected) = (yours.hit.map(|hit| (hit.primitive, hit.t)), closest_in_table(query));
+        if found != expected {
+            let broken = Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)");
+            return Err(broken.looks_like(Some(diagnosis(index, yours))));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    judge_drawn_searches(&trial.kit.closest_hit_both(&drawn_searches()))?;
+    trial.forall(1500, searches(), |queries| {
+        compare(queries, trial.kit.closest_hit_both(queries), |query, yours| judge_search(query, &yours))
+    })
+}
+
+pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> Outcome {
+    trial.forall(500, searches(), |queries| {
+        compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
+            let met = tree::overlapped(query).len() as u64;
+            let visits = yours.counts.node_visits;
+            let told = |n: u64| format!("{n} nodes opened");
+            if visits <= met {
+                return Ok(());
+            }
+            Err(Broken::told(
+                describe_search(query),
+                told(visits),
+                format!("at most {met}: the ray meets no more boxes"),
+                "counted",
+            )
+            .looks_like(Some("nodes are opened whose box the ray misses: ask probe.enter first")))
+        })
+    })
+}
+
+pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    judge_drawn_searches(&trial.kit.closest_hit(&drawn_searches()))?;
+    trial.forall(1500, searches(), |queries| {
+        compare(queries, trial.kit.closest_hit(queries), |query, yours| judge_search(query, &yours))
+    })
+}
+
+pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    trial.forall(1500, searches(), |queries| {
+        compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
+            let expected = closest_in_table(query).is_some();
+            let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
+            let diagnosis = if yours && nothing {
+                "nothing is hit: to enter a box is not yet a hit"
+            } else if yours {
+                "a hit beyond t_max, or before t_min, hides nothing"
+            } else {
+                "a hit was overlooked"
+            };
+            if yours == expected {
+                Ok(())
+            } else {
+                Err(Broken::new(describe_search(query), yours, expected, "brute force")
+                    .looks_like(Some(diagnosis)))
+            }
+        })
+    })
+}
+
+pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {
+    trial.forall(500, searches(), |queries| {
+        compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
+            let told = |n: u64| format!("{n} primitives asked about after the first hit");
+            match answer.tests_after_hit {
+                0 => Ok(()),
+                n => Err(Broken::told(describe_search(query), told(n), told(0), "counted")
+                    .looks_like(Some("the search goes on after a hit: one is enough"))),
+            }
+        })
+    })
+}

@@ -1,0 +1,279 @@
+//! Ray against box.
+
+use super::boxes::aabb;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::double::{self, box_interval};
+use checks::generate::{direction, point, rough_point};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::SlabQuery;
+use raykata::ray::Ray;
+
+pub(super) fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery], diagnosis: &'static str) -> Vec<Outcome> {
+    compare(queries, trial.kit.slab(queries), |query, yours| {
+        let (near, far) = box_interval(&query.ray, &query.bounds);
+        let (near, far) = (near.max(f64::from(query.ray.t_min)), far.min(f64::from(query.ray.t_max)));
+        // A difference, a reciprocal and a product, and room for methods that widen the box.
+        let slack = |t: f64| if t.is_finite() { 32.0 * double::U * t.abs() } else { 0.0 };
+        let room = slack(near) + slack(far);
+        let same = |yours: f32, exact: f64| {
+            f64::from(yours) == exact || (f64::from(yours) - exact).abs() <= slack(exact)
+        };
+        let right = match yours {
+            Some((enter, leave)) => near <= far + room && same(enter, near) && same(leave, far),
+            None => !(near <= far - room) || (near > far),
+        };
+        if right {
+            return Ok(());
+        }
+        let told = match near <= far {
+            true => format!("Some(({near}, {far}))"),
+            false => "None".into(),
+        };
+        let broken = Broken::told(query.call("slab"), format!("{yours:?}"), told, "double precision");
+        Err(broken.looks_like(known(slab_diagnosis(query, yours, diagnosis))))
+    })
+}
+
+pub(super) fn slab_diagnosis(
+    query: &SlabQuery,
+    yours: Option<(f32, f32)>,
+    otherwise: &'static str,
+) -> &'static str {
+    let inside = query.bounds.contains(query.ray.origin);
+    let zero = query.ray.dir.to_array().contains(&0.0);
+    let within_a_face = (0..3).any(|axis| {
+        let planes = [query.bounds.min[axis], query.bounds.max[axis]];
+        query.ray.dir[axis] == 0.0 && planes.contains(&query.ray.origin[axis])
+    });
+    match yours {
+        Some((enter, leave)) if enter.is_nan() || leave.is_nan() => {
+            "0 · ∞ is NaN: order the comparison so that it drops NaN"
+        }
+        Some(_) if otherwise.is_empty() && misses_by_one_axis(query) => {
+            "an axis is left out: the ray must be between all three pairs of planes at once"
+        }
+        _ if within_a_face => {
+            "the ray runs within the plane of a face: 0 · ∞ is NaN, and a min or max dropped the wrong side"
+        }
+        Some((enter, _)) if enter < query.ray.t_min => "the ray enters before it starts: begin with t_min",
+        Some((_, leave)) if leave > query.ray.t_max => "the ray leaves after it ends: begin with t_max",
+        None if inside && !zero && otherwise.is_empty() => {
+            "the ray starts inside: its entry is behind it (test the exit, not t_b⁻ ≥ 0)"
+        }
+        None if query.ray.dir.min_element() < 0.0 && !zero && otherwise.is_empty() => {
+            "for a negative direction the near plane is the max one: swap"
+        }
+        _ => otherwise,
+    }
+}
+
+/// Whether the ray would hit the box if it were endless along some axis.
+fn misses_by_one_axis(query: &SlabQuery) -> bool {
+    let meets = |bounds: &Aabb| {
+        let (near, far) = box_interval(&query.ray, bounds);
+        near.max(0.0) <= far
+    };
+    let mut endless = [query.bounds; 3];
+    for (axis, bounds) in endless.iter_mut().enumerate() {
+        (bounds.min[axis], bounds.max[axis]) = (f32::MIN, f32::MAX);
+    }
+    !meets(&query.bounds) && endless.iter().any(meets)
+}
+
+pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+    let inputs = (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, dir, bounds, at)| {
+        // Half of the rays are aimed at the box.
+        let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
+        let dir = if at.x > 0.0 && target != origin { target - origin } else { dir };
+        SlabQuery { ray: Ray::new(origin, dir), bounds }
+    });
+    // First what every formula gets right that minds signs and axes: random rays shrink to rays along an axis.
+    let drawn = [
+        (vec3(-2.0, -1.5, -1.0), vec3(1.0, 1.0, 0.75)),
+        (vec3(-2.0, -2.0, 2.0), vec3(1.0, 1.0, 0.25)),
+        (vec3(-2.0, 2.0, -2.0), vec3(1.0, 0.25, 1.0)),
+        (vec3(2.0, -2.0, -2.0), vec3(0.25, 1.0, 1.0)),
+        (vec3(3.0, 2.5, 2.0), vec3(-1.0, -0.875, -0.75)),
+    ]
+    .map(|(origin, dir)| SlabQuery { ray: Ray::new(origin, dir), bounds: UNIT_BOX });
+    judge_slabs(trial, &drawn, "").into_iter().collect::<Outcome>()?;
+    trial.forall(6000, inputs, |queries| judge_slabs(trial, queries, ""))
+}
+
+pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> Outcome {
+    let middle = SlabQuery { ray: Ray::new(Vec3::splat(0.5), vec3(1.0, 0.5, -0.25)), bounds: UNIT_BOX };
+    judge_slabs(trial, &[middle], "").into_iter().collect::<Outcome>()?;
+    let inputs = (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, dir)| {
+        let at = vec3(x as f32, y as f32, z as f32) / 8.0;
+        SlabQuery { ray: Ray::new(bounds.min + at * (bounds.max - bounds.min), dir), bounds }
+    });
+    trial.forall(2000, inputs, |queries| {
+        judge_slabs(trial, queries, "the ray starts inside, or on a face: a closed box is entered at t_min")
+    })
+}
+
+pub(super) const UNIT_BOX: Aabb = Aabb::new(Vec3::ZERO, Vec3::ONE);
+
+/// Judges rays through the box `0..1` by what is known exactly.
+pub(super) fn judge_slabs_exactly(
+    trial: &Trial<'_>,
+    cases: &[(Ray, Aabb, bool)],
+    diagnosis: &'static str,
+) -> Outcome {
+    let queries: Vec<SlabQuery> = cases.iter().map(|&(ray, bounds, _)| SlabQuery { ray, bounds }).collect();
+    for ((query, yours), (_, _, hit)) in queries.iter().zip(trial.kit.slab(&queries)).zip(cases) {
+        let sound = yours.is_none_or(|(enter, leave)| enter <= leave);
+        if yours.is_some() != *hit || !sound {
+            let expected = if *hit { "a hit" } else { "None" };
+            let broken = Broken::told(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
+            return Err(broken.looks_like(Some(diagnosis)));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
+    // B3: every sign of zero on the two axes along which the ray does not move; inside the box's shadow and beside it.
+    let mut cases = Vec::new();
+    for axis in 0..3 {
+        for (first, second) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0)] {
+            for way in [1.0, -1.0] {
+                let mut dir = Vec3::ZERO;
+                dir[axis] = way;
+                dir[(axis + 1) % 3] = first;
+                dir[(axis + 2) % 3] = second;
+                let mut origin = Vec3::splat(0.5);
+                origin[axis] = 0.5 - 2.0 * way;
+                cases.push((Ray::new(origin, dir), UNIT_BOX, true));
+                for beside in [-0.5, 1.5] {
+                    let mut origin = origin;
+                    origin[(axis + 1) % 3] = beside;
+                    cases.push((Ray::new(origin, dir), UNIT_BOX, false));
+                }
+            }
+        }
+    }
+    // First without -0.0: what fails there does not fail for its sign.
+    let negative_zero =
+        |case: &(Ray, Aabb, bool)| case.0.dir.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative());
+    let (negative, positive): (Vec<_>, Vec<_>) = cases.into_iter().partition(negative_zero);
+    judge_slabs_exactly(
+        trial,
+        &positive,
+        "1/d is ∞ for a direction of 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
+    )?;
+    judge_slabs_exactly(
+        trial,
+        &negative,
+        "d = -0.0 is ≥ 0 but 1 / -0.0 is -∞: the planes must swap for it, too",
+    )?;
+    // So small a direction that 1/d overflows: from inside it hits, from beside it never gets there.
+    let creep = vec3(1.0, 1e-40, -1e-40);
+    let cases = [
+        (Ray::new(vec3(-1.0, 0.5, 0.5), creep), UNIT_BOX, true),
+        (Ray::new(vec3(-1.0, -0.5, 0.5), creep), UNIT_BOX, false),
+    ];
+    judge_slabs_exactly(trial, &cases, "1/d overflows to ∞ for a tiny d: treat it like 0")
+}
+
+pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
+    // B4: the origin lies in the plane of a face and the ray stays there: (b - o)/d is 0/0 on that axis.
+    let mut cases = Vec::new();
+    for axis in 0..3 {
+        for plane in [0.0, 1.0] {
+            for zero in [0.0, -0.0] {
+                let mut origin = Vec3::splat(-2.0);
+                let mut dir = Vec3::splat(1.0);
+                origin[axis] = plane;
+                dir[axis] = zero;
+                cases.push((Ray::new(origin, dir), UNIT_BOX, true));
+                cases.push((Ray::new(origin, -dir), UNIT_BOX, false));
+            }
+        }
+    }
+    let diagnosis =
+        "0 · ∞ is NaN, and NaN took part in a min or max: the ray lies in a face, which belongs to the box";
+    judge_slabs_exactly(trial, &cases, diagnosis)
+}
+
+pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
+    let mut cases = Vec::new();
+    for axis in 0..3 {
+        // B6: a box that is padded by a fixed amount is flat again at 100,000.
+        for height in [0.0, 0.25, -3.0, 1e5] {
+            let mut flat = UNIT_BOX;
+            flat.min[axis] = height;
+            flat.max[axis] = height;
+            let mut origin = Vec3::splat(0.5);
+            let mut dir = Vec3::ZERO;
+            origin[axis] = height + 2.0;
+            dir[axis] = -1.0;
+            cases.push((Ray::new(origin, dir), flat, true));
+            cases.push((Ray::new(origin, -dir), flat, false));
+        }
+    }
+    let point = Aabb::new(Vec3::splat(0.5), Vec3::splat(0.5));
+    cases.push((Ray::new(Vec3::ZERO, Vec3::ONE), point, true));
+    cases.push((Ray::new(vec3(0.5, 0.5, -1.0), Vec3::Z), point, true));
+    cases.push((Ray::new(vec3(0.5, 0.25, -1.0), Vec3::Z), point, false));
+    judge_slabs_exactly(
+        trial,
+        &cases,
+        "entry equals exit in a flat box: ≤, not < (and no padding, which is rounded away far from the origin)",
+    )
+}
+
+pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> Outcome {
+    let ray = Ray::new(vec3(-2.0, 0.5, 0.5), Vec3::X);
+    let cases = [
+        (ray, UNIT_BOX, true),
+        (ray.with_range(0.0, 1.0), UNIT_BOX, false),
+        (ray.with_range(4.0, 9.0), UNIT_BOX, false),
+        (ray.with_range(2.25, 2.5), UNIT_BOX, true),
+        (Ray::new(vec3(3.0, 0.5, 0.5), Vec3::X), UNIT_BOX, false),
+        (Ray::new(vec3(1.0, 0.5, 0.5), Vec3::X), UNIT_BOX, true),
+        (Ray::new(vec3(0.5, 0.5, 0.5), Vec3::X), UNIT_BOX, true),
+    ];
+    judge_slabs_exactly(
+        trial,
+        &cases,
+        "the box is closed, and only what lies in t_min..t_max counts (exit at t_min is a hit)",
+    )?;
+    let inside = SlabQuery { ray: ray.with_range(2.25, 2.5), bounds: UNIT_BOX };
+    judge_slabs(trial, &[inside], "the interval is that of the box and of the ray").into_iter().collect()
+}
+
+pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome {
+    // A10: all numbers are eighths, so o + 1 d is the corner exactly, and the closed box is hit: no tolerance.
+    let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
+        let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+        let dir = vec3(pick(0), pick(1), pick(2)) - origin;
+        SlabQuery { ray: Ray::new(origin, if dir == Vec3::ZERO { Vec3::X } else { dir }), bounds }
+    });
+    trial.forall(3000, inputs, |queries| {
+        compare(queries, trial.kit.slab(queries), |query, yours| match yours {
+            Some(_) => Ok(()),
+            None => {
+                Err(Broken::told(query.call("slab"), "None", "a hit", "exact arithmetic").looks_like(Some(
+                    "1/d, the difference and the product are rounded, so far may fall just short of near: \
+                     make far a little longer, (1 + 2 γ₃) times",
+                )))
+            }
+        })
+    })
+}
+
+pub(super) fn slab_of_nothing_is_missed(trial: &Trial<'_>) -> Outcome {
+    let dirs = [Vec3::X, Vec3::NEG_X, Vec3::ONE, -Vec3::ONE, vec3(0.0, -0.0, 1.0)];
+    let cases = dirs.map(|dir| (Ray::new(vec3(0.5, 0.5, 0.5), dir), Aabb::EMPTY, false));
+    judge_slabs_exactly(
+        trial,
+        &cases,
+        "the empty box (inf, -inf) holds nothing: a min and max of both planes turns it inside out, so ask is_empty()",
+    )
+}

@@ -1,0 +1,179 @@
+//! A teapot in a stadium: what trees and searches cost there, counted.
+
+use checks::broken::{Broken, Outcome};
+use checks::{Trial, tree};
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::bvh::Bvh;
+use raykata::count::Counts;
+use raykata::kit::{BuildQuery, SearchAnswer, SearchQuery, TableProbe};
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::shape::Sphere;
+
+/// A small, dense object in a huge, sparse surrounding: where the surface area heuristic earns its keep.
+pub(super) fn stadium() -> Vec<Sphere> {
+    let seats = (0..60).map(|i| {
+        let angle = i as f32 / 60.0 * std::f32::consts::TAU;
+        Sphere { center: vec3(100.0 * angle.cos(), 2.0 + (i % 4) as f32, 80.0 * angle.sin()), radius: 3.0 }
+    });
+    let teapot = (0..140).map(|i| {
+        let (x, y, z) = (i % 7, i / 7 % 5, i / 35);
+        let center = vec3(x as f32, y as f32 + 0.37 * x as f32, z as f32 + 0.21 * y as f32) * 0.3;
+        Sphere { center, radius: 0.1 }
+    });
+    seats.chain(teapot).collect()
+}
+
+/// Rays through the stadium from three eyes: outside, in the seats, beside the teapot.
+pub(super) fn stadium_rays() -> Vec<Ray> {
+    let eyes = [vec3(120.0, 8.0, 7.0), vec3(-3.0, 5.0, -90.0), vec3(4.0, 3.0, 4.0)];
+    let target = |i: i32| vec3((i % 10) as f32 * 0.3 - 0.5, (i / 10) as f32 * 0.3, 0.5);
+    let looks = |eye: Vec3| (0..60).map(move |i| Ray::new(eye, (target(i) - eye).normalize()));
+    eyes.into_iter().flat_map(looks).collect()
+}
+
+/// The same as questions, in the tree that the reference builds.
+pub(super) fn stadium_searches() -> Vec<SearchQuery> {
+    let spheres = stadium();
+    let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
+    let bvh = tree::build(&boxes, 2);
+    stadium_rays().iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect()
+}
+
+pub(super) fn total(answers: &[SearchAnswer]) -> Counts {
+    let mut sum = Counts::default();
+    answers.iter().for_each(|answer| sum += answer.counts);
+    sum
+}
+
+pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) -> Outcome {
+    let bounds: Vec<Aabb> = stadium().iter().map(tree::sphere_box).collect();
+    let cost = |split| {
+        let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 4 };
+        tree::expected_cost(&trial.kit.build(&[query])[0])
+    };
+    let (yours, median) = (
+        cost(Split::SurfaceArea),
+        tree::expected_cost(&tree::build_by_median(&bounds, 4, Split::ObjectMedian)),
+    );
+    let best = tree::expected_cost(&tree::build(&bounds, 4));
+    // Equally cheap cuts may lead to different trees below; the reference's own variants are within 1 %.
+    if yours <= 1.05 * best {
+        return Ok(());
+    }
+    let diagnosis = (yours > 0.8 * median)
+        .then_some("no better than an object median: always the same axis, or areas left out?");
+    let (yours, best) = (
+        format!("expected cost {yours:.3} a ray"),
+        format!("at most {:.3} (object median: {median:.3})", 1.05 * best),
+    );
+    Err(Broken::told(
+        "build of the 200 boxes of a stadium, SurfaceArea, leaf_size 4",
+        yours,
+        best,
+        "the cheapest cut at every node",
+    )
+    .looks_like(diagnosis))
+}
+
+/// Nodes opened and primitives tested by the rays through the stadium, in this tree, by the reference search.
+pub(super) fn counted_cost(bvh: &Bvh, spheres: &[Sphere]) -> u64 {
+    let cost = |ray: &Ray| {
+        let query = tree::search_query(bvh, spheres, ray);
+        let mut probe = TableProbe::new(&query);
+        tree::search(bvh, &mut probe, ray);
+        probe.counts.node_visits + probe.counts.primitive_tests
+    };
+    stadium_rays().iter().map(cost).sum()
+}
+
+pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcome {
+    let spheres = stadium();
+    let bounds: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
+    for split in Split::ALL {
+        let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 4 };
+        let yours = counted_cost(&trial.kit.build(std::slice::from_ref(&query))[0], &spheres);
+        let reference = match split {
+            Split::SurfaceArea => tree::build(&bounds, 4),
+            median => tree::build_by_median(&bounds, 4, median),
+        };
+        // Along which axis a nearly cubic box is cut, and who gets the odd one, moves the cost by a tenth.
+        let most = counted_cost(&reference, &spheres) * 5 / 4;
+        if yours > most {
+            let told = |n: u64| format!("{n} nodes opened and primitives tested");
+            let input = format!("180 rays through a stadium of 200 spheres, tree by {split:?}, leaf_size 4");
+            let broken = Broken::told(
+                input,
+                told(yours),
+                format!("at most {}", told(most)),
+                "a tree by the same rule",
+            );
+            return Err(broken.looks_like(Some(
+                "the tree is sound but costs too much: is the rule applied at every node?",
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// A row of 64 balls along the ray: the first is hit, and of each pair of nodes the farther one lies behind that hit.
+fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
+    let balls: Vec<Sphere> =
+        (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
+    let bvh = tree::build(&balls.iter().map(tree::sphere_box).collect::<Vec<_>>(), 1);
+    let query = tree::search_query(&bvh, &balls, &Ray::new(vec3(-9.0, 0.0, 0.0), Vec3::X));
+    let mut probe = TableProbe::new(&query);
+    tree::search(&bvh, &mut probe, &query.ray);
+    let yours = trial.kit.closest_hit(std::slice::from_ref(&query))[0].counts.node_visits;
+    let told = |n: u64| format!("{n} nodes opened");
+    // No two boxes overlap, so there is one order, and no room for another count.
+    if yours <= probe.counts.node_visits {
+        return Ok(());
+    }
+    let diagnosis = match yours {
+        visits if visits >= bvh.nodes.len() as u64 => {
+            "nothing is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
+        }
+        _ => "the farther box is not tested again after a nearer hit was found",
+    };
+    let input = "a ray along a row of 64 balls, of which it hits the first";
+    let most = format!("at most {}", told(probe.counts.node_visits));
+    Err(Broken::told(input, told(yours), most, "counted").looks_like(Some(diagnosis)))
+}
+
+pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
+    nothing_behind_in_a_row(trial)?;
+    let queries = stadium_searches();
+    let yours = total(&trial.kit.closest_hit(&queries));
+    let reference: Vec<SearchAnswer> = queries
+        .iter()
+        .map(|query| {
+            let mut probe = TableProbe::new(query);
+            let hit = tree::search(&query.bvh, &mut probe, &query.ray);
+            SearchAnswer { hit, counts: probe.counts, tests_after_hit: 0 }
+        })
+        .collect();
+    let best = total(&reference);
+    let all: u64 = queries.iter().map(|query| tree::overlapped(query).len() as u64).sum();
+    // Where both children are entered at once either may come first: a tenth covers what that changes here.
+    let (most_visits, most_tests) = (best.node_visits * 11 / 10, best.primitive_tests * 11 / 10);
+    if yours.node_visits <= most_visits && yours.primitive_tests <= most_tests {
+        return Ok(());
+    }
+    let diagnosis = match yours.node_visits {
+        visits if visits >= all => {
+            "boxes beyond the best hit are entered, too: let ray.t_max shrink with each hit"
+        }
+        _ => "the farther child is entered first, or a box is not tested again after a nearer hit was found",
+    };
+    let told = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
+    let (yours, most) = (told(yours.node_visits, yours.primitive_tests), told(most_visits, most_tests));
+    Err(Broken::told(
+        format!("{} rays through a stadium", queries.len()),
+        yours,
+        format!("at most {most}"),
+        "nearer child first",
+    )
+    .looks_like(Some(diagnosis)))
+}

@@ -1,0 +1,86 @@
+//! Bytes and light.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::known;
+use checks::paste::Paste;
+
+pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
+    let bytes: Vec<u8> = (0..=255).collect();
+    let linear = trial.kit.decode_gamma(&bytes);
+    for (&byte, &yours) in bytes.iter().zip(&linear) {
+        let expected = (f64::from(byte) / 255.0).powi(2);
+        if (f64::from(yours) - expected).abs() > 1e-6 {
+            let diagnosis = match () {
+                () if (f64::from(yours) - f64::from(byte) / 255.0).abs() < 1e-6 => "the square is missing",
+                () if (f64::from(yours) - expected * 255.0 * 255.0).abs() < 1e-2 => "divide by 255 first",
+                () if (f64::from(yours) - (f64::from(byte) / 255.0).sqrt()).abs() < 1e-6 => {
+                    "the root, where the square belongs: encoding takes the root, decoding the square"
+                }
+                () if (f64::from(yours) - (f64::from(byte) / 255.0).powf(2.2)).abs() < 1e-6 => {
+                    "gamma 2.2; the notes take gamma 2, a plain square"
+                }
+                () => "",
+            };
+            return Err(Broken::new(
+                format!("decode_gamma({byte})"),
+                yours,
+                expected as f32,
+                "(byte / 255)²",
+            )
+            .looks_like(known(diagnosis)));
+        }
+    }
+    // √0.16 = 0.4. One off may be rounding, which is told apart below.
+    let yours = trial.kit.encode_gamma(&[0.16])[0];
+    if yours.abs_diff(102) > 1 {
+        let diagnosis = match yours {
+            41 => "the root is left out: light is not written as it is",
+            160..=162 => "the root is taken twice: only one",
+            6 | 7 => "the square, where the root belongs",
+            _ => "the root of the linear value, times 255",
+        };
+        let broken = Broken::new("encode_gamma(0.16)", yours, 102, "255 √linear, rounded");
+        return Err(broken.looks_like(Some(diagnosis)));
+    }
+    let round_trip = trial.kit.encode_gamma(&linear);
+    if let Some(byte) = (0..256).find(|&byte| usize::from(round_trip[byte]) != byte) {
+        let broken = Broken::new(
+            format!("encode_gamma(decode_gamma({byte}))"),
+            round_trip[byte],
+            byte as u8,
+            "there and back",
+        );
+        return Err(broken.looks_like(Some(match round_trip[byte] as usize {
+            below if below + 1 == byte => "rounded down: add one half before the cast",
+            _ => "the root (and only one) of the linear value, times 255",
+        })));
+    }
+    let between: Vec<f32> = (0..=1000).map(|i| i as f32 / 1000.0).collect();
+    for (linear, yours) in between.iter().zip(trial.kit.encode_gamma(&between)) {
+        let exact = 255.0 * f64::from(*linear).sqrt();
+        if (f64::from(yours) - exact).abs() > 0.501 {
+            let input = format!("encode_gamma({linear:?})");
+            // Here, where all bytes came back, 256 in place of 255 may be what is behind it.
+            let down = (f64::from(yours) == exact.floor()).then_some(
+                "rounded down: add one half before the cast (256 √linear cut off is not the same)",
+            );
+            return Err(
+                Broken::new(input, yours, exact.round() as u8, "255 √linear, rounded").looks_like(down)
+            );
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn gamma_survives_nonsense(trial: &Trial<'_>) -> Outcome {
+    let cases =
+        [(-1e-8, 0), (-5.0, 0), (1.0000001, 255), (7.0, 255), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0)];
+    for ((linear, expected), yours) in cases.iter().zip(trial.kit.encode_gamma(&cases.map(|case| case.0))) {
+        if yours != *expected {
+            return Err(Broken::new(format!("encode_gamma({})", linear.paste()), yours, expected, "clamped")
+                .looks_like(Some("clamp to 0..=1 before the root")));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! Stage 4: light and shade.
+//!
+//! `normals` · `terms` · `shadows` · `shades` · `gamma` · `golden`
+
+mod gamma;
+mod golden;
+mod normals;
+mod shades;
+mod shadows;
+mod terms;
+
+use gamma::{gamma_is_two, gamma_survives_nonsense};
+use golden::{picture_of_a_lit_ball, shading_table};
+use normals::{shading_normal_faces_the_viewer, shading_normal_falls_back_to_flat};
+use shades::{
+    shade_adds_up_the_lights, shade_leaves_out_what_is_hidden, shade_traces_one_ray_a_light_at_most,
+};
+use shadows::{
+    shadow_ray_is_not_traced_in_vain, shadow_ray_leaves_its_own_surface_at_any_scale,
+    shadow_ray_reaches_just_short_of_the_light, shadow_ray_sees_what_is_close,
+};
+use terms::{
+    diffuse_term_is_the_cosine, light_from_behind_adds_nothing, specular_term_is_the_mirrored_cosine,
+};
+
+checks::stage! { ($ crate) 4 [
+    shading_normal_faces_the_viewer
+    shading_normal_falls_back_to_flat
+    diffuse_term_is_the_cosine
+    specular_term_is_the_mirrored_cosine
+    light_from_behind_adds_nothing
+    shadow_ray_reaches_just_short_of_the_light
+    shadow_ray_leaves_its_own_surface_at_any_scale
+    shadow_ray_sees_what_is_close
+    shadow_ray_is_not_traced_in_vain
+    shade_adds_up_the_lights
+    shade_leaves_out_what_is_hidden
+    shade_traces_one_ray_a_light_at_most
+    gamma_is_two
+    gamma_survives_nonsense
+    shading_table
+    picture_of_a_lit_ball
+] }

@@ -1,0 +1,69 @@
+//! The normal to shade with.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::generate::unit;
+use checks::judge::{compare, known};
+use checks::paste::Paste;
+use glam::Vec3;
+use proptest::prelude::*;
+
+pub(super) fn paste_normal_query((geometric, interpolated, dir): &(Vec3, Option<Vec3>, Vec3)) -> String {
+    let interpolated = interpolated.map_or("None".into(), |n| format!("Some({})", n.paste()));
+    format!("shading_normal({}, {interpolated}, {})", geometric.paste(), dir.paste())
+}
+
+pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
+    // Smooth normals lean up to a third of the way from the geometric one, and may be of any length and either sign.
+    let inputs = (unit(), unit(), unit(), any::<bool>(), any::<bool>(), 1..=8i32).prop_map(
+        |(geometric, lean, dir, smooth, back, length)| {
+            let bent = (geometric + 0.3 * lean) * length as f32 / 4.0;
+            (geometric, smooth.then_some(if back { -bent } else { bent }), dir)
+        },
+    );
+    trial.forall(2000, inputs, |queries| {
+        compare(queries, trial.kit.shading_normal(queries), |query, yours| {
+            let (geometric, interpolated, dir) = *query;
+            let facing = if geometric.dot(dir) > 0.0 { -geometric } else { geometric };
+            let expected = match interpolated.map(Vec3::normalize) {
+                Some(smooth) if smooth.dot(facing) < 0.0 => -smooth,
+                Some(smooth) => smooth,
+                None => facing,
+            };
+            let grazing = geometric.dot(dir).abs() < 1e-6;
+            let same = |n: Vec3| (yours - n).length() < 1e-5;
+            if same(expected) || (grazing && same(-expected)) {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if same(-expected) => "the normal points away from the viewer",
+                () if (yours.normalize_or_zero() - expected).length() < 1e-4 => {
+                    "an interpolated normal is shorter than 1: normalise it"
+                }
+                () if interpolated.is_some() && same(facing) => {
+                    "the flat normal, though the surface is smooth"
+                }
+                () => "",
+            };
+            Err(Broken::new(paste_normal_query(query), yours, expected, "closed form")
+                .looks_like(known(diagnosis)))
+        })
+    })
+}
+
+pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> Outcome {
+    let queries = [Vec3::ZERO, Vec3::NAN].map(|useless| (Vec3::Y, Some(useless), Vec3::Y));
+    for (query, yours) in queries.iter().zip(trial.kit.shading_normal(&queries)) {
+        if yours != Vec3::NEG_Y {
+            let broken = Broken::new(
+                paste_normal_query(query),
+                yours,
+                Vec3::NEG_Y,
+                "the flat normal, facing the viewer",
+            );
+            return Err(broken
+                .looks_like(Some("an average of zero has no direction: fall back to the geometric normal")));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,234 @@
+//! The whole illumination.
+
+use super::terms::{cos_phi, specular};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::generate::{point, unit};
+use checks::judge::{compare, known};
+use checks::paste::Arguments;
+use glam::{DVec3, Vec3, vec3};
+use proptest::prelude::*;
+use raykata::kit::{LightSample, ShadeQuery, Surface, TermQuery};
+use raykata::material::Material;
+
+pub(super) fn light() -> impl Strategy<Value = LightSample> + Clone {
+    (unit(), 1..=40i32, point(1)).prop_map(|(direction, distance, color)| LightSample {
+        direction,
+        distance: distance as f32 / 4.0,
+        radiance: 2.0 * color.abs(),
+    })
+}
+
+pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
+    let colors = (point(1), point(1), point(1), point(1));
+    let lights = prop::collection::vec((light(), any::<bool>()), 0..5);
+    (unit(), unit(), colors, 0..=64i32, lights).prop_map(
+        |(normal, to_viewer, (ambient, a, d, s), exponent, lights)| {
+            // The viewer stands on the side of the normal.
+            let to_viewer = if to_viewer.dot(normal) < 0.0 { -to_viewer } else { to_viewer };
+            let material = Material {
+                ambient: a.abs(),
+                diffuse: d.abs(),
+                specular: s.abs(),
+                exponent: exponent as f32 / 2.0,
+                ..Material::default()
+            };
+            let (lights, visible) = lights.into_iter().unzip();
+            let surface = Surface {
+                point: Vec3::ZERO,
+                error: Vec3::splat(1e-7),
+                geometric_normal: normal,
+                shading_normal: normal,
+            };
+            ShadeQuery { surface, to_viewer, material, ambient: ambient.abs(), lights, visible }
+        },
+    )
+}
+
+fn term(query: &ShadeQuery, index: usize) -> TermQuery {
+    TermQuery {
+        normal: query.surface.shading_normal,
+        to_light: query.lights[index].direction,
+        to_viewer: query.to_viewer,
+        exponent: query.material.exponent,
+    }
+}
+
+/// The diffuse and the specular share of light `index` in double precision, shadows aside.
+fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
+    let light = &query.lights[index];
+    let diffuse = query.surface.shading_normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
+    let radiance = light.radiance.as_dvec3();
+    let Material { diffuse: kd, specular: ks, .. } = &query.material;
+    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term(query, index))]
+}
+
+/// Whether light `index` is at the horizon, or the viewer at right angles to its mirrored direction: there it may or may not
+/// count, and with exponent 0 that is not a small difference.
+fn is_on_edge(query: &ShadeQuery, index: usize) -> bool {
+    let term = term(query, index);
+    term.normal.dot(term.to_light).abs() < 1e-5 || cos_phi(&term).abs() < 1e-5
+}
+
+/// How far a colour may be off from `right`.
+fn tolerance(right: DVec3) -> f64 {
+    1e-4 * (1.0 + right.abs().max_element())
+}
+
+/// The share of light `index`, shadows aside.
+fn share(query: &ShadeQuery, index: usize) -> DVec3 {
+    shares(query, index).into_iter().sum()
+}
+
+fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool) -> DVec3 {
+    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
+    (0..query.lights.len()).filter(|&light| counts(light)).map(|light| share(query, light)).sum::<DVec3>()
+        + ambient
+}
+
+pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.shade(queries), |query, yours| {
+        let color = yours.color.as_dvec3();
+        let expected = expected_color(query, |light| query.visible[light]);
+        let same = |other: DVec3| (color - other).abs().max_element() < tolerance(other);
+        if (0..query.lights.len()).any(|light| is_on_edge(query, light)) || same(expected) {
+            return Ok(());
+        }
+        let diagnosis = shade_diagnosis(query, color, expected, same);
+        Err(Broken::new(
+            query.call("shade"),
+            yours.color,
+            expected.as_vec3(),
+            "the formula in double precision",
+        )
+        .looks_like(known(diagnosis)))
+    })
+}
+
+/// The mistake that gives this colour.
+fn shade_diagnosis(
+    query: &ShadeQuery,
+    color: DVec3,
+    expected: DVec3,
+    same: impl Fn(DVec3) -> bool,
+) -> &'static str {
+    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
+    let kd = query.material.diffuse.as_dvec3();
+    let visible: Vec<usize> = (0..query.lights.len()).filter(|&light| query.visible[light]).collect();
+    let only = |part: usize| visible.iter().map(|&light| shares(query, light)[part]).sum::<DVec3>() + ambient;
+    let white = ShadeQuery {
+        lights: query.lights.iter().map(|light| LightSample { radiance: Vec3::ONE, ..*light }).collect(),
+        ..query.clone()
+    };
+    let one = |light: Option<&usize>| light.is_some_and(|&light| same(share(query, light) + ambient));
+    match () {
+        () if color.is_nan() => "NaN: a negative cosine to a broken power?",
+        () if same(expected - ambient) => "the ambient part is missing",
+        () if visible.len() < query.lights.len() && same(expected_color(query, |_| true)) => {
+            "hidden lights shine as well: multiply by V_i"
+        }
+        () if visible.len() < query.lights.len()
+            && same(expected_color(query, |light| !query.visible[light])) =>
+        {
+            "visible and hidden are swapped"
+        }
+        () if same(expected.min(DVec3::ONE)) => "the colour is cut off at 1: that is for the picture to do",
+        () if same(only(1)) => "the diffuse part is missing",
+        () if same(only(0)) => "the specular part is missing",
+        () if one(visible.first()) || one(visible.last()) => {
+            "one light counts, the first light or the last: add up all of them"
+        }
+        () if same(expected_color(&white, |light| query.visible[light])) => {
+            "the colour of the light is left out"
+        }
+        () if same(ambient + (expected - ambient) * kd) => "the light is multiplied by kd twice",
+        () if same(expected + (query.lights.len().max(1) - 1) as f64 * ambient) => {
+            "the ambient part is added for each light: it counts once"
+        }
+        () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
+            "too bright: is the cosine left out, or a light counted that is behind the surface?"
+        }
+        () => "",
+    }
+}
+
+/// A surface with two lights on which each part and each way to go wrong gives another colour.
+fn drawn(brightness: f32, visible: [bool; 2]) -> ShadeQuery {
+    let light = |direction: Vec3, radiance: Vec3| LightSample { direction, distance: 2.0, radiance };
+    let material = Material {
+        ambient: vec3(0.5, 0.25, 0.5),
+        diffuse: vec3(0.5, 0.25, 0.75),
+        specular: vec3(0.25, 0.5, 0.125),
+        exponent: 4.0,
+        ..Material::default()
+    };
+    ShadeQuery {
+        surface: Surface {
+            point: Vec3::ZERO,
+            error: Vec3::splat(1e-7),
+            geometric_normal: Vec3::Y,
+            shading_normal: Vec3::Y,
+        },
+        to_viewer: vec3(0.28, 0.96, 0.0),
+        material,
+        ambient: vec3(0.2, 0.4, 0.6),
+        lights: vec![
+            light(vec3(-0.6, 0.8, 0.0), brightness * vec3(0.5, 0.25, 0.75)),
+            light(vec3(0.0, 0.8, 0.6), brightness * vec3(0.25, 0.5, 0.125)),
+        ],
+        visible: visible.to_vec(),
+    }
+}
+
+pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> Outcome {
+    let drawn = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
+    judge_shades(trial, &drawn).into_iter().collect::<Outcome>()?;
+    let all_visible =
+        shade_query().prop_map(|query| ShadeQuery { visible: vec![true; query.lights.len()], ..query });
+    trial.forall(2000, all_visible, |queries| judge_shades(trial, queries))
+}
+
+pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> Outcome {
+    judge_shades(trial, &[drawn(1.0, [true, false])]).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, shade_query(), |queries| judge_shades(trial, queries))
+}
+
+pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome {
+    // Every fourth surface is black.
+    let queries = (shade_query(), 0..4i32).prop_map(|(mut query, which)| {
+        if which == 0 {
+            (query.material.diffuse, query.material.specular) = (Vec3::ZERO, Vec3::ZERO);
+        }
+        query
+    });
+    trial.forall(2000, queries, |queries| {
+        compare(queries, trial.kit.shade(queries), |query, yours| {
+            // A light needs a ray if it has a share to give that the colour shows: a cosine to the power of 32 may be 0 in
+            // single precision, and what is darker than colours are judged to may be left out.
+            let cosine = |light: usize| query.lights[light].direction.dot(query.surface.shading_normal);
+            let shows = |light: usize| share(query, light).max_element() > tolerance(DVec3::ZERO);
+            let needed: Vec<usize> =
+                (0..query.lights.len()).filter(|&light| !is_on_edge(query, light) && shows(light)).collect();
+            let needless =
+                |light: &usize| cosine(*light) < -1e-5 || query.lights[*light].radiance == Vec3::ZERO;
+            let mut traced = yours.traced.clone();
+            traced.sort_unstable();
+            let twice = traced.windows(2).any(|pair| pair[0] == pair[1]);
+            let vain = traced.iter().any(needless);
+            let missed = needed.iter().any(|light| !traced.contains(light));
+            let black = query.material.diffuse == Vec3::ZERO
+                && query.material.specular == Vec3::ZERO
+                && !traced.is_empty();
+            let diagnosis = match () {
+                () if twice => "two rays to one light: keep the answer",
+                () if vain => "a ray to a light that is behind the surface or switched off",
+                () if black => "the surface is black: no light changes that, so no ray is needed",
+                () if missed => "a light is counted without asking whether it is visible",
+                () => return Ok(()),
+            };
+            let told = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
+            Err(Broken::told(query.call("shade"), told(&traced), told(&needed), "counted")
+                .looks_like(Some(diagnosis)))
+        })
+    })
+}

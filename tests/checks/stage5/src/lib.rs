@@ -1,0 +1,49 @@
+//! Stage 5: mirrors and glass.
+//!
+//! `directions` · `fresnel` · `children` (which rays go on) · `weights` (whose decides) · `leaving` (from where) ·
+//! `trees` (what becomes of them, counted)
+
+mod children;
+mod directions;
+mod fresnel;
+mod leaving;
+mod trees;
+mod weights;
+
+use children::{
+    children_are_not_traced_in_vain, children_leave_glass_as_they_entered,
+    children_totally_reflected_are_not_refracted, children_weigh_what_the_surface_says,
+};
+use directions::{
+    mirror_keeps_the_angle, mirror_stays_of_unit_length_in_a_corridor,
+    refract_beyond_the_critical_angle_is_nothing, refract_goes_straight_where_it_must, refract_obeys_snell,
+    refract_survives_rounded_directions,
+};
+use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees_with_double_precision};
+use leaving::rays_that_go_on_leave_their_surface;
+use trees::{
+    facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,
+    tree_of_a_glass_ball,
+};
+use weights::children_count_by_their_own_weight;
+
+checks::stage! { ($ crate) 5 [
+    mirror_keeps_the_angle
+    mirror_stays_of_unit_length_in_a_corridor
+    refract_obeys_snell
+    refract_goes_straight_where_it_must
+    refract_beyond_the_critical_angle_is_nothing
+    refract_survives_rounded_directions
+    fresnel_schlick_agrees_with_double_precision
+    fresnel_exact_agrees_with_double_precision
+    children_weigh_what_the_surface_says
+    children_leave_glass_as_they_entered
+    children_totally_reflected_are_not_refracted
+    children_are_not_traced_in_vain
+    children_count_by_their_own_weight
+    rays_that_go_on_leave_their_surface
+    tree_ends_at_its_depth
+    tree_ends_where_children_count_too_little
+    facing_mirrors_end
+    tree_of_a_glass_ball
+] }

@@ -1,0 +1,163 @@
+//! What becomes of the rays: whole trees, counted, in worlds so simple that every ray's fate is known.
+
+use super::children::{FAR, paste};
+use checks::broken::{Broken, Outcome};
+use checks::{Trial, golden};
+use glam::{Vec3, vec3};
+use raykata::kit::{Bounce, ChildrenQuery, Limits};
+use raykata::material::{Fresnel, Material};
+
+/// A tree with more rays than this does not end.
+const TOO_MANY: usize = 20_000;
+
+/// Rays of the tree in a closed room in which every ray meets the same surface at the same slant.
+fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ChildrenQuery) {
+    let first = ChildrenQuery {
+        dir: vec3(0.6, -0.8, 0.0),
+        normal: Vec3::Y,
+        entering: true,
+        material: material.clone(),
+        weight: Vec3::ONE,
+        depth: 0,
+        limits,
+    };
+    let mut level = vec![first.clone()];
+    let mut rays = 0;
+    while !level.is_empty() && rays < TOO_MANY {
+        rays += level.len();
+        let children = trial.kit.children(&level);
+        let next = |(parent, children): (&ChildrenQuery, Vec<raykata::kit::Child>)| {
+            let depth = parent.depth + 1;
+            let parent = parent.clone();
+            children
+                .into_iter()
+                .map(move |child| ChildrenQuery { weight: child.weight, depth, ..parent.clone() })
+                .collect::<Vec<_>>()
+        };
+        level = level.iter().zip(children).flat_map(next).collect();
+    }
+    (rays, first)
+}
+
+fn judge(
+    trial: &Trial<'_>,
+    mirror: f32,
+    transmission: f32,
+    limits: Limits,
+    expected: usize,
+    diagnosis: &str,
+) -> Outcome {
+    let material = Material {
+        mirror: Vec3::splat(mirror),
+        transmission: Vec3::splat(transmission),
+        ..Material::default()
+    };
+    let (rays, first) = rays_in_a_room(trial, &material, limits);
+    if rays == expected {
+        return Ok(());
+    }
+    let told =
+        |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "a tree without end".into() };
+    let input = format!("a closed room, every ray followed, from\n{}", paste(&first));
+    Err(Broken::told(input, told(rays), told(expected), "counted").looks_like(Some(diagnosis)))
+}
+
+pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
+    let depth = "a ray that was mirrored or refracted max_depth times sends none on";
+    for (max_depth, expected) in [(0, 1), (1, 3), (2, 7), (5, 63), (10, 2047)] {
+        judge(trial, 0.5, 0.5, Limits { max_depth, ..FAR }, expected, depth)?;
+    }
+    // R8: dull walls, depth 10: one ray and not 2047.
+    judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "rays of weight zero are followed")
+}
+
+pub(super) fn tree_ends_where_children_count_too_little(trial: &Trial<'_>) -> Outcome {
+    // R9: halves down to a hundredth: 1/64 is traced and 1/128 is not. Testing the parent makes 255 rays of 127.
+    let parent = "the weight of the child decides, not that of its parent";
+    let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
+    // Twenty bounces, 1 + 20 rays, if the limit is not there at all.
+    let left_out = "limits.min_contribution is left out: only the depth ends this";
+    let halving = judge(trial, 0.5, 0.0, Limits { max_depth: 20, min_contribution: 0.01 }, 7, parent);
+    halving.map_err(|broken| match broken.yours.as_str() {
+        "21 rays" => broken.looks_like(Some(left_out)),
+        _ => broken,
+    })?;
+    judge(trial, 0.5, 0.5, limits(0.01), 127, parent)?;
+    judge(trial, 0.5, 0.0, limits(0.01), 7, parent)?;
+    judge(
+        trial,
+        0.25,
+        0.5,
+        limits(0.5),
+        2,
+        "a weight of just min_contribution is traced, and one below is not",
+    )?;
+    // Both limits: whichever comes first.
+    judge(trial, 0.5, 0.5, Limits { max_depth: 3, min_contribution: 0.01 }, 15, "both limits hold")
+}
+
+pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> Outcome {
+    // Perfect mirrors lose nothing: only the depth ends this.
+    judge(
+        trial,
+        1.0,
+        0.0,
+        Limits { max_depth: 50, min_contribution: 0.001 },
+        51,
+        "the weight never falls: the depth must end it",
+    )
+}
+
+/// The tree of a ray through a glass ball, each ray with its weight. Every correct solution makes this one.
+pub(super) fn tree_of_a_glass_ball(trial: &Trial<'_>) -> Outcome {
+    let glass = Material {
+        transmission: Vec3::ONE,
+        index_of_refraction: 1.5,
+        fresnel: Fresnel::Exact,
+        ..Material::default()
+    };
+    let mut text = String::new();
+    let start = vec3(-1.0, 0.0, 0.0);
+    let (sine, cosine) = (0.5f32, 0.75f32.sqrt());
+    follow(trial, &glass, start, vec3(cosine, sine, 0.0), true, Vec3::ONE, 0, &mut text);
+    golden::compare(
+        "stage5_tree_of_a_glass_ball",
+        "a ray into a ball of glass (index 1.5, Fresnel::Exact) at 30°, depth 4",
+        &text,
+    )
+}
+
+/// Writes the children of a ray that meets the unit ball at `point`, and theirs.
+#[allow(clippy::too_many_arguments, reason = "a recursion over plain data")]
+fn follow(
+    trial: &Trial<'_>,
+    glass: &Material,
+    point: Vec3,
+    dir: Vec3,
+    entering: bool,
+    weight: Vec3,
+    depth: u32,
+    text: &mut String,
+) {
+    let normal = if entering { point } else { -point };
+    let limits = Limits { max_depth: 4, min_contribution: 0.001 };
+    // Who forgets the depth has been seen to, and need not be followed to the end of the stack.
+    if depth > 2 * limits.max_depth || text.len() > 10_000 {
+        text.push_str("…\n");
+        return;
+    }
+    let query = ChildrenQuery { dir, normal, entering, material: glass.clone(), weight, depth, limits };
+    let mut children = trial.kit.children(&[query]).remove(0);
+    children.sort_by_key(|child| child.bounce == Bounce::Transmission);
+    for child in children {
+        let indent = "  ".repeat(depth as usize);
+        let goes_in = (child.bounce == Bounce::Transmission) == entering;
+        let fate = if goes_in { "to the ball" } else { "away" };
+        text.push_str(&format!("{indent}{:?} {:.3} {fate}\n", child.bounce, child.weight.x));
+        if goes_in {
+            // Inside, the next hit is the other end of the chord.
+            let next = point - 2.0 * point.dot(child.direction) * child.direction;
+            follow(trial, glass, next.normalize(), child.direction, false, child.weight, depth + 1, text);
+        }
+    }
+}

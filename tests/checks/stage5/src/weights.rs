@@ -1,0 +1,74 @@
+//! Whose weight decides about a ray.
+
+use super::children::{FAR, drawn, find, paste, queries};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::compare;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::kit::{Bounce, Child, ChildrenQuery, Limits};
+use raykata::material::{Fresnel, Material};
+
+/// X8: it is the child's own weight that counts, not that of its parent, and each child's by itself.
+pub(super) fn children_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
+    let [slanted, ..] = drawn();
+    let (dir, normal) = (slanted.dir, slanted.normal);
+    // Eighths, so that weights are exact and often just what is asked for; an index of 1, so that nothing is bent or
+    // mirrored back.
+    let queries = (queries(), 0..=64i32).prop_map(move |(query, least)| ChildrenQuery {
+        dir,
+        normal,
+        material: Material { index_of_refraction: 1.0, fresnel: Fresnel::None, ..query.material },
+        limits: Limits { min_contribution: least as f32 / 64.0, ..FAR },
+        ..query
+    });
+    let at = |mirror: f32, transmission: f32, least: f32| ChildrenQuery {
+        weight: Vec3::ONE,
+        material: Material {
+            mirror: Vec3::splat(mirror),
+            transmission: Vec3::splat(transmission),
+            fresnel: Fresnel::None,
+            ..slanted.material.clone()
+        },
+        limits: Limits { min_contribution: least, ..FAR },
+        ..slanted.clone()
+    };
+    let drawn =
+        [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
+    let judge = |queries: &[ChildrenQuery]| compare(queries, trial.kit.children(queries), judge_own_weight);
+    judge(&drawn).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, queries, judge)
+}
+
+fn judge_own_weight(query: &ChildrenQuery, yours: Vec<Child>) -> Outcome {
+    let least = query.limits.min_contribution;
+    let [parent, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
+    let weights = [mirror, transmission].map(|share| (parent * share).max_element());
+    let counts = weights.map(|weight| weight > 0.0 && weight >= least);
+    let found = [Bounce::Reflection, Bounce::Transmission].map(|bounce| find(&yours, bounce).is_some());
+    if found == counts {
+        return Ok(());
+    }
+    let off = usize::from(found[0] == counts[0]);
+    let (weight, other) = (weights[off], weights[1 - off]);
+    let diagnosis = match (found[off], weight) {
+        (true, 0.0) => "a child of weight zero: it shows nothing, so no ray for it",
+        (true, _) if other >= least && parent.max_element() >= least => {
+            "the weight of its parent, or of the other child, is tested: each child counts by its own"
+        }
+        (true, _) if parent.max_element() >= least => {
+            "the weight of its parent is tested, not its own: the ray is traced in vain"
+        }
+        (true, _) => "min_contribution is left out",
+        (false, _) if weight == least => "a weight of just min_contribution is enough",
+        (false, _) if other < least => {
+            "the weight of the other child is tested: each child counts by its own"
+        }
+        (false, _) => "a ray is left out that counts in one channel: the largest channel decides",
+    };
+    let kind = ["Reflection", "Transmission"][off];
+    let verdict =
+        |traced: bool| format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" });
+    Err(Broken::told(paste(query), verdict(found[off]), verdict(counts[off]), "its own weight and the limit")
+        .looks_like(Some(diagnosis)))
+}

@@ -1,0 +1,255 @@
+//! Rays through a lens.
+
+use super::pixels::unit_number;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::{Paste, call};
+use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
+use glam::{DVec3, Vec2, Vec3, vec2, vec3};
+use proptest::prelude::*;
+use raykata::camera::{Camera, Lens};
+use raykata::kit::LensQuery;
+use raykata::ray::Ray;
+
+/// Random places on the disk, with the square of their distance from the middle and their angle as shares of 1.
+pub(super) fn polar(place: Vec2) -> (f64, f64) {
+    let (x, y) = (f64::from(place.x), f64::from(place.y));
+    (x * x + y * y, y.atan2(x) / std::f64::consts::TAU + 0.5)
+}
+
+/// What is wrong with a disk that is not covered evenly, by its rings of equal area from the middle outwards.
+pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
+    let rings = columns(counts);
+    if rings[7] == 0 {
+        "only the middle of the disk: all up to its radius belongs to it, and the radius is no diameter"
+    } else if rings[0] > 2 * rings[7] {
+        "crowded in the middle: area grows with the square of the radius, so take the root of u"
+    } else if rings[7] > 2 * rings[0] {
+        "crowded at the rim"
+    } else {
+        ""
+    }
+}
+
+pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
+    let u = pairs(trial.seed, SAMPLES);
+    let places = trial.kit.on_disk(&u);
+    for (u, place) in u.iter().zip(&places) {
+        // A radius of 1 and a few roundings.
+        if !(place.length() <= 1.0 + 1e-6) {
+            let broken = Broken::new(call("on_disk", &[u]), place, "a length of 1 at most", "the definition");
+            return Err(broken.looks_like(Some("outside the disk: corners of the square are not on it")));
+        }
+    }
+    let polar: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
+    covers_evenly("on_disk(u)", &polar, ["radius²", "angle"], uneven_disk)?;
+    let radii: Vec<f64> = polar.iter().map(|(squared, _)| squared.sqrt()).collect();
+    has_mean("the length of on_disk(u)", &radii, 2.0 / 3.0, "")
+}
+
+pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
+    let numbers = (unit_number(), unit_number()).prop_map(|(x, y)| vec2(x, y));
+    // The middle of the square and its diagonals are where formulas divide by 0.
+    let corners = [0.0, 0.25, 0.5, 0.75].map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)]);
+    let judge = |queries: &[Vec2]| {
+        compare(queries, trial.kit.on_disk(queries), |u, yours| {
+            if yours.length() <= 1.0 + 1e-6 {
+                return Ok(());
+            }
+            let nan = yours.is_nan().then_some("0 / 0: the middle of the square is a place, too");
+            Err(Broken::new(call("on_disk", &[u]), yours, "a length of 1 at most", "the definition")
+                .looks_like(nan))
+        })
+    };
+    judge(corners.as_flattened()).into_iter().collect::<Outcome>()?;
+    trial.forall(1000, numbers, judge)
+}
+
+fn camera(position: Vec3) -> Camera {
+    let camera = Camera::new(position, vec3(0.6, -0.48, -0.64), Vec3::Y, 60.0, 1.5);
+    camera.expect("it does not look straight up")
+}
+
+/// A lens anywhere on the film of a camera at `position`.
+fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
+    let place = || (-8..=8i32).prop_map(|eighths| eighths as f32 / 8.0);
+    let on_lens = (place(), place()).prop_map(|(x, y)| vec2(x, y).clamp_length_max(1.0));
+    ((0..=16i32, 0..=16i32), on_lens, (0..=8i32), (1..=40i32)).prop_map(
+        move |((x, y), on_lens, aperture, distance)| {
+            let camera = camera(position);
+            LensQuery {
+                camera,
+                pinhole: camera.ray(x as f32 / 16.0, y as f32 / 16.0),
+                lens: Lens { aperture: aperture as f32 / 8.0, focal_distance: distance as f32 / 2.0 },
+                on_lens,
+            }
+        },
+    )
+}
+
+fn paste(query: &LensQuery) -> String {
+    let Camera { position, towards, .. } = &query.camera;
+    let camera = format!(
+        "let camera = Camera::new({}, {}, Vec3::Y, 60.0, 1.5).unwrap();",
+        position.paste(),
+        towards.paste()
+    );
+    let lens = format!(
+        "Lens {{ aperture: {}, focal_distance: {} }}",
+        query.lens.aperture.paste(),
+        query.lens.focal_distance.paste()
+    );
+    format!("{camera}\nlens_ray(&camera, {}, &{lens}, {})", query.pinhole.paste(), query.on_lens.paste())
+}
+
+pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
+    let queries = lens_query(vec3(1.0, 2.0, 3.0)).prop_map(|query| match query.on_lens.x > 0.0 {
+        true => LensQuery { lens: Lens { aperture: 0.0, ..query.lens }, ..query },
+        false => LensQuery { on_lens: Vec2::ZERO, ..query },
+    });
+    trial.forall(500, queries, |queries| {
+        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
+            if yours == query.pinhole {
+                return Ok(());
+            }
+            let near =
+                (yours.dir - query.pinhole.dir).length() < 1e-5 && yours.origin == query.pinhole.origin;
+            let diagnosis = match () {
+                () if near => "almost: computed anew, the direction is a rounding off; return the pinhole's",
+                () if yours.dir.is_nan() => "NaN",
+                () => "",
+            };
+            Err(Broken::new(paste(query), yours, query.pinhole, "bit for bit the ray through the middle")
+                .looks_like(known(diagnosis)))
+        })
+    })
+}
+
+/// Where a ray meets the plane of focus, seen from the camera, in double precision.
+fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
+    let towards = query.camera.towards.as_dvec3();
+    let start = ray.origin.as_dvec3() - query.camera.position.as_dvec3();
+    let dir = ray.dir.as_dvec3();
+    start + (f64::from(query.lens.focal_distance) - start.dot(towards)) / dir.dot(towards) * dir
+}
+
+pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
+    let judge = |queries: &[LensQuery]| {
+        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
+            let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
+            // A few roundings of the direction, over the distance; near the rim of a wide lens they are stretched.
+            let off = (found - expected).length() / expected.length();
+            if off < 1e-5 {
+                return Ok(());
+            }
+            let distance = f64::from(query.lens.focal_distance);
+            let [dir, towards] = [query.pinhole.dir, query.camera.towards].map(Vec3::as_dvec3);
+            let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
+            let aims = |way: DVec3| (yours.dir.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
+            let diagnosis = match () {
+                () if yours.is_nan_anywhere() => "NaN",
+                () if aims(distance * dir - start) => {
+                    "focal_distance along the ray is a sphere: divide it by the cosine with camera.towards"
+                }
+                () if aims(distance * dir.dot(towards) * dir - start) => {
+                    "multiplied by the cosine with camera.towards: along the ray it is farther, so divide"
+                }
+                () if aims(distance * towards - start) => {
+                    "every ray aims at the middle of the plane of focus: aim where its pinhole ray meets it"
+                }
+                () if aims(expected + start) => "turned away from the focus: take the offset off",
+                () if aims(dir) => {
+                    "parallel to the ray through the middle: aim at where that ray meets the plane of focus"
+                }
+                () => "",
+            };
+            Err(Broken::told(
+                paste(query),
+                format!("a ray that misses by {:.2e}", (found - expected).length()),
+                format!("a ray through camera.position + {:?}", expected.as_vec3()),
+                "the plane of focus",
+            )
+            .looks_like(known(diagnosis)))
+        })
+    };
+    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
+}
+
+/// A ray well off the axis from well off the middle of a wide lens: there all mistakes make different rays.
+fn drawn() -> LensQuery {
+    let camera = camera(vec3(1.0, 2.0, 3.0));
+    LensQuery {
+        camera,
+        pinhole: camera.ray(0.25, 0.125),
+        lens: Lens { aperture: 0.5, focal_distance: 3.0 },
+        on_lens: vec2(0.5, -0.75),
+    }
+}
+
+trait NanAnywhere {
+    fn is_nan_anywhere(&self) -> bool;
+}
+
+impl NanAnywhere for Ray {
+    fn is_nan_anywhere(&self) -> bool {
+        self.origin.is_nan() || self.dir.is_nan()
+    }
+}
+
+pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
+    let judge = |queries: &[LensQuery]| {
+        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
+            let camera = &query.camera;
+            let place = 0.5 * query.lens.aperture * query.on_lens;
+            let expected = camera.position + place.x * camera.right + place.y * camera.up;
+            // Two roundings of coordinates up to 4.
+            let near = |v: Vec3| (yours.origin - v).length() < 2e-6;
+            let unit = (yours.dir.length() - 1.0).abs() < 1e-5;
+            if near(expected) && unit {
+                return Ok(());
+            }
+            let double = camera.position + 2.0 * (expected - camera.position);
+            let diagnosis = match () {
+                () if !unit => "its direction is not of unit length",
+                () if near(double) => "aperture is the diameter of the opening, not its radius",
+                () if near(camera.position) => "every ray starts in the middle: the lens is a pinhole",
+                () if near(camera.position + place.x * camera.right)
+                    || near(camera.position + place.y * camera.up) =>
+                {
+                    "a slit: the lens extends along camera.right and along camera.up"
+                }
+                () if near(camera.position + place.extend(0.0)) => {
+                    "along x and y of the world: the lens extends along camera.right and camera.up"
+                }
+                () => "",
+            };
+            Err(Broken::new(paste(query), yours, expected, "its origin is position + aperture / 2 · on_lens")
+                .looks_like(known(diagnosis)))
+        })
+    };
+    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    trial.forall(1000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
+}
+
+pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcome {
+    // There numbers are 1/16 apart: the place of the lens is rounded, but the direction need not be.
+    trial.forall(1000, lens_query(vec3(1e6, -1e6, 1e6)), |queries| {
+        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
+            let camera = &query.camera;
+            let place = 0.5 * query.lens.aperture * query.on_lens;
+            let offset = (place.x * camera.right + place.y * camera.up).as_dvec3();
+            let focus = in_focus(query, &query.pinhole);
+            let expected = (focus - offset).normalize();
+            // A few roundings of the direction.
+            if (yours.dir.as_dvec3() - expected).length() < 2e-6 {
+                return Ok(());
+            }
+            let broken = Broken::new(paste(query), yours.dir, expected.as_vec3(), "double precision");
+            Err(broken.looks_like(Some(
+                "digits were lost in camera.position: take the difference of two places seen from the camera",
+            )))
+        })
+    })
+}

@@ -1,0 +1,73 @@
+//! Stage 6: many rays where one was.
+//!
+//! `pixels` · `lens` · `lamps` · `rough` (surfaces) · `motion`
+//!
+//! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million a test.
+
+mod lamps;
+mod lens;
+mod motion;
+mod pixels;
+mod rough;
+
+use checks::generate::unit;
+use glam::Vec3;
+use lamps::{
+    a_far_ball_is_still_a_ball, directions_to_a_ball_are_even, from_inside_a_ball_it_is_everywhere,
+    half_a_ball_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_lamp_are_even,
+};
+use lens::{
+    lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens, lens_without_width_is_a_pinhole,
+    places_on_the_disk_are_even, places_on_the_disk_are_places, plane_of_focus_is_sharp,
+};
+use motion::{
+    between_is_exact_where_it_must, between_stays_on_the_way, sweep_covers_the_way_and_no_more,
+    temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
+};
+use pixels::{
+    develop_is_the_weighted_mean, develop_of_nothing_is_black, each_sampler_has_its_places,
+    gaussian_weight_is_a_bell_that_ends, jittered_samples_cover_the_pixel_evenly,
+    jittered_samples_stay_in_their_cells,
+};
+use proptest::prelude::Strategy;
+use rough::{
+    gloss_falls_with_the_power_of_the_cosine, gloss_stays_on_its_side, slightly_rough_is_not_a_few_angles,
+    smooth_surfaces_stay_sharp,
+};
+
+/// A direction off a surface, and the normal on its side.
+fn unit_arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
+    (unit(), unit())
+        .prop_map(|(ideal, normal)| (ideal, if normal.dot(ideal) < 0.0 { -normal } else { normal }))
+}
+
+checks::stage! { ($ crate) 6 [
+    jittered_samples_stay_in_their_cells
+    jittered_samples_cover_the_pixel_evenly
+    each_sampler_has_its_places
+    gaussian_weight_is_a_bell_that_ends
+    develop_is_the_weighted_mean
+    develop_of_nothing_is_black
+    places_on_the_disk_are_places
+    places_on_the_disk_are_even
+    lens_without_width_is_a_pinhole
+    lens_rays_start_on_the_lens
+    plane_of_focus_is_sharp
+    lens_is_as_sharp_a_million_units_away
+    places_on_a_rectangle_are_even
+    places_on_a_round_lamp_are_even
+    directions_to_a_ball_are_even
+    a_far_ball_is_still_a_ball
+    from_inside_a_ball_it_is_everywhere
+    half_a_ball_makes_half_a_shadow
+    smooth_surfaces_stay_sharp
+    gloss_falls_with_the_power_of_the_cosine
+    slightly_rough_is_not_a_few_angles
+    gloss_stays_on_its_side
+    temporal_table_has_each_time_once
+    times_lie_in_their_slots
+    times_are_even
+    between_is_exact_where_it_must
+    between_stays_on_the_way
+    sweep_covers_the_way_and_no_more
+] }

@@ -1,0 +1,147 @@
+//! Rays off and through rough surfaces.
+
+use super::pixels::unit_number;
+use crate::unit_arrival;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::call;
+use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
+use glam::{Vec3, vec2, vec3};
+use proptest::prelude::*;
+use raykata::kit::GlossQuery;
+
+fn paste(query: &GlossQuery) -> String {
+    call("gloss", &[&query.ideal, &query.normal, &query.roughness, &query.u])
+}
+
+pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> Outcome {
+    let queries = (unit_arrival(), unit_number(), unit_number())
+        .prop_map(|((ideal, normal), u, v)| GlossQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) });
+    trial.forall(500, queries, |queries| {
+        compare(queries, trial.kit.gloss(queries), |query, yours| {
+            if yours == query.ideal {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if yours.is_nan() => "NaN: 2 / 0² is infinite",
+                () if (yours - query.ideal).length() < 1e-3 => {
+                    "almost: with roughness 0 return ideal itself, so that a smooth mirror is one"
+                }
+                () => "blurred all the same: with roughness 0 return ideal itself",
+            };
+            Err(Broken::new(paste(query), yours, query.ideal, "roughness 0").looks_like(known(diagnosis)))
+        })
+    })
+}
+
+/// Directions off a surface, seen along its normal so that none is turned back, as shares of likelihood: from the ideal
+/// direction outwards, and around it.
+fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
+    let axis = vec3(0.48, 0.6, -0.64);
+    let queries: Vec<GlossQuery> = pairs(trial.seed, SAMPLES)
+        .into_iter()
+        .map(|u| GlossQuery { ideal: axis, normal: axis, roughness, u })
+        .collect();
+    let exponent = 2.0 / f64::from(roughness).powi(2) - 2.0;
+    let ideal = axis.as_dvec3().normalize();
+    let (x, y) = ideal.any_orthonormal_pair();
+    let mut shares = Vec::new();
+    for (query, direction) in queries.iter().zip(trial.kit.gloss(&queries)) {
+        let dir = direction.as_dvec3();
+        if !((dir.length() - 1.0).abs() < 1e-5) {
+            let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
+            return Err(broken.looks_like(dir.is_nan().then_some("NaN: the root of a number below 0?")));
+        }
+        // cosⁿ⁺¹ θ is even in 0..1; ln cos θ from the sine, which keeps the digits of small angles.
+        let sine_squared = dir.cross(ideal).length_squared().min(1.0);
+        let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
+        shares.push((share, dir.dot(y).atan2(dir.dot(x)) / std::f64::consts::TAU + 0.5));
+    }
+    Ok(shares)
+}
+
+const AXES: [&str; 2] = ["cosⁿ⁺¹ θ", "the angle around ideal"];
+
+const TOO_BLURRED: &str = "too blurred: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
+const TOO_SHARP: &str = "too sharp: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
+
+pub(super) fn gloss_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Outcome {
+    for roughness in [0.2, 0.5, 1.0] {
+        let shares = lobe(trial, roughness)?;
+        covers_evenly(&format!("gloss with roughness {roughness}"), &shares, AXES, |counts| {
+            let rings = columns(counts);
+            match () {
+                // With the exponent 1 / n in place of 1 / (n + 1), rays spread too far; small cosines are too common.
+                () if 4 * rings[0] > 5 * rings[7] => TOO_BLURRED,
+                () if 4 * rings[7] > 5 * rings[0] => TOO_SHARP,
+                () => "",
+            }
+        })?;
+        // The mean of cos θ of a lobe with power n is (n + 1) / (n + 2).
+        let n = 2.0 / f64::from(roughness).powi(2) - 2.0;
+        let cosines: Vec<f64> = shares.iter().map(|(share, _)| share.powf(1.0 / (n + 1.0))).collect();
+        let (mean, expected) = (cosines.iter().sum::<f64>() / cosines.len() as f64, (n + 1.0) / (n + 2.0));
+        has_mean(
+            &format!("the cosine of gloss with ideal, roughness {roughness}"),
+            &cosines,
+            expected,
+            if mean < expected { TOO_BLURRED } else { TOO_SHARP },
+        )?;
+    }
+    Ok(())
+}
+
+pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
+    // n = 2,000,000: cosines differ from 1 in their last four bits only.
+    let shares = lobe(trial, 0.001)?;
+    covers_evenly("gloss with roughness 0.001", &shares, AXES, |counts| {
+        let rings = columns(counts);
+        let uneven = rings.iter().max() > Some(&(SAMPLES as u64 / 7)); // a ring gets an eighth ± 2 %
+        if uneven {
+            "few angles occur: √(1 - cos²) has lost its digits; take 1 - cos θ from expm1"
+        } else {
+            ""
+        }
+    })
+}
+
+pub(super) fn gloss_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
+    let queries = (unit_arrival(), 1..=16i32, unit_number(), unit_number()).prop_map(
+        |((ideal, normal), sixteenths, u, v)| GlossQuery {
+            ideal,
+            normal,
+            roughness: sixteenths as f32 / 16.0,
+            u: vec2(u, v),
+        },
+    );
+    trial.forall(3000, queries, |queries| {
+        // The same with a normal that turns nothing back shows what was drawn.
+        let free: Vec<GlossQuery> =
+            queries.iter().map(|query| GlossQuery { normal: query.ideal, ..*query }).collect();
+        let drawn = trial.kit.gloss(&free);
+        let pairs: Vec<(GlossQuery, Vec3)> = queries.iter().copied().zip(drawn).collect();
+        compare(&pairs, trial.kit.gloss(queries), |(query, drawn), yours| {
+            let above = drawn.dot(query.normal);
+            let expected = if above < 0.0 { *drawn - 2.0 * above * query.normal } else { *drawn };
+            // A few roundings; rays along the surface may lie a rounding below it.
+            if (yours - expected).length() < 1e-5 && yours.dot(query.normal) > -1e-5 {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if yours.is_nan() => "NaN: ln 0 is -∞, and 0 · ∞ is NaN",
+                () if (yours + *drawn).length() < 1e-4 => "turned around: only its part along the normal is",
+                () if above < -1e-3 && yours.dot(query.normal).abs() < 1e-5 => {
+                    "laid into the surface: take its part along the normal off twice"
+                }
+                () if yours.dot(query.normal) < 0.0 => "it goes to the other side: mirror it on the normal",
+                () if above < 0.0 && yours == query.ideal => {
+                    "replaced by ideal: there the blurred image gets too bright; mirror it on the normal"
+                }
+                () => "",
+            };
+            Err(Broken::new(paste(query), yours, expected, "mirrored back to the side of the normal")
+                .looks_like(known(diagnosis)))
+        })
+    })
+}

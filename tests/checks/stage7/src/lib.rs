@@ -1,0 +1,39 @@
+//! Stage 7: only what the scene calls for.
+//!
+//! `decisions` (of lights and materials) · `whole` (scenes) · `rays` (at most) · `hits` (rays of known ones) · `images`
+
+mod decisions;
+mod hits;
+mod images;
+mod rays;
+mod scenes;
+mod whole;
+
+use decisions::{lights_take_what_they_are, materials_take_what_they_show};
+use hits::{rays_of_hits_are_exact, samples_reach_the_error_that_is_asked_for};
+use images::{
+    images_are_blended, images_survive_nonsense, middles_of_pixels_show_the_pixel, texels_wrap_as_they_should,
+};
+use rays::{bound_follows_the_bounces, bound_stays_at_the_largest_number, shadow_arithmetic_of_the_lecture};
+use whole::{
+    a_plain_scene_takes_nothing_special, every_subset_of_effects_is_recognised,
+    lens_and_time_matter_only_where_they_are_seen, what_is_not_shown_takes_nothing,
+};
+
+checks::stage! { ($ crate) 7 [
+    lights_take_what_they_are
+    materials_take_what_they_show
+    a_plain_scene_takes_nothing_special
+    what_is_not_shown_takes_nothing
+    lens_and_time_matter_only_where_they_are_seen
+    every_subset_of_effects_is_recognised
+    shadow_arithmetic_of_the_lecture
+    bound_follows_the_bounces
+    bound_stays_at_the_largest_number
+    rays_of_hits_are_exact
+    samples_reach_the_error_that_is_asked_for
+    texels_wrap_as_they_should
+    middles_of_pixels_show_the_pixel
+    images_are_blended
+    images_survive_nonsense
+] }

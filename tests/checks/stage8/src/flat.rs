@@ -1,0 +1,114 @@
+//! Where the formulas of flat shapes lie.
+
+use super::hard::{judge_cases, of};
+use super::solids::{agrees_flat, input};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::compare;
+use glam::{Vec3, vec3};
+use oracle::splitmix::Random;
+use raykata::kit::SolidQuery;
+use raykata::ray::Ray;
+use raykata::shape::{Disk, Polygon};
+
+pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> Outcome {
+    agrees_flat::<Disk>(trial)?;
+    // The rim, which the laws leave out: at points whose distance from the centre is a whole number.
+    let coin = Disk { center: Vec3::ZERO, normal: 2.0 * Vec3::Z, radius: 5.0 };
+    let down = |x: f32, y: f32| of(&coin)(vec3(x, y, 3.0), Vec3::NEG_Z);
+    let rim = "the rim belongs to it: compare with <= and not with <";
+    judge_cases(
+        trial,
+        &[
+            (down(5.0, 0.0), Some(3.0), rim),
+            (down(3.0, -4.0), Some(3.0), rim),
+            (down(5.25, 0.0), None, "beside the disk"),
+        ],
+    )
+}
+
+/// T8–T10, 35–37.
+pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
+    let square = Polygon {
+        corners: vec![vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(2.0, 2.0, 0.0), vec3(0.0, 2.0, 0.0)],
+    };
+    let turned = Polygon { corners: square.corners.iter().rev().copied().collect() };
+    let in_a_line = Polygon {
+        corners: vec![vec3(0.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(1.0, 2.0, 0.0)],
+    };
+    let down = |polygon: &Polygon, x: f32, y: f32| of(polygon)(vec3(x, y, 3.0), Vec3::NEG_Z);
+    let closed = "edges and corners belong to the polygon: to pass exactly through them is to hit";
+    let diagonal = "the diagonals of the fan are inside";
+    // T10: no other ray from there can tell, since it meets the plane at its start alone.
+    let on_an_edge = SolidQuery {
+        ray: Ray::new(vec3(1.0, 0.0, 0.0), Vec3::NEG_Z).with_range(-1.0, 1.0),
+        solid: square.clone(),
+    };
+    let normalised =
+        "the eye is on the line of an edge: their plane has the normal 0, which made a unit vector is NaN";
+    let winding = "corners in the other order are the same polygon from behind";
+    judge_cases(
+        trial,
+        &[
+            (down(&square, 0.5, 1.5), Some(3.0), ""),
+            (down(&square, 1.0, 1.0), Some(3.0), diagonal),
+            (down(&square, 0.0, 0.0), Some(3.0), closed),
+            (down(&square, 2.0, 1.0), Some(3.0), closed),
+            (down(&square, 2.25, 1.0), None, "outside"),
+            (
+                down(&square, 2.0 + 2f32.powi(-13), 1.0),
+                None,
+                "an epsilon at the edges: what is beside them is no hit",
+            ),
+            (on_an_edge, Some(0.0), normalised),
+            (down(&turned, 0.5, 1.5), Some(3.0), winding),
+            (down(&turned, 2.0, 2.0), Some(3.0), winding),
+            (
+                down(&in_a_line, 1.0, 0.5),
+                Some(3.0),
+                "three corners in a line: the normal of the first three is no normal",
+            ),
+            (down(&in_a_line, 1.0, 0.0), Some(3.0), closed),
+            (down(&in_a_line, 1.75, 1.0), None, "outside"),
+            (
+                of(&square)(vec3(-1.0, 1.0, 0.0), Vec3::X),
+                None,
+                "a ray along the polygon meets it in no point",
+            ),
+        ],
+    )?;
+    // Two polygons share an edge far from the origin: no ray at it may pass between them. The numbers are short, so that
+    // the four corners lie in a plane to the last bit; but no point of the edge except its ends is as short.
+    let place = vec3(1483.0, 12.0, -2234.0);
+    let (a, b, e) =
+        (place + vec3(0.125, 0.25, 0.0), place + vec3(1.25, -0.375, 0.125), place + vec3(2.875, 0.125, 0.25));
+    let edge = vec3(1639.0, 6143.0, 3277.0) / 4096.0;
+    let (c, d) = (b + edge, a + edge);
+    let (left, right) = (Polygon { corners: vec![a, b, c, d] }, Polygon { corners: vec![b, e, c] });
+    let mut random = Random::new(trial.seed, 9);
+    let rays: Vec<Ray> = (0..3000)
+        .map(|_| {
+            let origin = place + vec3(0.0, 0.0, 4.0) + random.in_cube();
+            Ray::new(origin, b.lerp(c, 0.05 + 0.9 * random.unit()) - origin)
+        })
+        .collect();
+    let queries = |polygon: &Polygon| -> Vec<SolidQuery<Polygon>> {
+        rays.iter().map(|ray| SolidQuery { ray: *ray, solid: polygon.clone() }).collect()
+    };
+    let (left, right) = (queries(&left), queries(&right));
+    let pairs: Vec<_> = trial.kit.polygon(&left).into_iter().zip(trial.kit.polygon(&right)).collect();
+    compare(&left, pairs, |query, answers| match answers {
+        (None, None) => Err(Broken::told(
+            format!("{}\nand its neighbour across the edge", input(query)),
+            "None, twice",
+            "a hit of one of them at least",
+            "they share the edge",
+        )
+        .looks_like(Some(
+            "a point on the plane is rounded, and falls between the two: ask on which side of the edge the ray passes",
+        ))),
+        _ => Ok(()),
+    })
+    .into_iter()
+    .collect()
+}

@@ -1,0 +1,261 @@
+//! Searches of scene graphs, against tables of answers.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::tree::closest_of;
+use glam::Vec3;
+use oracle::splitmix::Random;
+use raykata::bvh::PrimitiveHit;
+use raykata::graph::{Graph, GraphNode, Savings};
+use raykata::kit::{GraphAnswer, GraphQuery, Table};
+use raykata::ray::Ray;
+
+const NOTHING: Savings = Savings { volumes: false, skip: false, sort: false };
+const VOLUMES: Savings = Savings { volumes: true, ..NOTHING };
+const SKIP: Savings = Savings { volumes: true, skip: true, sort: false };
+const SORT: Savings = Savings { volumes: true, skip: false, sort: true };
+const ALL: Savings = Savings { volumes: true, skip: true, sort: true };
+
+/// A tree of up to a dozen nodes with hits at halves, so that there are ties, and volumes that hold what they should.
+fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
+    let n_nodes = 1 + random.below(12) as usize;
+    let mut nodes = vec![GraphNode::default(); n_nodes];
+    for node in 1..n_nodes {
+        let parent = random.below(node as u64) as usize;
+        nodes[parent].children.push(node as u32);
+    }
+    let mut primitives = Vec::new();
+    for node in &mut nodes {
+        for _ in 0..random.below(3) {
+            node.primitives.push(primitives.len() as u32);
+            let hit = 0.5 * (1 + random.below(12)) as f32;
+            primitives.push(if random.below(3) == 0 { f32::INFINITY } else { hit });
+        }
+    }
+    let mut boxes = vec![(f32::INFINITY, f32::NEG_INFINITY); n_nodes];
+    for index in (0..n_nodes).rev() {
+        let hits = nodes[index].primitives.iter().map(|&p| primitives[p as usize]).filter(|t| t.is_finite());
+        let (mut near, mut far) = hits.fold(boxes[index], |(near, far), t| (near.min(t), far.max(t)));
+        for &child in &nodes[index].children {
+            let (enter, leave) = boxes[child as usize];
+            (near, far) = (near.min(enter), far.max(leave));
+        }
+        // Some boxes are entered a little earlier than their content is met; some that hold nothing are entered, too.
+        if near <= far {
+            near -= 0.5 * random.below(3) as f32;
+        } else if random.below(2) == 0 {
+            (near, far) = (1.0, 2.0);
+        }
+        boxes[index] = (near, far);
+    }
+    let (t_min, t_max) = [(0.0, f32::INFINITY), (1.0, 4.5), (2.5, f32::INFINITY)][random.below(3) as usize];
+    let ray = Ray::new(Vec3::ZERO, Vec3::X).with_range(t_min, t_max);
+    GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
+}
+
+/// The first failure is told: that of the fewest nodes.
+fn plainest_first(queries: &mut [GraphQuery]) {
+    queries.sort_by_key(|query| (query.graph.nodes.len(), query.table.primitives.len()));
+}
+
+fn told(query: &GraphQuery) -> String {
+    let node = |(index, node): (usize, &GraphNode)| {
+        let (enter, leave) = query.table.boxes[index];
+        let hits: Vec<String> = node
+            .primitives
+            .iter()
+            .map(|&primitive| format!("#{primitive} at {}", query.table.primitives[primitive as usize]))
+            .collect();
+        format!("{index} ({enter}..{leave}): [{}] children {:?}", hits.join(", "), node.children)
+    };
+    let nodes: Vec<String> = query.graph.nodes.iter().enumerate().map(node).collect();
+    let Savings { volumes, skip, sort } = query.savings;
+    format!(
+        "closest_hit_in_graph, t in {}..{}, volumes {volumes}, skip {skip}, sort {sort}, nodes\n{}",
+        query.ray.t_min,
+        query.ray.t_max,
+        nodes.join("; ")
+    )
+}
+
+pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 1);
+    let mut queries: Vec<GraphQuery> = Vec::new();
+    for _ in 0..300 {
+        for savings in [NOTHING, VOLUMES, SKIP, SORT, ALL] {
+            queries.push(random_query(&mut random, savings));
+        }
+    }
+    queries.push(GraphQuery {
+        graph: Graph::default(),
+        ray: Ray::new(Vec3::ZERO, Vec3::X),
+        savings: ALL,
+        table: Table::default(),
+    });
+    plainest_first(&mut queries);
+    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+        let expected = closest_of(&query.table.primitives, &query.ray)
+            .map(|(primitive, t)| PrimitiveHit { t, primitive });
+        let found = yours.search.hit;
+        if found == expected {
+            return Ok(());
+        }
+        let diagnosis = match (found, expected) {
+            (Some(found), Some(right)) if found.t == right.t => {
+                "of two hits at the same t the smaller number wins"
+            }
+            (Some(found), Some(right)) if found.t > right.t => {
+                "a nearer hit was left out, or replaced by a farther one"
+            }
+            (None, Some(_)) => "a hit was lost: a node's own primitives, or those of a child",
+            _ => "",
+        };
+        let named = |hit: Option<PrimitiveHit>| {
+            hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
+        };
+        Err(Broken::told(told(query), named(found), named(expected), "brute force")
+            .looks_like(known(diagnosis)))
+    };
+    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+}
+
+pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 2);
+    let mut queries: Vec<GraphQuery> = (0..200).map(|_| random_query(&mut random, NOTHING)).collect();
+    plainest_first(&mut queries);
+    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+        let (n_boxes, mut asked) = (yours.search.counts.box_tests, yours.asked);
+        asked.sort_unstable();
+        let all: Vec<u32> = (0..query.table.primitives.len() as u32).collect();
+        if n_boxes == 0 && asked == all {
+            return Ok(());
+        }
+        let diagnosis = match () {
+            () if n_boxes > 0 => {
+                "without `volumes` no volume is asked for: this is what the savings are counted against"
+            }
+            () if asked.len() > all.len() => "a primitive was asked twice",
+            () => "without `skip` nothing is left out",
+        };
+        Err(Broken::told(
+            told(query),
+            format!("{n_boxes} volumes and the primitives {asked:?}"),
+            format!("no volume and the primitives {all:?}"),
+            "the definition",
+        )
+        .looks_like(Some(diagnosis)))
+    };
+    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+}
+
+pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
+    let mut random = Random::new(trial.seed, 3);
+    let mut queries: Vec<GraphQuery> = (0..200).map(|_| random_query(&mut random, VOLUMES)).collect();
+    plainest_first(&mut queries);
+    let judge = |query: &GraphQuery, yours: GraphAnswer| {
+        let GraphQuery { graph, ray, table, .. } = query;
+        // The nodes that are come to: those whose volumes, and all volumes above, are entered.
+        let (mut boxes, mut expected) = (0, Vec::new());
+        let mut waiting: Vec<u32> = if graph.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(index) = waiting.pop() {
+            boxes += 1;
+            let (near, far) = table.boxes[index as usize];
+            let enter = near.max(ray.t_min);
+            if enter <= far && enter < ray.t_max {
+                let node = &graph.nodes[index as usize];
+                expected.extend(node.primitives.iter().copied());
+                waiting.extend(&node.children);
+            }
+        }
+        expected.sort_unstable();
+        let (n_boxes, mut asked) = (yours.search.counts.box_tests, yours.asked);
+        asked.sort_unstable();
+        if (n_boxes, &asked) == (boxes, &expected) {
+            return Ok(());
+        }
+        let diagnosis = match () {
+            () if asked.len() > expected.len() => "the content of a volume that the ray misses is asked for",
+            () if n_boxes > boxes => "a volume is asked for more than once, or below one that is missed",
+            () if n_boxes < boxes => {
+                "not all volumes are asked for: the root has one, too, and so has each leaf"
+            }
+            () => "something was left out that the ray may meet",
+        };
+        Err(Broken::told(
+            told(query),
+            format!("{n_boxes} volumes, primitives {asked:?}"),
+            format!("{boxes} volumes, primitives {expected:?}"),
+            "the definition",
+        )
+        .looks_like(Some(diagnosis)))
+    };
+    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+}
+
+/// A root with `n` children one behind the other, each with one primitive in its middle; listed as `order` says.
+fn row(order: &[u32], savings: Savings) -> GraphQuery {
+    let n = order.len();
+    let mut nodes =
+        vec![GraphNode { children: order.iter().map(|child| child + 1).collect(), primitives: vec![] }];
+    nodes.extend(
+        (0..n as u32).map(|primitive| GraphNode { children: Vec::new(), primitives: vec![primitive] }),
+    );
+    let mut boxes = vec![(1.0, n as f32 + 1.0)];
+    boxes.extend((0..n).map(|i| (i as f32 + 1.0, i as f32 + 1.75)));
+    let primitives = (0..n).map(|i| i as f32 + 1.5).collect();
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
+}
+
+/// What may be asked, in order, and what the plainest mistake looks like.
+fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)]) -> Outcome {
+    let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
+    compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, diagnosis), yours| {
+        if yours.asked == *expected {
+            return Ok(());
+        }
+        Err(Broken::told(
+            told(query),
+            format!("asked the primitives {:?}", yours.asked),
+            format!("{expected:?}"),
+            "the definition",
+        )
+        .looks_like(known(diagnosis)))
+    })
+    .into_iter()
+    .collect()
+}
+
+pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Outcome {
+    let beyond = "a volume that begins beyond the closest hit cannot hold a closer one";
+    let mut meets_again = row(&[0, 1], SKIP);
+    // The second begins where the first is hit, and is hit there: the smaller number wins, and has to be heard.
+    (meets_again.table.boxes[2], meets_again.table.primitives[1]) = ((1.5, 2.0), 1.5);
+    judge_orders(
+        trial,
+        &[
+            (row(&[0, 1, 2, 3], SKIP), vec![0], beyond),
+            (row(&[3, 2, 1, 0], SKIP), vec![3, 2, 1, 0], "without `sort` children are looked into as listed"),
+            (row(&[1, 3, 0, 2], SKIP), vec![1, 0], beyond),
+            (row(&[0, 1, 2], VOLUMES), vec![0, 1, 2], "without `skip` nothing is left out"),
+            (meets_again, vec![0, 1], "what begins at the very t of the hit may hold one at the same t"),
+        ],
+    )
+}
+
+pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> Outcome {
+    let order = "of the children that are entered, the one that is entered first comes first";
+    judge_orders(
+        trial,
+        &[
+            (row(&[3, 2, 1, 0], ALL), vec![0], order),
+            (row(&[1, 3, 0, 2], ALL), vec![0], order),
+            (
+                row(&[3, 1, 0, 2], SORT),
+                vec![0, 1, 2, 3],
+                "sorted, but nothing skipped: all four, the nearest first",
+            ),
+        ],
+    )
+}

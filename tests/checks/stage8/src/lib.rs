@@ -1,0 +1,91 @@
+//! Stage 8: scene graph and solids.
+//!
+//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `balls` (around points) · `graph` (searches) ·
+//! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard`, `flat` (where their formulas lie) · `surfaces`
+//! (patches) · `subdivision` (meshes; `quarters`: their triangles)
+
+mod balls;
+mod boxes;
+mod flat;
+mod graph;
+mod hard;
+mod quarters;
+mod solid;
+mod solids;
+mod spaces;
+mod subdivision;
+mod surfaces;
+
+use balls::{
+    ball_holds_all_points, ball_is_small, enter_ball_finds_what_is_met, enter_ball_passes_what_is_missed,
+};
+use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
+use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};
+use graph::{
+    graph_asks_for_everything_without_savings, graph_asks_for_volumes_first, graph_finds_the_closest_hit,
+    graph_looks_into_the_nearest_first, graph_skips_what_begins_beyond_the_hit,
+};
+use hard::{
+    cone_at_its_tip_and_rim, cone_is_not_its_mirror_image, cone_seen_along_its_side,
+    cuboid_seen_along_its_faces, cylinder_at_its_rim, cylinder_seen_along_its_axis,
+};
+use solids::{
+    cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
+    cuboid_agrees_with_exact_arithmetic, cuboid_keeps_to_the_rules, cuboid_normals_point_outwards,
+    cylinder_agrees_with_exact_arithmetic, cylinder_keeps_to_the_rules, cylinder_normals_point_outwards,
+    disk_keeps_to_the_rules, polygon_agrees_with_exact_arithmetic, polygon_keeps_to_the_rules,
+};
+use spaces::{
+    normals_are_at_right_angles_to_the_surface, normals_stay_outside_in_a_mirror,
+    placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone,
+    rays_keep_their_t_in_every_space, rays_pass_the_same_points_in_every_space,
+};
+use subdivision::{
+    loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
+};
+use surfaces::{bezier_point_is_the_mean_of_its_net, bezier_starts_and_ends_at_its_corners};
+
+checks::stage! { ($ crate) 8 [
+    rays_pass_the_same_points_in_every_space
+    rays_keep_their_t_in_every_space
+    normals_are_at_right_angles_to_the_surface
+    normals_stay_outside_in_a_mirror
+    placement_multiplies_in_the_right_order
+    placement_refuses_what_cannot_be_undone
+    boxes_hold_what_they_should_after_transforms
+    boxes_have_little_room_after_transforms
+    ball_holds_all_points
+    ball_is_small
+    enter_ball_finds_what_is_met
+    enter_ball_passes_what_is_missed
+    graph_finds_the_closest_hit
+    graph_asks_for_everything_without_savings
+    graph_asks_for_volumes_first
+    graph_skips_what_begins_beyond_the_hit
+    graph_looks_into_the_nearest_first
+    cuboid_agrees_with_exact_arithmetic
+    cuboid_normals_point_outwards
+    cuboid_keeps_to_the_rules
+    cuboid_seen_along_its_faces
+    cylinder_agrees_with_exact_arithmetic
+    cylinder_normals_point_outwards
+    cylinder_keeps_to_the_rules
+    cylinder_seen_along_its_axis
+    cylinder_at_its_rim
+    cone_agrees_with_exact_arithmetic
+    cone_normals_point_outwards
+    cone_keeps_to_the_rules
+    cone_is_not_its_mirror_image
+    cone_seen_along_its_side
+    cone_at_its_tip_and_rim
+    disk_agrees_with_exact_arithmetic
+    disk_keeps_to_the_rules
+    polygon_agrees_with_exact_arithmetic
+    polygon_keeps_to_the_rules
+    polygon_at_edges_and_corners
+    bezier_starts_and_ends_at_its_corners
+    bezier_point_is_the_mean_of_its_net
+    loop_makes_four_triangles_of_each
+    loop_places_vertices_by_the_rule
+    loop_borders_depend_on_borders
+] }

@@ -1,0 +1,210 @@
+//! What a check knows of each solid: how to ask for it, its exact answer, the same a little larger, and how far it reaches.
+
+use checks::generate::{direction, point};
+use glam::{DVec3, Vec3};
+use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
+use proptest::prelude::*;
+use raykata::kit::{Kit, SolidHit, SolidQuery};
+use raykata::ray::Ray;
+use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
+use std::fmt::Debug;
+
+/// A solid that rays are tested against.
+pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'static {
+    /// The function that students write.
+    const NAME: &'static str;
+
+    /// Whether it has no inside.
+    const FLAT: bool = false;
+
+    /// Asks it.
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>>;
+
+    /// The exact answer.
+    fn meet(&self, ray: &Ray) -> Option<Meeting>;
+
+    /// The same, grown by this factor around a point inside.
+    fn grown(&self, factor: f32) -> Self;
+
+    /// A point inside for each point of the cube from -1 to 1.
+    fn inside(&self, at: Vec3) -> Vec3;
+
+    /// The largest `normal · q` of all its points `q`.
+    fn reach(&self, normal: DVec3) -> f64;
+
+    /// All kinds of it, with short numbers.
+    fn any() -> BoxedStrategy<Self>;
+}
+
+fn around(center: Vec3, factor: f32) -> impl Fn(Vec3) -> Vec3 {
+    move |point| center + factor * (point - center)
+}
+
+/// Half a unit to two units, in quarters.
+fn radius() -> impl Strategy<Value = f32> + Clone {
+    (2..=8i32).prop_map(|quarters| quarters as f32 / 4.0)
+}
+
+/// What stays of a vector beside another.
+fn beside(vector: DVec3, axis: DVec3) -> f64 {
+    vector.reject_from(axis.normalize()).length()
+}
+
+/// The point that is `at` in the round, as seen along `axis`.
+fn in_round(base: Vec3, axis: Vec3, radius: f32, along: f32, at: Vec3) -> Vec3 {
+    let (x, y) = axis.normalize().any_orthonormal_pair();
+    // The square in the disk.
+    base + along * axis + 0.7 * radius * (at.x * x + at.y * y)
+}
+
+impl Solid for Cuboid {
+    const NAME: &'static str = "cuboid";
+
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+        kit.cuboid(queries)
+    }
+    fn meet(&self, ray: &Ray) -> Option<Meeting> {
+        meet(ray, Body::Cuboid(*self))
+    }
+    fn grown(&self, factor: f32) -> Self {
+        let place = around(0.5 * (self.min + self.max), factor);
+        Cuboid { min: place(self.min), max: place(self.max) }
+    }
+    fn inside(&self, at: Vec3) -> Vec3 {
+        self.min + (0.5 + 0.45 * at) * (self.max - self.min)
+    }
+    fn reach(&self, normal: DVec3) -> f64 {
+        (normal * self.min.as_dvec3()).max(normal * self.max.as_dvec3()).element_sum()
+    }
+    fn any() -> BoxedStrategy<Self> {
+        (point(4), (1..=16i32, 1..=16i32, 1..=16i32))
+            .prop_map(|(min, (x, y, z))| Cuboid {
+                min,
+                max: min + Vec3::new(x as f32, y as f32, z as f32) / 4.0,
+            })
+            .boxed()
+    }
+}
+
+impl Solid for Cylinder {
+    const NAME: &'static str = "cylinder";
+
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+        kit.cylinder(queries)
+    }
+    fn meet(&self, ray: &Ray) -> Option<Meeting> {
+        meet(ray, Body::Cylinder(*self))
+    }
+    fn grown(&self, factor: f32) -> Self {
+        let place = around(0.5 * (self.base + self.top), factor);
+        Cylinder { base: place(self.base), top: place(self.top), radius: factor * self.radius }
+    }
+    fn inside(&self, at: Vec3) -> Vec3 {
+        in_round(self.base, self.top - self.base, self.radius, 0.5 + 0.45 * at.z, at)
+    }
+    fn reach(&self, normal: DVec3) -> f64 {
+        let (base, top) = (self.base.as_dvec3(), self.top.as_dvec3());
+        normal.dot(base).max(normal.dot(top)) + f64::from(self.radius) * beside(normal, top - base)
+    }
+    fn any() -> BoxedStrategy<Self> {
+        (point(4), direction(), radius())
+            .prop_map(|(base, axis, radius)| Cylinder { base, top: base + axis, radius })
+            .boxed()
+    }
+}
+
+impl Solid for Cone {
+    const NAME: &'static str = "cone";
+
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+        kit.cone(queries)
+    }
+    fn meet(&self, ray: &Ray) -> Option<Meeting> {
+        meet(ray, Body::Cone(*self))
+    }
+    fn grown(&self, factor: f32) -> Self {
+        let place = around(self.base + 0.25 * (self.apex - self.base), factor);
+        Cone { base: place(self.base), apex: place(self.apex), radius: factor * self.radius }
+    }
+    fn inside(&self, at: Vec3) -> Vec3 {
+        // A cylinder of half the height and less than half the radius.
+        in_round(self.base, self.apex - self.base, 0.5 * self.radius, 0.25 + 0.2 * at.z, at)
+    }
+    fn reach(&self, normal: DVec3) -> f64 {
+        let (base, apex) = (self.base.as_dvec3(), self.apex.as_dvec3());
+        normal.dot(apex).max(normal.dot(base) + f64::from(self.radius) * beside(normal, apex - base))
+    }
+    fn any() -> BoxedStrategy<Self> {
+        (point(4), direction(), radius())
+            .prop_map(|(base, axis, radius)| Cone { base, apex: base + axis, radius })
+            .boxed()
+    }
+}
+
+impl Solid for Disk {
+    const NAME: &'static str = "disk";
+    const FLAT: bool = true;
+
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+        kit.disk(queries)
+    }
+    fn meet(&self, ray: &Ray) -> Option<Meeting> {
+        meet(ray, Body::Disk(*self))
+    }
+    fn grown(&self, factor: f32) -> Self {
+        Disk { radius: factor * self.radius, ..*self }
+    }
+    fn inside(&self, at: Vec3) -> Vec3 {
+        in_round(self.center, self.normal, self.radius, 0.0, at)
+    }
+    fn reach(&self, normal: DVec3) -> f64 {
+        normal.dot(self.center.as_dvec3()) + f64::from(self.radius) * beside(normal, self.normal.as_dvec3())
+    }
+    fn any() -> BoxedStrategy<Self> {
+        (point(4), direction(), radius())
+            .prop_map(|(center, normal, radius)| Disk { center, normal, radius })
+            .boxed()
+    }
+}
+
+impl Solid for Polygon {
+    const NAME: &'static str = "polygon";
+    const FLAT: bool = true;
+
+    fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>> {
+        kit.polygon(queries)
+    }
+    fn meet(&self, ray: &Ray) -> Option<Meeting> {
+        meet_fan(ray, self).map(|(meeting, _)| meeting)
+    }
+    fn grown(&self, factor: f32) -> Self {
+        let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
+        Polygon { corners: self.corners.iter().copied().map(around(middle, factor)).collect() }
+    }
+    fn inside(&self, at: Vec3) -> Vec3 {
+        let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
+        let corner = ((0.5 + 0.49 * at.x) * self.corners.len() as f32) as usize;
+        middle.lerp(self.corners[corner], 0.9 * at.y.abs())
+    }
+    fn reach(&self, normal: DVec3) -> f64 {
+        self.corners.iter().map(|corner| normal.dot(corner.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)
+    }
+    fn any() -> BoxedStrategy<Self> {
+        // Three to seven corners of a regular octagon of whole eighths, in the plane of two vectors at right angles.
+        let octagon = [(8, 3), (3, 8), (-3, 8), (-8, 3), (-8, -3), (-3, -8), (3, -8), (8, -3)];
+        let axes = prop_oneof![
+            Just((Vec3::X, Vec3::Y)),
+            Just((Vec3::Y, Vec3::Z)),
+            Just((Vec3::new(1.0, 2.0, 2.0), Vec3::new(2.0, 1.0, -2.0))),
+        ];
+        (point(4), axes, prop::sample::subsequence(octagon.to_vec(), 3..=7), any::<bool>())
+            .prop_map(|(center, (u, v), mut corners, backwards)| {
+                if backwards {
+                    corners.reverse();
+                }
+                let place = |&(x, y): &(i32, i32)| center + x as f32 / 8.0 * u + y as f32 / 8.0 * v;
+                Polygon { corners: corners.iter().map(place).collect() }
+            })
+            .boxed()
+    }
+}

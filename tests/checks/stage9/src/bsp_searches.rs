@@ -1,0 +1,150 @@
+//! The way of a ray through a BSP tree.
+
+use super::parts;
+use super::scenes::{Scene, Thing, ball, wall};
+use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
+use super::structures::bsp;
+use checks::Trial;
+use checks::broken::Outcome;
+use glam::{DVec3, Vec3, vec3};
+use raykata::kit::CellsQuery;
+use raykata::partition::{Bsp, CutPlane};
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    // The large ball reaches through the plane x + y = 0, and is hit behind it and behind the small one.
+    let large = Thing::Ball(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
+    let scene = Scene::new(vec![large, ball(0.25, 0.2, 0.0, 0.125)]);
+    let says = "the search stopped before it came to the side with a nearer hit: a hit need not be on the side that lists it";
+    let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
+    let tree = two_leaves(diagonal(), &[0], &[0, 1]);
+    ask(trial, &tree, &scene, &ray, "BSP tree of one plane x + y = 0, across which primitive 0 lies", says)?;
+    agrees(trial, Searcher::Bsp)
+}
+
+/// A tree of one plane, with these primitives on either side.
+fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
+    let mut bsp = Bsp::default();
+    let root = bsp.add_node(0, 1);
+    let [back, front] = [bsp.add_node(1, 1), bsp.add_node(1, 1)];
+    bsp.set_leaf(back, behind);
+    bsp.set_leaf(front, before);
+    bsp.set_children(root, plane, back, front);
+    bsp
+}
+
+fn diagonal() -> CutPlane {
+    CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
+}
+
+fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, says: &str) -> Outcome {
+    let hits = scene.hits(ray);
+    let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
+    let yours = trial.kit.bsp_search(&[query]).remove(0);
+    judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
+}
+
+/// Trap A7: the plane lies behind the ray, beyond its end, or is never met.
+pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A7: where the plane is behind the ray or beyond its end, the ray is on one side all the way, and that side must be searched";
+    let scene =
+        Scene::new(vec![ball(-4.0, -4.0, 0.0, 1.0), ball(4.0, 4.0, 0.0, 1.0), ball(-4.0, 2.0, 0.0, 1.0)]);
+    let tree = two_leaves(diagonal(), &[0, 2], &[1]);
+    let cases = [
+        ("the plane is behind the ray", Ray::new(vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0))),
+        ("the plane is behind the ray", Ray::new(vec3(-1.0, -1.0, 0.0), vec3(-1.0, -1.0, 0.0))),
+        ("the ray ends before the plane", Ray::new(vec3(-8.0, -8.0, 0.0), Vec3::ONE).with_range(0.0, 5.0)),
+        (
+            "the ray starts beyond the plane",
+            Ray::new(vec3(-8.0, -8.0, 0.0), vec3(1.0, 1.0, 0.0)).with_range(9.0, 20.0),
+        ),
+        ("the ray runs along the plane", Ray::new(vec3(-8.0, 6.0, 0.0), vec3(1.0, -1.0, 0.0))),
+        (
+            "the plane is crossed, with nothing before it",
+            Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0)),
+        ),
+    ];
+    cases.iter().try_for_each(|(what, ray)| {
+        ask(trial, &tree, &scene, ray, &format!("BSP tree of one plane x + y = 0: {what}"), says)
+    })
+}
+
+/// Rays in the plane and from it, and polygons that lie in it.
+pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
+    let says = "a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
+    let balls =
+        Scene::new(vec![ball(3.0, -3.0, 0.0, 0.5), ball(-3.0, 3.0, 0.0, 0.5), ball(0.0, 0.0, 4.0, 0.5)]);
+    let tile = |z: f32| {
+        Thing::Tile(Triangle {
+            a: vec3(4.0, -4.0, z - 4.0),
+            b: vec3(-4.0, 4.0, z - 4.0),
+            c: vec3(0.0, 0.0, z + 4.0),
+        })
+    };
+    let stack = Scene::new(vec![tile(0.0), tile(1.0), tile(-1.0)]);
+    for (behind, before) in
+        [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
+    {
+        let tree = two_leaves(diagonal(), behind, before);
+        for dir in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
+            ask(
+                trial,
+                &tree,
+                &balls,
+                &Ray::new(Vec3::ZERO, dir),
+                "BSP tree of one plane x + y = 0, and a ray in it",
+                says,
+            )?;
+        }
+        for (origin, dir) in
+            [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
+        {
+            ask(
+                trial,
+                &tree,
+                &stack,
+                &Ray::new(origin, dir),
+                "BSP tree of one plane x + y = 0, with triangles in it",
+                says,
+            )?;
+        }
+    }
+    // From a point of the plane to either side.
+    let sides = Scene::new(vec![ball(3.0, 3.0, 0.0, 0.5), ball(-3.0, -3.0, 0.0, 0.5)]);
+    let tree = two_leaves(diagonal(), &[1], &[0]);
+    for dir in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
+        for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
+            let dir = dir - origin / 3.0;
+            ask(
+                trial,
+                &tree,
+                &sides,
+                &Ray::new(origin, dir),
+                "BSP tree of one plane x + y = 0, and a ray that starts on it",
+                says,
+            )?;
+        }
+    }
+    // A room whose walls are the planes.
+    let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
+    let room = Scene::new(walls.collect());
+    let tree = bsp(&room.hulls(), 2, 5);
+    for i in 0..64 {
+        let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
+        let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
+        ask(trial, &tree, &room, &ray, "BSP tree over a room of twelve triangles", says)?;
+    }
+    Ok(())
+}
+
+pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
+    let (scene, rays) = balls_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
+    let cells = bsp(&scene.hulls(), 2, 8);
+    let queries = queries(&cells, &scene, &rays);
+    for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
+        judge_visits("BSP tree over 64 balls", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,175 @@
+//! The BSP tree: what is where.
+
+use super::lists::{Fault, ended, judge_references};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::generate::point;
+use checks::judge::compare;
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::BspQuery;
+use raykata::partition::{Bsp, BspNode, CutPlane, corners};
+
+fn told(query: &BspQuery) -> String {
+    let hulls: Vec<String> = query.hulls.iter().map(checks::paste::list).collect();
+    format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
+}
+
+/// A leaf: its number, the planes above it with the side on which it lies, and what stands in it.
+type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
+
+fn leaves(bsp: &Bsp) -> Vec<Leaf> {
+    let mut leaves = Vec::new();
+    bsp.walk(|node, above, _| {
+        if let BspNode::Leaf { first, count } = bsp.nodes[node as usize] {
+            leaves.push((node, above.to_vec(), bsp.primitives(first, count).to_vec()));
+        }
+    });
+    leaves
+}
+
+const WHAT_MAKES_IT: &str = "what makes a BSP tree";
+
+fn usable(hull: &[Vec3]) -> bool {
+    !hull.is_empty() && hull.iter().all(|corner| corner.is_finite())
+}
+
+fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
+    let nothing = !query.hulls.iter().any(|hull| usable(hull));
+    super::lists::judge_tree(
+        || told(query),
+        WHAT_MAKES_IT,
+        (nothing, yours.nodes.len()),
+        || fault(query, yours),
+    )
+}
+
+fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
+    if yours.depth() > query.max_depth + 1 {
+        let (yours, expected) = (yours.depth() - 1, query.max_depth);
+        let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
+        return Some((yours, expected, "max_depth is passed"));
+    }
+    let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
+    // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
+    let size = f64::from(size.fold(0.0, f32::max));
+    let (step, room) = (size * (-23f64).exp2(), size / 64.0);
+    for (node, above, listed) in leaves(yours) {
+        for (id, hull) in query.hulls.iter().enumerate() {
+            let times = listed.iter().filter(|&&other| other == id as u32).count();
+            let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
+            if !usable(hull) {
+                if times > 0 {
+                    return Some((count(times), count(0), "what is not a number is in no cell"));
+                }
+                continue;
+            }
+            // A hull of which a corner is inside certainly reaches into the leaf; one that is all outside of a plane is
+            // certainly not in it.
+            let inside =
+                |p: &Vec3, room: f64| above.iter().all(|(plane, side)| side * plane.distance(*p) >= room);
+            let reaches = hull.iter().any(|p| inside(p, -step));
+            let outside =
+                above.iter().any(|(plane, side)| hull.iter().all(|p| side * plane.distance(*p) < -room));
+            if reaches && times != 1 {
+                let on_plane =
+                    hull.iter().any(|p| above.iter().any(|(plane, _)| plane.distance(*p).abs() <= step));
+                let diagnosis = match times {
+                    0 if on_plane => "what touches a plane, or lies in it, belongs to both sides",
+                    0 => "a primitive that reaches over a plane belongs to both sides",
+                    _ => "a primitive is listed twice in one leaf",
+                };
+                return Some((count(times), count(1), diagnosis));
+            }
+            if outside && times > 0 {
+                return Some((
+                    count(times),
+                    count(0),
+                    "a primitive is listed in a leaf that it does not reach",
+                ));
+            }
+        }
+    }
+    None
+}
+
+pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+    let tile = (point(4), point(4), point(4), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
+        0 => vec![a, Vec3::NAN, c],
+        1..=3 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
+        4..=6 => corners(&Aabb::new(a, a + b.abs())),
+        _ => vec![a, b, c],
+    });
+    let inputs = (prop::collection::vec(tile, 1..20), 1..=4usize, 0..=6usize)
+        .prop_map(|(hulls, leaf_size, max_depth)| BspQuery { hulls, leaf_size, max_depth });
+    trial.forall(200, inputs, |queries| {
+        compare(queries, trial.kit.bsp_build(queries), |query, yours| judge_tree(query, &yours))
+    })
+}
+
+pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
+    let square = |size: f32, z: f32| {
+        let s = size;
+        vec![vec3(-s, -s, z), vec3(s, -s, z), vec3(s, s, z), vec3(-s, s, z)]
+    };
+    let stack: Vec<Vec<Vec3>> = (1..=40).map(|i| square(i as f32, 0.0)).collect();
+    let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
+    let star: Vec<Vec<Vec3>> = (0..30)
+        .map(|i| {
+            let (y, x) = (i as f32 * 0.21).sin_cos();
+            vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
+        })
+        .collect();
+    let line = (0..20).map(|i| {
+        vec![vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0), vec3(i as f32 + 0.7, 0.0, 0.0)]
+    });
+    let hulls = [
+        ("forty squares in one plane", stack),
+        ("thirty sheets through one line", star),
+        ("twenty slivers in a line", line.collect()),
+    ];
+    let sets = super::lists::endless().into_iter().map(|(name, all)| (name, boxes(all)));
+    for (name, hulls) in hulls.into_iter().chain(sets) {
+        let n = hulls.len();
+        let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
+        let input = format!("build of {name}, leaf_size 1, max_depth 12");
+        let says = "stop at max_depth, and where no plane divides";
+        let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
+        judge_tree(&query, &yours)?;
+        let says = "all are on both sides of each plane: make a leaf of them";
+        judge_references(&input, &yours.items, 1024 + 64 * n, says)?;
+    }
+    Ok(())
+}
+
+/// Sheets across a diagonal: no plane across an axis divides them, and their own planes do.
+pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
+    let sheet = |at: f32| {
+        let p = |u: f32, v: f32| vec3(at + u, at - u, v);
+        vec![p(-40.0, -40.0), p(40.0, -40.0), p(40.0, 40.0), p(-40.0, 40.0)]
+    };
+    let n = 31;
+    let hulls = (0..n).map(|i| sheet(0.25 * i as f32)).collect();
+    let query = BspQuery { hulls, leaf_size: 2, max_depth: 12 };
+    let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+    judge_tree(&query, &yours)?;
+    let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
+    // A cut along a sheet lists it on both sides, so there is one reference more for each cut.
+    let (references, depth) = (yours.items.len(), yours.depth());
+    if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
+        return Ok(());
+    }
+    let diagnosis = match () {
+        () if yours.nodes.len() == 1 => "nothing is cut: the planes of the polygons are the candidates",
+        () if fullest > 2 => {
+            "sheets side by side are not divided: the planes of the polygons are the candidates"
+        }
+        () => "a poor choice of planes: leave few on the fuller side",
+    };
+    let yours = format!("up to {fullest} sheets a leaf, {references} references, {depth} levels");
+    let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
+    Err(Broken::told(input, yours, format!("2 a leaf, at most {} references, 8 levels", 2 * n), "counted")
+        .looks_like(Some(diagnosis)))
+}

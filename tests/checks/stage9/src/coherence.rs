@@ -1,0 +1,232 @@
+//! The last hit, and packets of rays: the same answers for less.
+
+use super::scenes::{Scene, ball, closest, rays, scenes};
+use checks::broken::{Broken, Outcome};
+use checks::generate::unit;
+use checks::judge::{compare, known};
+use checks::paste::Paste;
+use checks::tree::{closest_in_table, search_query, sphere_box};
+use checks::{Trial, tree};
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery, TableProbe};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
+    let hits = scene.hits(ray);
+    // No box is entered after what is in it is hit, however either is rounded; some `hits` are two steps off.
+    let entry = |one: &Aabb, hit: f32| (checks::double::box_interval(ray, one).0 as f32).next_down().min(hit);
+    let entries = scene.boxes().iter().zip(&hits).map(|(one, hit)| entry(one, *hit)).collect();
+    CachedQuery { last, ray: *ray, hits, entries }
+}
+
+pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
+    let inputs = (scenes(), any::<u32>()).prop_map(|((scene, ray), pick)| {
+        let n = scene.things.len() as u32;
+        (cached(&scene, &ray, (n > 0).then(|| pick % n)), n)
+    });
+    // Two at one t, and the larger number is known: the smaller one must still be heard.
+    let pair = Scene::new(vec![ball(5.0, 0.0, 0.0, 1.0); 2]);
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    let tie = (cached(&pair, &ray, Some(1)), 2);
+    let judge = |queries: &[(CachedQuery, u32)]| {
+        let only: Vec<CachedQuery> = queries.iter().map(|(query, _)| query.clone()).collect();
+        compare(queries, trial.kit.cached_search(&only), |(query, n), yours| {
+            let expected = closest(&query.hits, &query.ray);
+            let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+            if found == expected {
+                return Ok(());
+            }
+            let diagnosis = match (found, expected) {
+                (Some((_, t)), _) if !query.ray.contains(t) => {
+                    "a hit outside of the ray's range: test the last primitive with this ray"
+                }
+                (Some((_, t)), Some((_, best))) if t == best => {
+                    "of two hits at one t the smaller number wins: let the ray end one step beyond the known hit"
+                }
+                (Some((primitive, _)), _) if Some(primitive) == query.last => {
+                    "the last primitive is hit, and something nearer, too: search on"
+                }
+                (None, Some(_)) => {
+                    "the hit of the last primitive was forgotten: the shortened ray may find nothing else"
+                }
+                (Some(_), Some(_)) => "of the known hit and the found one the nearer counts",
+                _ => "",
+            };
+            let input =
+                format!("{n} primitives, of which {:?} was hit before\n{}", query.last, query.ray.paste());
+            Err(Broken::new(input, found, expected, "brute force, (primitive, t)")
+                .looks_like(known(diagnosis)))
+        })
+    };
+    let behind = Scene::new(vec![ball(2.0, 0.0, 0.0, 0.5), ball(5.0, 0.0, 0.0, 1.0)]);
+    let nearer = (cached(&behind, &ray, Some(1)), 2);
+    judge(&[nearer, tie]).into_iter().collect::<Outcome>()?;
+    trial.forall(1000, inputs, judge)
+}
+
+pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
+    // A row of balls one behind the other, numbered from the far end: without a known hit all are tested.
+    let row = Scene::new((0..32).rev().map(|i| ball(3.0 * i as f32, 0.0, 0.0, 1.0)).collect());
+    let [first, again] =
+        [vec3(-5.0, 0.1, 0.0), vec3(-5.0, 0.11, 0.0)].map(|origin| Ray::new(origin, Vec3::X));
+    let answers = trial.kit.cached_search(&[cached(&row, &first, None), cached(&row, &again, Some(31))]);
+    let counts = [answers[0].tests.len(), answers[1].tests.len()];
+    // The known one, then the only box that begins before it: its own.
+    if counts == [32, 2] {
+        return Ok(());
+    }
+    let told = |[first, again]: [usize; 2]| format!("{first} tests without a known hit, {again} with it");
+    let diagnosis = match counts {
+        [_, again] if again > 32 => "the ray is not shortened by the known hit",
+        [first, _] if first > 32 => "without a known hit there is nothing to test beforehand",
+        [_, 1] => "the search is left out: something nearer may have come",
+        _ => "",
+    };
+    Err(Broken::told(
+        "a ray along 32 balls in a row, and the next ray, which hits the same one",
+        told(counts),
+        told([32, 2]),
+        "counted",
+    )
+    .looks_like(known(diagnosis)))
+}
+
+fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
+    let boxes: Vec<Aabb> = spheres.iter().map(sphere_box).collect();
+    let bvh = tree::build(&boxes, 2);
+    let queries: Vec<SearchQuery> = rays.iter().map(|ray| search_query(&bvh, spheres, ray)).collect();
+    let tables = queries.iter().map(|query| query.table.clone()).collect();
+    (PacketQuery { bvh, rays: rays.to_vec(), tables }, queries)
+}
+
+/// Packets of up to 20 rays, side by side or any way.
+fn packets() -> impl Strategy<Value = (Vec<Sphere>, Vec<Ray>)> + Clone {
+    let sphere = (checks::generate::point(6), 1..=8i32)
+        .prop_map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 });
+    let beam = (rays(), prop::collection::vec(unit(), 1..20)).prop_map(|(ray, spread)| {
+        spread.iter().map(|off| Ray { dir: ray.dir + 0.1 * *off, ..ray }).collect::<Vec<Ray>>()
+    });
+    let any_way = prop::collection::vec(rays(), 0..12);
+    (prop::collection::vec(sphere, 0..30), prop_oneof![3 => beam, 1 => any_way], any::<bool>()).prop_map(
+        |(spheres, rays, twice)| {
+            let spheres = if twice { spheres.iter().chain(&spheres).copied().collect() } else { spheres };
+            (spheres, rays)
+        },
+    )
+}
+
+pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
+    trial.forall(500, packets(), |cases| {
+        let asked: Vec<(PacketQuery, Vec<SearchQuery>)> =
+            cases.iter().map(|(spheres, rays)| packet(spheres, rays)).collect();
+        let queries: Vec<PacketQuery> = asked.iter().map(|(query, _)| query.clone()).collect();
+        compare(&asked, trial.kit.packet_search(&queries), |(query, singles), yours| {
+            let input = format!("{} rays, {} nodes", query.rays.len(), query.bvh.nodes.len());
+            if yours.hits.len() != query.rays.len() {
+                let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
+                let broken = Broken::told(input, yours, expected, "one a ray");
+                return Err(broken.looks_like(Some("a packet has eight rays at most: take the rest in further packets")));
+            }
+            for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
+                let expected = closest_in_table(single);
+                let found = yours.map(|hit| (hit.primitive, hit.t));
+                if found != expected {
+                    let diagnosis = match (found, expected) {
+                        (Some((_, t)), Some((_, best))) if t == best => "of two hits at one t the smaller primitive number wins",
+                        (Some((_, t)), _) if !single.ray.contains(t) => "each ray has its own range",
+                        (Some(_), None) => "a hit of another ray: each ray keeps its own",
+                        _ => "the packet left a node that this ray enters: a node is left if no ray enters it, and not if one does not",
+                    };
+                    let input = format!("{input}; ray {index}: {}", single.ray.paste());
+                    let broken = Broken::new(input, found, expected, "brute force, (primitive, t)");
+                    return Err(broken.looks_like(Some(diagnosis)));
+                }
+            }
+            Ok(())
+        })
+    })
+}
+
+pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
+    // A row of balls, of which the first is hit, from either end: no two boxes overlap, so there is one order.
+    let row: Vec<Sphere> =
+        (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
+    for (x, dir) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
+        let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), dir); 8]);
+        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let mut probe = TableProbe::new(&singles[0]);
+        tree::search(&query.bvh, &mut probe, &singles[0].ray);
+        judge_opened("8 equal rays along a row of", &yours, probe.counts.node_visits)?;
+    }
+    let balls: Vec<Sphere> = (0..64)
+        .map(|i| Sphere {
+            center: vec3((i % 8) as f32, (i / 8) as f32, 0.3 * (i % 3) as f32) * 2.0,
+            radius: 0.6,
+        })
+        .collect();
+    let ray = |x: f32, y: f32| Ray::new(vec3(-6.0, 7.0, 9.0), vec3(x + 6.0, y - 7.0, -9.0).normalize());
+    for (x, y) in [(1.0, 1.0), (7.0, 9.0), (12.0, 3.0), (14.5, 14.0)] {
+        // Eight times the same ray: what one of them costs, it costs once.
+        let (query, singles) = packet(&balls, &[ray(x, y); 8]);
+        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let mut probe = TableProbe::new(&singles[0]);
+        tree::search(&query.bvh, &mut probe, &singles[0].ray);
+        // Where both children are entered at one t either may come first.
+        let most = probe.counts.node_visits + 2;
+        judge_opened("8 equal rays through", &yours, most)?;
+        // And eight rays side by side open fewer nodes than one after the other.
+        let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
+        let (query, singles) = packet(&balls, &beam);
+        let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
+        let alone = singles.iter().map(|single| {
+            let mut probe = TableProbe::new(single);
+            tree::search(&query.bvh, &mut probe, &single.ray);
+            probe.counts.node_visits
+        });
+        judge_opened("8 rays side by side through", &yours, alone.sum::<u64>() / 2)?;
+        // A node is opened for the sake of a ray that enters it before its hit.
+        let needed = |node: u32| {
+            singles.iter().any(|single| {
+                let (near, far) = single.table.boxes[node as usize];
+                let end = closest_in_table(single).map_or(single.ray.t_max, |(_, t)| t);
+                near.max(single.ray.t_min) <= far && near <= end
+            })
+        };
+        let needless = yours.opened.iter().filter(|&&node| !needed(node)).count();
+        // The rays go together, so a few may go into the farther child first.
+        if needless > yours.opened.len() / 4 {
+            let told = format!("{needless} of {} nodes opened without need", yours.opened.len());
+            return Err(Broken::told("8 rays side by side through 64 balls", told, "few", "counted").looks_like(Some(
+                "nodes are opened that no ray enters before its hit: shorten each ray by its hits, and take the nearer child first",
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
+    let mut opened = yours.opened.clone();
+    opened.sort_unstable();
+    let again = opened.windows(2).find(|pair| pair[0] == pair[1]);
+    let told = |n: u64| format!("{n} nodes opened");
+    let input = format!("{what} 64 balls");
+    if let Some(pair) = again {
+        let broken =
+            Broken::told(input, format!("node {} is opened again", pair[0]), "once a packet", "counted");
+        return Err(broken
+            .looks_like(Some("the rays go one after the other: open a node once, for all that enter it")));
+    }
+    if yours.opened.len() as u64 > most {
+        let broken = Broken::told(
+            input,
+            told(yours.opened.len() as u64),
+            format!("at most {}", told(most)),
+            "counted",
+        );
+        return Err(broken.looks_like(Some("nodes are opened that no ray enters before its hit")));
+    }
+    Ok(())
+}

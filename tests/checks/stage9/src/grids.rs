@@ -1,0 +1,271 @@
+//! The uniform grid: how fine, what is where, and the way of a ray through it.
+
+use super::lists::{bounds_fault, is_far_off, some_boxes};
+use super::parts;
+use super::scenes::{Scene, Thing, ball, rays, wall};
+use super::searches::{Searcher, agrees, judge, judge_visits};
+use super::structures::{grid, grid_within};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::{compare, known};
+use checks::paste::Paste;
+use glam::{UVec3, Vec3, uvec3, vec3};
+use proptest::prelude::Strategy;
+use raykata::aabb::Aabb;
+use raykata::kit::{CellsQuery, GridQuery};
+use raykata::partition::Grid;
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> Outcome {
+    let inputs = (some_boxes(), 1..=6u32, 1..=5u32, 1..=4u32)
+        .prop_map(|(bounds, x, y, z)| GridQuery { bounds, resolution: uvec3(x, y, z) });
+    let none = GridQuery { bounds: Vec::new(), resolution: UVec3::splat(2) };
+    let flat =
+        GridQuery { bounds: vec![Aabb::new(Vec3::ZERO, vec3(4.0, 4.0, 0.0)); 3], resolution: uvec3(4, 4, 1) };
+    judge_grids(trial, &[none, flat]).into_iter().collect::<Outcome>()?;
+    trial.forall(200, inputs, |queries| judge_grids(trial, queries))
+}
+
+fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.grid_build(queries), |query, yours| match grid_fault(query, &yours) {
+        None => Ok(()),
+        Some((yours, expected, diagnosis)) => {
+            let input = format!("build(&{}, {})", checks::paste::list(&query.bounds), query.resolution);
+            Err(Broken::told(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
+        }
+    })
+}
+
+fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'static str)> {
+    let n: u32 = query.resolution.element_product();
+    let in_order = grid.starts.windows(2).all(|pair| pair[0] <= pair[1]);
+    let ends = grid.starts.last().is_some_and(|last| *last as usize == grid.items.len());
+    if grid.resolution != query.resolution || grid.starts.len() != n as usize + 1 || !in_order || !ends {
+        let yours = format!("{} cells, starts {:?}", grid.resolution, grid.starts);
+        return Some((yours, format!("{n} cells, their starts, and the number of items at the end"), ""));
+    }
+    if let Some((yours, expected)) = bounds_fault(&grid.bounds, &query.bounds) {
+        return Some((yours, expected, "bounds must be around all boxes that are numbers"));
+    }
+    for number in 0..n {
+        let at = uvec3(
+            number % grid.resolution.x,
+            number / grid.resolution.x % grid.resolution.y,
+            number / (grid.resolution.x * grid.resolution.y),
+        );
+        let cell = grid.cell(at);
+        let listed = grid.primitives(number);
+        for (id, one) in query.bounds.iter().enumerate() {
+            let times = listed.iter().filter(|&&other| other == id as u32).count();
+            let told = |times: usize| format!("primitive {id} is listed {times} times in cell {at}");
+            if one.is_empty() && times > 0 {
+                return Some((told(times), told(0), "what is not a number is in no cell"));
+            }
+            // Cells over one point are all that point: one that lists what is there will do.
+            let elsewhere = || (0..n).any(|other| grid.primitives(other).contains(&(id as u32)));
+            let one_place = grid.bounds.min == grid.bounds.max;
+            if !one.is_empty() && cell.touches(one) && times != 1 && !(times == 0 && one_place && elsewhere())
+            {
+                let middle = cell.touches(&Aabb::new(0.5 * (one.min + one.max), 0.5 * (one.min + one.max)));
+                let diagnosis = match times {
+                    0 if !middle => {
+                        "all cells that a box reaches into list it, and not that of its middle alone; to touch is to reach"
+                    }
+                    0 => "a primitive was left out",
+                    _ => "a primitive is listed twice in one cell",
+                };
+                return Some((told(times), told(1), diagnosis));
+            }
+            if times > 0 && is_far_off(&grid.bounds, &cell.to_box(), one) {
+                return Some((
+                    told(times),
+                    told(0),
+                    "a primitive is listed in a cell that it does not reach",
+                ));
+            }
+        }
+    }
+    None
+}
+
+pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::Grid)
+}
+
+/// Trap A8: a large ball of the first cell is met in the third, and a small one in the second is nearer.
+pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> Outcome {
+    let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
+    let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25), ball(0.0, 3.0, 0.0, 0.5)]);
+    let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
+    // The box of the large ball is made to begin at 0, as that of a longer thing would.
+    let mut boxes: Vec<(u32, Aabb)> = scene.boxes().into_iter().zip(0..).map(|(one, id)| (id, one)).collect();
+    boxes[0].1.min.x = 0.0;
+    let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 4.5, 4.0));
+    let cells = grid_within(&boxes, bounds, uvec3(4, 1, 1));
+    let hits = scene.hits(&ray);
+    let yours = trial.kit.grid_search(&[CellsQuery { cells, ray, hits: hits.clone() }]).remove(0);
+    judge("grid of 4 cells along x; primitive 0 reaches through all", &ray, &hits, &yours).map_err(|broken| {
+        broken.looks_like(Some(
+            "trap A8: the hit of a cell lies beyond the cell, where another is nearer: go on until the cell begins behind it",
+        ))
+    })
+}
+
+fn bare_grid(bounds: Aabb, resolution: UVec3) -> Grid {
+    let n = resolution.element_product() as usize;
+    Grid { bounds, resolution, starts: vec![0; n + 1], items: Vec::new() }
+}
+
+pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome {
+    trial.forall(300, rays(), |rays| {
+        let grid = bare_grid(Aabb::new(Vec3::splat(-5.0), vec3(5.0, 4.0, 6.0)), uvec3(6, 5, 4));
+        let query = |ray: &Ray| CellsQuery { cells: grid.clone(), ray: *ray, hits: Vec::new() };
+        let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
+        compare(&queries, trial.kit.grid_search(&queries), |query, yours| judge_way(query, &yours.visits))
+    })?;
+    // A row of balls of which the first is hit: what lies behind is not visited.
+    let row = Scene::new((0..32).map(|i| ball(i as f32, 0.0, 0.0, 0.25)).collect());
+    let cells = grid(&row.boxes(), uvec3(32, 1, 1));
+    for ray in [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)] {
+        let query = CellsQuery { cells: cells.clone(), ray, hits: row.hits(&ray) };
+        let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
+        judge_visits("grid over a row of 32 balls", &ray, &parts::of_grid(&query.cells, &ray), &yours, true)?;
+    }
+    Ok(())
+}
+
+/// Whether a way through empty cells is that of the ray.
+fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
+    let parts = parts::of_grid(&query.cells, &query.ray);
+    let fault = |yours: String, expected: String, diagnosis: &'static str| {
+        let input = format!(
+            "grid of {} cells without anything in them\n{}",
+            query.cells.resolution,
+            query.ray.paste()
+        );
+        Err(Broken::told(input, yours, expected, "every cell asked, in double precision")
+            .looks_like(known(diagnosis)))
+    };
+    // A cell that the ray goes through well inside must be visited; one that it touches may be.
+    if let Some((cell, near, far)) =
+        parts::inside_grid(&query.cells, &query.ray).iter().find(|(cell, ..)| !visits.contains(cell))
+    {
+        let expected = format!("{cell} among them, in which the ray is from t = {near:.3} to {far:.3}");
+        let reaches = query.ray.t_max.is_finite();
+        let diagnosis = match visits.is_empty() {
+            true => "the first cell is not found: clip the ray to the box around all, and start there",
+            false if reaches => "a cell within the ray's range was left out",
+            false => "a cell was left out: step along the axis whose plane comes first",
+        };
+        return fault(format!("visits to {visits:?}"), expected, diagnosis);
+    }
+    let mut last = f64::NEG_INFINITY;
+    for (index, visit) in visits.iter().enumerate() {
+        let Some((_, near, _)) = parts.iter().find(|(cell, ..)| cell == visit) else {
+            return fault(
+                format!("a visit to {visit}"),
+                "none".into(),
+                "a cell was visited that the ray does not enter",
+            );
+        };
+        if visits[..index].contains(visit) {
+            return fault(format!("{visit} is visited twice"), "once".into(), "the walk turns back");
+        }
+        if *near < last - 1e-2 {
+            return fault(
+                format!("visits to {visits:?}"),
+                "cells as the ray enters them".into(),
+                "not in the order of t",
+            );
+        }
+        last = last.max(*near);
+    }
+    Ok(())
+}
+
+/// Trap A8, second part: 250 cells along an axis.
+pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
+    // Sides that are no multiples of a power of two, so that a step is rounded; and cells twice as long along y, so that
+    // one axis takes twice as many steps as the other.
+    let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
+    let grid = bare_grid(bounds, uvec3(250, 125, 1));
+    // Just beside corners: which of two neighbours comes next is decided by little, but by far more than doubles need.
+    for off in [7e-7f32, -7e-7, 1.2e-6, -1.2e-6] {
+        let origin = vec3(1.1 - 0.5, 2.3 - 0.5 + off, -3.0);
+        let query =
+            CellsQuery { cells: grid.clone(), ray: Ray::new(origin, vec3(1.0, 1.0, 0.0)), hits: Vec::new() };
+        let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
+        let expected = diagonal(&query);
+        if let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) {
+            let told = |cells: &[u32]| {
+                format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
+            };
+            let input =
+                format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
+            let broken =
+                Broken::told(input, told(&yours.visits), told(&expected), "planes in double precision");
+            return Err(broken.looks_like(Some(
+                "trap A8: tMax += tDelta adds up a rounding a step: work out t from the number of the cell, in double",
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The cells along a ray that rises along x and y, from sorted planes.
+fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
+    let (grid, ray) = (&query.cells, &query.ray);
+    let t =
+        |axis: usize, i: u32| (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.dir[axis]);
+    let begin = t(0, 0).max(t(1, 0));
+    let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
+    let mut cell = UVec3::ZERO;
+    let mut crossings: Vec<(f64, usize)> =
+        inner(0).chain(inner(1)).map(|(axis, i)| (t(axis, i), axis)).filter(|(t, _)| *t > begin).collect();
+    crossings.sort_by(|p, q| p.0.total_cmp(&q.0));
+    let mut visits = vec![grid.number(cell)];
+    for (t_crossing, axis) in crossings {
+        if t_crossing < t(0, grid.resolution.x).min(t(1, grid.resolution.y)) {
+            cell[axis] += 1;
+            visits.push(grid.number(cell));
+        }
+    }
+    visits
+}
+
+/// Through lattice corners, from faces, along faces, in a flat grid: what touches is found.
+pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Outcome {
+    let lattice: Vec<Thing> = (0..27)
+        .map(|i| ball((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
+        .collect();
+    let walls: Vec<Thing> =
+        (0..3).flat_map(|axis| [wall(axis, -2.0, 2.0), wall(axis, 2.0, 2.0)]).flatten().collect();
+    let flat: Vec<Thing> = [1.0, 2.0, 3.0].into_iter().flat_map(|size| wall(2, 0.0, size)).collect();
+    let starts =
+        [vec3(-3.0, -3.0, -3.0), Vec3::ZERO, vec3(2.0, 2.0, 2.0), vec3(-2.0, 0.0, 1.0), vec3(1.0, 1.0, -4.0)];
+    let zeros = [0.0, -0.0];
+    let steps = [-1.0, 0.0, -0.0, 1.0];
+    let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
+    let rays: Vec<Ray> = dirs
+        .filter(|dir| !dir.to_array().iter().all(|x| zeros.contains(x)))
+        .flat_map(|dir| starts.map(|start| Ray::new(start, dir)))
+        .collect();
+    for (name, things, resolution) in [
+        ("27 balls", lattice, uvec3(4, 4, 4)),
+        ("a room", walls, uvec3(4, 4, 4)),
+        ("flat tiles", flat, uvec3(6, 6, 1)),
+    ] {
+        let scene = Scene::new(things);
+        // No room around all: walls lie exactly in the faces of the grid.
+        let boxes: Vec<(u32, Aabb)> = scene.boxes().into_iter().zip(0..).map(|(one, id)| (id, one)).collect();
+        let all = checks::tree::around(boxes.iter().map(|(_, one)| one));
+        let cells = grid_within(&boxes, all, resolution);
+        let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
+        let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
+        for (query, yours) in queries.iter().zip(trial.kit.grid_search(&queries)) {
+            judge(&format!("grid of {resolution} cells over {name}"), &query.ray, &query.hits, &yours)?;
+        }
+    }
+    Ok(())
+}

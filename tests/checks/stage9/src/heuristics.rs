@@ -1,0 +1,261 @@
+//! The five heuristics of the kd-tree, each alone: what it does, and that it does nothing when it is off.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use glam::{Vec3, vec3};
+use raykata::aabb::Aabb;
+use raykata::kit::KdQuery;
+use raykata::partition::{KdHeuristics, KdNode, KdTree};
+
+const NONE: KdHeuristics = KdHeuristics::NONE;
+
+fn build(trial: &Trial<'_>, bounds: &[Aabb], heuristics: KdHeuristics) -> KdTree {
+    trial.kit.kd_build(&[KdQuery { bounds: bounds.to_vec(), heuristics, leaf_size: 2 }]).remove(0)
+}
+
+/// Axis and place of the first cut, how many primitives are below it on the left and on the right, and on both sides.
+fn first_cut(tree: &KdTree) -> Option<(usize, f32, [usize; 3])> {
+    let Some(KdNode::Inner { axis, at, left, right }) = tree.nodes.first().copied() else { return None };
+    let below = |side: u32| {
+        let (mut found, mut waiting): (Vec<u32>, Vec<u32>) = (Vec::new(), vec![side]);
+        while let Some(node) = waiting.pop() {
+            match tree.nodes[node as usize] {
+                KdNode::Inner { left, right, .. } => waiting.extend([left, right]),
+                KdNode::Leaf { first, count } => found.extend(tree.primitives(first, count)),
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    };
+    let (left, right) = (below(left), below(right));
+    let both = left.iter().filter(|id| right.contains(id)).count();
+    Some((usize::from(axis), at, [left.len(), right.len(), both]))
+}
+
+fn told(cut: &Option<(usize, f32, [usize; 3])>) -> String {
+    match cut {
+        None => "no cut at the root".into(),
+        Some((axis, at, [left, right, both])) => {
+            format!(
+                "a cut across {} at {at:.3}: {left} left, {right} right, {both} on both sides",
+                ["x", "y", "z"][*axis]
+            )
+        }
+    }
+}
+
+fn refuse(
+    what: &str,
+    cut: &Option<(usize, f32, [usize; 3])>,
+    expected: &str,
+    diagnosis: &'static str,
+) -> Outcome {
+    Err(Broken::told(format!("build of {what}, leaf_size 2"), told(cut), expected, "the heuristic")
+        .looks_like(Some(diagnosis)))
+}
+
+fn cubes(places: impl Iterator<Item = Vec3>) -> Vec<Aabb> {
+    places.map(|p| Aabb::new(p, p + 0.5)).collect()
+}
+
+pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
+    for axis in 0..3 {
+        let row = cubes((0..16).map(|i| {
+            let mut p = vec3((i % 2) as f32, (i % 2) as f32, (i % 2) as f32);
+            p[axis] = i as f32;
+            p
+        }));
+        let what = format!("16 boxes along {}", ["x", "y", "z"][axis]);
+        let on = first_cut(&build(trial, &row, KdHeuristics { longest_axis: true, ..NONE }));
+        if on.is_none_or(|(yours, ..)| yours != axis) {
+            return refuse(
+                &format!("{what}, longest_axis alone"),
+                &on,
+                "a cut across that axis",
+                "not the longest side of the cell",
+            );
+        }
+        let off = first_cut(&build(trial, &row, NONE));
+        if off.is_none_or(|(yours, ..)| yours != 0) {
+            return refuse(
+                &format!("{what}, no heuristic"),
+                &off,
+                "a cut across x: by turns, x first",
+                "the longest axis although it is switched off",
+            );
+        }
+    }
+    // By turns: x at the root, y below it.
+    let block = cubes((0..64).map(|i| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32)));
+    let tree = build(trial, &block, NONE);
+    let mut axes = vec![None; 3];
+    tree.walk(2, |node, _, depth| {
+        if let KdNode::Inner { axis, .. } = tree.nodes[node as usize] {
+            axes[depth] = axes[depth].or(Some(axis));
+        }
+    });
+    if axes != [Some(0), Some(1), Some(2)] {
+        let input = "build of 4 × 4 × 4 boxes, no heuristic, leaf_size 2";
+        return Err(Broken::new(input, axes, "axes 0, 1, 2 at depths 0, 1, 2", "by turns")
+            .looks_like(Some("not by turns: the axis is the depth modulo 3")));
+    }
+    Ok(())
+}
+
+pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> Outcome {
+    let crowd = cubes((0..40).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(400.0, 0.0, 0.0)]));
+    let what = "40 boxes side by side from x = 0 and one at 400";
+    let on = first_cut(&build(trial, &crowd, KdHeuristics { balanced_counts: true, ..NONE }));
+    if on.is_none_or(|(_, _, [left, right, _])| left.abs_diff(right) > 2) {
+        return refuse(
+            &format!("{what}, balanced_counts alone"),
+            &on,
+            "about 20 on either side",
+            "the counts are not balanced",
+        );
+    }
+    let off = first_cut(&build(trial, &crowd, NONE));
+    if off.is_none_or(|(_, at, _)| (at - 200.25).abs() > 1.0) {
+        return refuse(
+            &format!("{what}, no heuristic"),
+            &off,
+            "a cut in the middle, at 200.25",
+            "without heuristics the cut is in the middle",
+        );
+    }
+    Ok(())
+}
+
+pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> Outcome {
+    // Planks across the middle, side by side along y; left and right of a gap at x = 2.5 there is nothing but small boxes.
+    let planks = (0..12).map(|i| Aabb::new(vec3(3.0, i as f32, 0.0), vec3(10.0, i as f32 + 0.5, 0.5)));
+    let small =
+        (0..4).map(|i| Aabb::new(vec3(0.0, 3.0 * i as f32, 0.0), vec3(2.0, 3.0 * i as f32 + 0.5, 0.5)));
+    let all: Vec<Aabb> = planks.chain(small).collect();
+    let what = "12 planks from x = 3 to 10 and 4 from 0 to 2";
+    for others in [NONE, KdHeuristics { balanced_counts: true, ..NONE }] {
+        let on = first_cut(&build(trial, &all, KdHeuristics { few_straddlers: true, ..others }));
+        if on.is_none_or(|(axis, at, [.., both])| axis != 0 || both > 0 || !(1.9..=3.1).contains(&at)) {
+            let what = format!(
+                "{what}, few_straddlers{}",
+                if others == NONE { " alone" } else { " and balanced_counts" }
+            );
+            return refuse(
+                &what,
+                &on,
+                "a cut across x between 2 and 3, with none on both sides",
+                "a plane with many on both sides",
+            );
+        }
+    }
+    let off = first_cut(&build(trial, &all, NONE));
+    if off.is_none_or(|(_, _, [.., both])| both < 12) {
+        return refuse(
+            &format!("{what}, no heuristic"),
+            &off,
+            "a cut in the middle, with 12 on both sides",
+            "straddlers are avoided although that is switched off",
+        );
+    }
+    Ok(())
+}
+
+/// The share of all space that is in empty leaves down to this depth.
+fn empty_share(tree: &KdTree, most_depth: usize) -> f64 {
+    let volume = |size: glam::DVec3| size.x * size.y * size.z;
+    let (mut empty, mut all) = (0.0, 1.0);
+    tree.walk(most_depth, |node, cell, depth| {
+        let here = volume(cell.max - cell.min);
+        if depth == 0 {
+            all = here;
+        }
+        if matches!(tree.nodes[node as usize], KdNode::Leaf { count: 0, .. }) {
+            empty += here;
+        }
+    });
+    empty / all
+}
+
+pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
+    // Two crowds in opposite corners of a cube: one cut divides them, and three each leave nothing but themselves.
+    let crowd = |corner: f32| {
+        (0..27).map(move |i| {
+            Vec3::splat(corner) + 0.75 * vec3((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32)
+        })
+    };
+    let all = cubes(crowd(0.0).chain(crowd(18.0)));
+    let what = "two crowds of 27 boxes in opposite corners of a cube of 20";
+    let told = |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
+    let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);
+    // 99.8 % of the cube is empty; after four cuts a crowd is still in a cell of a tenth of its side at most twice over.
+    if on < 0.9 {
+        return Err(Broken::told(
+            format!("build of {what}, cut_off_empty_space alone, leaf_size 2"),
+            told(on),
+            "at least 90 %",
+            "the heuristic",
+        )
+        .looks_like(Some("empty margins of a cell are not cut off first")));
+    }
+    // The middle alone leaves cells of an eighth, each divided evenly: after four cuts 6/8 and half of the rest.
+    let off = empty_share(&build(trial, &all, NONE), 2);
+    let early = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 2);
+    if off >= early {
+        let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
+        let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
+        return Err(Broken::told(input, yours, "more with it than without", "the heuristic")
+            .looks_like(Some("the margins are cut off although that is switched off")));
+    }
+    Ok(())
+}
+
+pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
+    // Planks across the middle: any plane across x that divides anything has most of them on both sides.
+    let planks = |n_across: usize, n_small: usize| -> Vec<Aabb> {
+        let across =
+            (0..n_across).map(|i| Aabb::new(vec3(0.0, 0.0, i as f32), vec3(64.0, 1.0, i as f32 + 1.0)));
+        let small =
+            (0..n_small).map(|i| Aabb::new(vec3(40.0 + i as f32, 0.0, 0.0), vec3(40.5 + i as f32, 1.0, 1.0)));
+        across.chain(small).collect()
+    };
+    let stop = KdHeuristics { stop_at_overlap: true, ..NONE };
+    // Left 8 across, right 8 across and as many small ones as there are: 8 of 8 on the left are on the right.
+    let what = "8 planks from x = 0 to 64 and 12 small boxes right of x = 40";
+    let on = build(trial, &planks(8, 12), stop);
+    if on.nodes.len() != 1 {
+        return refuse(
+            &format!("{what}, stop_at_overlap alone"),
+            &first_cut(&on),
+            "a leaf: all 8 on the left are also on the right",
+            "60 % of those on one side, whichever side that is",
+        );
+    }
+    let off = build(trial, &planks(8, 12), NONE);
+    if off.nodes.len() == 1 {
+        return refuse(
+            &format!("{what}, no heuristic"),
+            &first_cut(&off),
+            "a cut in the middle",
+            "a leaf for the sake of overlap, although that is switched off",
+        );
+    }
+    // 4 planks across the middle, 4 small boxes on the left and 4 on the right: half of each side, and that is no reason.
+    let small = |x: f32| {
+        (0..4).map(move |i| {
+            Aabb::new(vec3(x + 2.0 * i as f32, 0.0, 0.0), vec3(x + 2.0 * i as f32 + 1.0, 1.0, 1.0))
+        })
+    };
+    let few: Vec<Aabb> = planks(4, 0).into_iter().chain(small(1.0)).chain(small(50.0)).collect();
+    let divided = build(trial, &few, stop);
+    if divided.nodes.len() == 1 {
+        let what = "4 planks from x = 0 to 64 and 4 small boxes at either end, stop_at_overlap alone";
+        return refuse(
+            what,
+            &first_cut(&divided),
+            "a cut in the middle: half of either side is on the other, and not 60 %",
+            "a leaf too soon",
+        );
+    }
+    Ok(())
+}

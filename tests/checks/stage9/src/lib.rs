@@ -1,0 +1,99 @@
+//! Stage 9: partitions of space.
+//!
+//! `resolutions` (and where a ray is in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` · `bsp_searches` · `coherence`.
+//! What they share: `scenes` (what is searched), `structures` (plain builders), `searches` (asked and judged alike), `parts`
+//! (where a ray is in each node), `lists` (what stands in cells).
+
+mod bsp_searches;
+mod bsps;
+mod coherence;
+mod grids;
+mod heuristics;
+mod kd_trees;
+mod lists;
+mod octrees;
+mod parts;
+mod resolutions;
+mod scenes;
+mod searches;
+mod structures;
+
+use bsp_searches::{
+    bsp_planes_behind_and_beyond_do_not_end_the_search, bsp_search_agrees_with_brute_force,
+    bsp_search_visits_what_the_ray_enters_before_its_hit, bsp_takes_rays_on_and_along_planes,
+};
+use bsps::{bsp_build_ends, bsp_cuts_along_polygons, bsp_lists_what_reaches_into_leaves};
+use coherence::{
+    cached_hit_changes_no_answer, cached_hit_saves_tests, packet_finds_what_single_rays_find,
+    packet_opens_a_node_once,
+};
+use grids::{
+    grid_hit_beyond_its_cell_waits, grid_lists_what_reaches_into_cells, grid_search_agrees_with_brute_force,
+    grid_steps_do_not_add_up_roundings, grid_takes_rays_through_corners_and_faces,
+    grid_visits_cells_in_order_and_stops,
+};
+use heuristics::{
+    kd_avoids_straddlers, kd_balances_counts, kd_cuts_across_the_longest_side, kd_cuts_off_empty_space,
+    kd_stops_at_overlap,
+};
+use kd_trees::{
+    hits_at_a_face_are_compared_with_each_other, kd_finds_a_wall_on_the_face_of_the_box,
+    kd_hit_beyond_its_leaf_waits, kd_rays_in_the_plane_search_both_sides, kd_search_agrees_with_brute_force,
+    kd_search_visits_what_the_ray_enters_before_its_hit, kd_tree_build_ends,
+    kd_tree_lists_what_reaches_into_leaves,
+};
+use octrees::{
+    octree_build_ends, octree_by_cells_agrees_with_brute_force, octree_by_cells_goes_along_edges,
+    octree_divides_where_there_is_much, octree_hit_beyond_its_octant_waits,
+    octree_lists_what_reaches_into_leaves, octree_search_agrees_with_brute_force,
+    octree_sorts_octants_that_are_entered_at_one_t, octree_visits_what_the_ray_enters_before_its_hit,
+};
+use resolutions::{
+    grid_resolution_makes_cubes, grid_resolution_of_flat_and_empty_boxes,
+    spans_of_cells_agree_with_double_precision,
+};
+
+checks::stage! { ($ crate) 9 [
+    spans_of_cells_agree_with_double_precision
+    grid_resolution_makes_cubes
+    grid_resolution_of_flat_and_empty_boxes
+    grid_lists_what_reaches_into_cells
+    grid_search_agrees_with_brute_force
+    grid_hit_beyond_its_cell_waits
+    grid_visits_cells_in_order_and_stops
+    grid_steps_do_not_add_up_roundings
+    grid_takes_rays_through_corners_and_faces
+    octree_lists_what_reaches_into_leaves
+    octree_divides_where_there_is_much
+    octree_build_ends
+    octree_by_cells_agrees_with_brute_force
+    octree_by_cells_goes_along_edges
+    octree_search_agrees_with_brute_force
+    octree_sorts_octants_that_are_entered_at_one_t
+    octree_hit_beyond_its_octant_waits
+    octree_visits_what_the_ray_enters_before_its_hit
+    kd_tree_lists_what_reaches_into_leaves
+    kd_tree_build_ends
+    kd_cuts_across_the_longest_side
+    kd_balances_counts
+    kd_avoids_straddlers
+    kd_cuts_off_empty_space
+    kd_stops_at_overlap
+    kd_search_agrees_with_brute_force
+    kd_finds_a_wall_on_the_face_of_the_box
+    hits_at_a_face_are_compared_with_each_other
+    kd_hit_beyond_its_leaf_waits
+    kd_rays_in_the_plane_search_both_sides
+    kd_search_visits_what_the_ray_enters_before_its_hit
+    bsp_lists_what_reaches_into_leaves
+    bsp_build_ends
+    bsp_cuts_along_polygons
+    bsp_search_agrees_with_brute_force
+    bsp_planes_behind_and_beyond_do_not_end_the_search
+    bsp_takes_rays_on_and_along_planes
+    bsp_search_visits_what_the_ray_enters_before_its_hit
+    cached_hit_changes_no_answer
+    cached_hit_saves_tests
+    packet_finds_what_single_rays_find
+    packet_opens_a_node_once
+] }

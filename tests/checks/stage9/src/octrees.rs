@@ -1,0 +1,210 @@
+//! The octree: what is where, and two ways of a ray through it.
+
+use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
+use super::parts;
+use super::scenes::{Scene, Thing, ball};
+use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
+use super::structures::octree;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::compare;
+use glam::{Vec3, vec3};
+use proptest::prelude::Strategy;
+use raykata::aabb::Aabb;
+use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, mishap};
+use raykata::partition::{Octree, OctreeNode};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+fn told(query: &OctreeQuery) -> String {
+    let boxes = checks::paste::list(&query.bounds);
+    format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
+}
+
+const WHAT_MAKES_IT: &str = "what makes an octree";
+
+fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
+    let nothing = query.bounds.iter().all(Aabb::is_empty);
+    judge_tree(|| told(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), || fault(query, yours))
+}
+
+fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
+    let mut leaves = Vec::new();
+    let mut deepest = 0;
+    yours.walk(64, |node, cell, depth| {
+        deepest = deepest.max(depth);
+        if let OctreeNode::Leaf { first, count } = yours.nodes[node as usize] {
+            leaves.push((node, cell, yours.primitives(first, count).to_vec()));
+        }
+    });
+    if deepest > query.max_depth {
+        let expected = format!("at most {}", query.max_depth);
+        return Some((format!("a node at depth {deepest}"), expected, "max_depth is passed"));
+    }
+    lists_fault(&yours.bounds, &query.bounds, &leaves)
+}
+
+pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+    let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
+        .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
+    trial.forall(200, inputs, |queries| {
+        compare(queries, trial.kit.octree_build(queries), |query, yours| judge_octree(query, &yours))
+    })
+}
+
+pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
+    // 64 small boxes, one in each cell of the third level, and 8 more in one of them.
+    let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;
+    let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
+    let dense =
+        (0..8).map(|i| Aabb::new(Vec3::splat(6.0) + 0.125 * at(i), Vec3::splat(6.02) + 0.125 * at(i)));
+    let query = OctreeQuery { bounds: even.chain(dense).collect(), leaf_size: 2, max_depth: 8 };
+    let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
+    judge_octree(&query, &yours)?;
+    let most = yours.nodes.iter().map(|node| match node {
+        OctreeNode::Leaf { count, .. } => *count,
+        OctreeNode::Inner { .. } => 0,
+    });
+    let most = most.max().unwrap_or(0);
+    let (depth, n) = (yours.depth(), yours.nodes.len());
+    let needless = (0..n as u32).find(|&node| is_inner(&yours, node) && below(&yours, node).len() <= 2);
+    if most <= 2 && depth > 3 && needless.is_none() {
+        return Ok(());
+    }
+    let diagnosis = match needless {
+        Some(_) => "cells are divided that hold leaf_size or fewer",
+        None => "cells with more than leaf_size primitives are not divided",
+    };
+    let yours = format!("up to {most} primitives a leaf, {depth} levels, {n} nodes");
+    let expected = "2 a leaf, more levels where boxes are dense, and none divided that holds 2";
+    Err(Broken::told(
+        "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
+        yours,
+        expected,
+        "counted",
+    )
+    .looks_like(Some(diagnosis)))
+}
+
+fn is_inner(octree: &Octree, node: u32) -> bool {
+    matches!(octree.nodes[node as usize], OctreeNode::Inner { .. })
+}
+
+/// All that stands in the leaves below a node, each once.
+fn below(octree: &Octree, node: u32) -> Vec<u32> {
+    let mut found = match octree.nodes[node as usize] {
+        OctreeNode::Leaf { first, count } => octree.primitives(first, count).to_vec(),
+        OctreeNode::Inner { first } => (first..first + 8).flat_map(|child| below(octree, child)).collect(),
+    };
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
+    for (name, bounds) in endless() {
+        let n = bounds.len();
+        let query = OctreeQuery { bounds, leaf_size: 1, max_depth: 12 };
+        let input = format!("build of {name}, leaf_size 1, max_depth 12");
+        let says = "stop at max_depth, and where dividing does not help";
+        let build = || trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
+        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
+        judge_octree(&query, &yours)?;
+        // Eight times as many at each of five levels are not worth it, whatever the boxes.
+        let says = "all go to all octants, again and again: make a leaf if dividing does not help";
+        judge_references(&input, &yours.items, 4096 + 64 * n, says)?;
+    }
+    Ok(())
+}
+
+pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::OctreeByCells)
+}
+
+pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+    agrees(trial, Searcher::Octree)
+}
+
+/// Rays along the edges and through the corners at which octants meet, with zeros of either sign.
+fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Outcome {
+    // Nothing in the middle, where octants meet.
+    let things: Vec<Thing> = (0..27)
+        .filter(|i| *i != 13)
+        .map(|i| ball((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
+        .collect();
+    let scene = Scene::new(things);
+    let steps = [-1.0, 0.0, -0.0, 1.0];
+    let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
+    let rays: Vec<Ray> = dirs
+        .filter(|dir| dir.length_squared() > 0.0)
+        .flat_map(|dir| {
+            let through = |at: f32| Ray::new(Vec3::splat(at) - 12.0 * dir, dir);
+            [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), dir)]
+        })
+        .collect();
+    let answers = match mishap::catch(|| searcher.ask(trial.kit, &scene, &rays)) {
+        Ok(answers) => answers,
+        Err(mishap::Mishap::Panicked { message, .. }) => {
+            let input = format!("{} over 26 balls, rays along axes and diagonals", searcher.name());
+            return Err(Broken::told(input, message, "an answer", "brute force").looks_like(Some(says)));
+        }
+        Err(mishap) => mishap::unwind(mishap),
+    };
+    for (ray, yours) in rays.iter().zip(&answers) {
+        judge(&format!("{} over 26 balls", searcher.name()), ray, &scene.hits(ray), yours)
+            .map_err(|broken| broken.looks_like(Some(says)))?;
+    }
+    Ok(())
+}
+
+pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> Outcome {
+    let says = "a point on a face is in the cell that the ray is about to enter: step onto the face, exactly, and decide by the sign of d";
+    along_edges(trial, Searcher::OctreeByCells, says)
+}
+
+pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A9: octants that are entered at one t need an order, too, and a ray in a face gives 0 / 0 unless you ask";
+    along_edges(trial, Searcher::Octree, says)
+}
+
+/// Trap A9: a large ball that reaches into the first octant is met in the second, behind a small one.
+pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
+    let says = "trap A9: the hit of an octant lies beyond it, where another is nearer: go on until the next octant begins behind it";
+    let large = Thing::Ball(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
+    let scene = Scene::new(vec![large, ball(4.5, 1.0, 1.0, 0.25)]);
+    let ray = Ray::new(vec3(-1.0, 1.0, 1.0), Vec3::X);
+    let mut cells = Octree::new(Aabb::new(Vec3::ZERO, Vec3::splat(8.0)));
+    let first = cells.divide(0, 1, 1);
+    cells.set_leaf(first, &[0]);
+    cells.set_leaf(first + 1, &[0, 1]);
+    let query = CellsQuery { cells, ray, hits: scene.hits(&ray) };
+    let queries = std::slice::from_ref(&query);
+    for (name, yours) in [
+        ("from the root down", trial.kit.octree_search(queries)),
+        ("cell by cell", trial.kit.octree_by_cells(queries)),
+    ] {
+        let what = format!("octree, {name}; primitive 0 reaches into two octants along x");
+        judge(&what, &ray, &query.hits, &yours[0]).map_err(|broken| broken.looks_like(Some(says)))?;
+    }
+    Ok(())
+}
+
+pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
+    let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
+    let cells = octree(&scene.boxes(), 2, 5);
+    let queries = queries(&cells, &scene, &rays);
+    let by_cells = trial.kit.octree_by_cells(&queries);
+    for (query, (down, along)) in
+        queries.iter().zip(trial.kit.octree_search(&queries).into_iter().zip(by_cells))
+    {
+        let parts = parts::of_octree(&cells, &query.ray);
+        judge_visits("octree over 128 balls, from the root down", &query.ray, &parts, &down, true)?;
+        // On the way down to a leaf, nodes above are visited each time.
+        let leaves = parts::of_leaves(&cells, &parts);
+        let visits = along.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
+        let along = CellsAnswer { visits, ..along };
+        judge_visits("octree over 128 balls, cell by cell", &query.ray, &parts, &along, true)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! How fine a grid should be, and where a ray is in a cell.
+
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::double::slabs_interval;
+use checks::generate::point;
+use checks::judge::{compare, known};
+use checks::paste::{Arguments, Paste};
+use glam::{UVec3, Vec3, uvec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::kit::{ResolutionQuery, SlabQuery};
+
+pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> Outcome {
+    let inputs = (point(4), point(3), super::scenes::rays()).prop_map(|(p, size, ray)| SlabQuery {
+        ray,
+        bounds: Aabb::new(p.round(), p.round() + size.abs().round()),
+    });
+    let empty = SlabQuery { ray: raykata::ray::Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY };
+    judge_spans(trial, &[empty]).into_iter().collect::<Outcome>()?;
+    trial.forall(1500, inputs, |queries| judge_spans(trial, queries))
+}
+
+fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.cell_span(queries), |query, yours| {
+        let (near, far) = slabs_interval(&query.ray, &query.bounds);
+        let range = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+        let expected = (near.max(range.0), far.min(range.1));
+        // Some 2⁻¹⁸ for the room that rounding asks for, of t or of the numbers that t is made of. What a ray passes by at
+        // no more than that, a corner or a box without thickness, it may be said to touch.
+        let room = |t: f64| (-18f64).exp2() * (1.0 + t.abs());
+        let close = |p: f64, q: f64| p == q || (p - q).abs() <= room(q);
+        let fits = match yours {
+            Some((t, t_end)) => {
+                expected.0 <= expected.1 + room(expected.1)
+                    && close(t, expected.0)
+                    && close(t_end, expected.1)
+            }
+            None => !(expected.0 <= expected.1),
+        };
+        if fits {
+            return Ok(());
+        }
+        let diagnosis = match yours {
+            Some((t, t_end)) if t.is_nan() || t_end.is_nan() => "0 / 0: the ray runs in the plane of a face",
+            Some(_) if query.bounds.is_empty() => "an empty cell has no inside",
+            Some((t, t_end)) if t < range.0 - room(range.0) || t_end > range.1 + room(range.1) => {
+                "the range of the ray is left out"
+            }
+            _ if query.ray.dir.to_array().contains(&0.0) => {
+                "a ray along a face is in the cell all the way or not at all: ask where it starts; the cell is closed"
+            }
+            None if near == far => "the cell is closed: to touch it is to be in it",
+            _ => "",
+        };
+        let expected = (expected.0 <= expected.1).then_some(expected);
+        Err(Broken::new(query.call("span"), yours, expected, "double precision").looks_like(known(diagnosis)))
+    })
+}
+
+fn told(query: &ResolutionQuery) -> String {
+    format!("resolution({}, {}, {:?})", query.bounds.paste(), query.n_primitives, query.density)
+}
+
+pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
+    let size =
+        (4..=40i32, 4..=40i32, 4..=40i32).prop_map(|(x, y, z)| vec3(x as f32, y as f32, z as f32) / 4.0);
+    let inputs =
+        (size, 500..20_000usize, 1..=8i32).prop_map(|(size, n_primitives, density)| ResolutionQuery {
+            bounds: Aabb::new(Vec3::ONE, Vec3::ONE + size),
+            n_primitives,
+            density: density as f32 / 2.0,
+        });
+    trial.forall(200, inputs, |queries| {
+        compare(queries, trial.kit.grid_resolution(queries), |query, yours| {
+            let wanted = f64::from(query.density) * query.n_primitives as f64;
+            let n: f64 = yours.to_array().into_iter().map(f64::from).product();
+            let side = (query.bounds.max - query.bounds.min) / yours.as_vec3();
+            let cubes = side.max_element() <= 2.0 * side.min_element();
+            // To round up or down on three axes of five cells or more changes the number by half at most.
+            if cubes && 0.5 * wanted <= n && n <= 2.0 * wanted {
+                return Ok(());
+            }
+            let diagnosis = match () {
+                () if !cubes && yours.x == yours.y && yours.y == yours.z => {
+                    "as many cells on every axis: a longer side needs more"
+                }
+                () if !cubes => "the cells are no cubes",
+                () if (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6 && query.density != 1.0 => {
+                    "the density is left out"
+                }
+                () if n < wanted => "too few cells: n of them along the three axes together, not along each",
+                () => "too many cells",
+            };
+            let expected = format!("about {wanted} cells that are nearly cubes");
+            Err(Broken::told(told(query), format!("{yours}, {n} cells"), expected, "the definition")
+                .looks_like(Some(diagnosis)))
+        })
+    })
+}
+
+pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Outcome {
+    let query = |max: Vec3, n_primitives: usize, density: f32| ResolutionQuery {
+        bounds: Aabb::new(Vec3::ZERO, max),
+        n_primitives,
+        density,
+    };
+    let empty = ResolutionQuery { bounds: Aabb::EMPTY, n_primitives: 0, density: 2.0 };
+    let cases = [
+        (query(vec3(8.0, 8.0, 0.0), 64, 1.0), uvec3(8, 8, 1)),
+        (query(vec3(0.0, 16.0, 4.0), 64, 1.0), uvec3(1, 16, 4)),
+        (query(vec3(0.0, 0.0, 5.0), 10, 2.0), uvec3(1, 1, 20)),
+        (query(Vec3::ZERO, 10, 2.0), UVec3::ONE),
+        (query(vec3(100.0, 1e-3, 100.0), 100, 1.0), uvec3(10, 1, 10)),
+        (query(Vec3::ONE, 0, 2.0), UVec3::ONE),
+        (empty, UVec3::ONE),
+        (query(Vec3::splat(1e30), 8, 1.0), UVec3::splat(2)),
+        (query(vec3(1e6, 1.0, 1.0), 1000, 1.0), uvec3(256, 1, 1)),
+    ];
+    for (query, expected) in cases {
+        let yours = trial.kit.grid_resolution(std::slice::from_ref(&query))[0];
+        // Rounding may go up or down; what is flat is one cell, and the limit holds.
+        let fits = (0..3).all(|axis| match expected[axis] {
+            1 => yours[axis] == 1,
+            n => yours[axis].abs_diff(n) <= 1.max(n / 8) && (1..=256).contains(&yours[axis]),
+        });
+        if !fits {
+            let diagnosis = match () {
+                () if yours.min_element() == 0 => "an axis without a cell: at least 1",
+                () if yours.max_element() > 256 => "more cells along an axis than MOST_CELLS_ALONG",
+                () if query.bounds.is_empty() || query.n_primitives == 0 => "nothing is one cell",
+                () => "a flat box has no volume: take the axes along which it is thick, an area or a length",
+            };
+            let told = told(&query);
+            let broken = Broken::new(told, yours, expected, "by hand");
+            return Err(broken.looks_like(Some(diagnosis)));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,186 @@
+//! Balls and tiles, the boxes and hulls around them, and where a ray hits them: in double precision, then rounded as if
+//! each had a formula of its own.
+
+use checks::generate::point;
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::aabb::Aabb;
+use raykata::partition::corners;
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+/// A primitive.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Thing {
+    /// A ball.
+    Ball(Sphere),
+    /// A triangle.
+    Tile(Triangle),
+}
+
+/// What is to be searched, and how `t` is rounded.
+#[derive(Clone, Debug)]
+pub(super) struct Scene {
+    pub things: Vec<Thing>,
+    /// Whether every other primitive has a `t` that is two steps off, as another formula would have it.
+    pub rough: bool,
+}
+
+impl Scene {
+    pub(super) fn new(things: Vec<Thing>) -> Self {
+        Scene { things, rough: false }
+    }
+
+    pub(super) fn boxes(&self) -> Vec<Aabb> {
+        self.things.iter().map(bounds).collect()
+    }
+
+    pub(super) fn hulls(&self) -> Vec<Vec<Vec3>> {
+        let hull = |thing: &Thing| match thing {
+            Thing::Ball(_) => corners(&bounds(thing)),
+            Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
+        };
+        self.things.iter().map(hull).collect()
+    }
+
+    /// For each primitive the `t` of its nearest hit in front of the ray; `inf` if there is none.
+    pub(super) fn hits(&self, ray: &Ray) -> Vec<f32> {
+        let hit = |(index, thing): (usize, &Thing)| {
+            let t = match thing {
+                Thing::Ball(ball) => ball_t(ray, ball),
+                Thing::Tile(tile) => tile_t(ray, tile),
+            };
+            match t {
+                None => f32::INFINITY,
+                Some(t) if self.rough && index % 2 == 0 => (t as f32).next_up().next_up(),
+                Some(t) if self.rough => (t as f32).next_down().next_down(),
+                Some(t) => t as f32,
+            }
+        };
+        self.things.iter().enumerate().map(hit).collect()
+    }
+}
+
+/// `(primitive, t)` of the smallest `t` that counts; of equal ones the first.
+pub(super) fn closest(hits: &[f32], ray: &Ray) -> Option<(u32, f32)> {
+    let counting = hits.iter().enumerate().filter(|(_, t)| ray.contains(**t));
+    counting.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
+}
+
+fn bounds(thing: &Thing) -> Aabb {
+    match thing {
+        Thing::Ball(ball) => checks::tree::sphere_box(ball),
+        Thing::Tile(Triangle { a, b, c }) => Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)),
+    }
+}
+
+fn ball_t(ray: &Ray, ball: &Sphere) -> Option<f64> {
+    let (to_center, dir) = (ball.center.as_dvec3() - ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let closest = to_center.dot(dir) / dir.length_squared();
+    let off = (to_center - closest * dir).length_squared();
+    let radius = f64::from(ball.radius);
+    let half = ((radius * radius - off) / dir.length_squared()).sqrt();
+    [closest - half, closest + half].into_iter().find(|t| *t > 0.0)
+}
+
+fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {
+    let [a, b, c] = [tile.a, tile.b, tile.c].map(|p| p.as_dvec3() - ray.origin.as_dvec3());
+    let dir = ray.dir.as_dvec3();
+    // Volumes that dir spans with each side; closed, so an edge belongs to both neighbours.
+    let [u, v, w] = [dir.dot(c.cross(b)), dir.dot(a.cross(c)), dir.dot(b.cross(a))];
+    let inside = [u, v, w].iter().all(|x| *x >= 0.0) || [u, v, w].iter().all(|x| *x <= 0.0);
+    let normal = (b - a).cross(c - a);
+    let t = a.dot(normal) / dir.dot(normal);
+    (inside && u + v + w != 0.0 && t > 0.0).then_some(t)
+}
+
+/// The two tiles of a square wall across `axis` at `at`, from `-size` to `size`.
+pub(super) fn wall(axis: usize, at: f32, size: f32) -> [Thing; 2] {
+    let corner = |u: f32, v: f32| {
+        let mut p = Vec3::splat(at);
+        p[(axis + 1) % 3] = u * size;
+        p[(axis + 2) % 3] = v * size;
+        p
+    };
+    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    [Thing::Tile(Triangle { a, b, c }), Thing::Tile(Triangle { a, b: c, c: d })]
+}
+
+/// A ball.
+pub(super) fn ball(x: f32, y: f32, z: f32, radius: f32) -> Thing {
+    Thing::Ball(Sphere { center: vec3(x, y, z), radius })
+}
+
+/// Scenes of balls and walls on a coarse grid, where much touches and coincides, with a ray that likes axes, diagonals and
+/// zeros of either sign.
+pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
+    let balls = prop::collection::vec((point(6), 1..=12i32), 0..16);
+    let walls = prop::collection::vec((0..3usize, -4..=4i32, 1..=4i32), 0..5);
+    (balls, walls, rays(), any::<bool>(), any::<bool>()).prop_map(|(balls, walls, ray, rough, twice)| {
+        let balls = balls.into_iter().map(|(p, r)| ball(p.x, p.y, p.z, r as f32 / 8.0));
+        let walls = walls.into_iter().flat_map(|(axis, at, size)| wall(axis, at as f32, size as f32));
+        let mut things: Vec<Thing> = balls.chain(walls).collect();
+        if twice && !rough {
+            things.extend(things.clone());
+        }
+        (Scene { things, rough }, ray)
+    })
+}
+
+/// Rays from a coarse grid.
+pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
+    let plain = prop::sample::select(vec![
+        vec3(1.0, 0.0, 0.0),
+        vec3(-1.0, -0.0, 0.0),
+        vec3(0.0, 1.0, -0.0),
+        vec3(-0.0, -1.0, -0.0),
+        vec3(0.0, 0.0, -2.0),
+        vec3(1.0, 1.0, 1.0),
+        vec3(-1.0, 1.0, -1.0),
+        vec3(1.0, -1.0, 0.0),
+        vec3(-0.0, 0.5, 0.5),
+    ]);
+    let any = point(4).prop_map(|v| if v == Vec3::ZERO { Vec3::X } else { v.normalize() });
+    let dir = prop_oneof![1 => plain, 1 => any];
+    let origin = prop_oneof![2 => point(10), 1 => point(5).prop_map(Vec3::round)];
+    (origin, dir, 0..=6i32, 0..=9i32).prop_map(|(origin, dir, t_min, t_max)| {
+        let t_max = if t_max < 6 { f32::INFINITY } else { 2.0 * (t_max - 5) as f32 };
+        Ray::new(origin, dir).with_range((t_min - 4).max(0) as f32 / 2.0, t_max)
+    })
+}
+
+/// Scenes that break builders and searches, each with its name: moved far away, tiny, huge, flat, all in one place.
+pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
+    let cluster = |scale: f32, offset: Vec3| -> Vec<Thing> {
+        let place = |i: i32| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
+        let thing = |i: i32| Thing::Ball(Sphere { center: scale * place(i) + offset, radius: 0.375 * scale });
+        (0..48).map(thing).collect()
+    };
+    let looks = |scale: f32, offset: Vec3| -> Vec<Ray> {
+        let eyes = [vec3(-3.0, 0.25, 0.5), vec3(9.0, 8.0, 7.0), vec3(1.5, 1.5, 1.5), vec3(1.0, 1.0, -5.0)];
+        let targets = (0..24).map(|i| vec3((i % 4) as f32, (i / 4 % 3) as f32 * 1.1, (i / 12) as f32 + 0.2));
+        let ray = |eye: Vec3, target: Vec3| Ray::new(scale * eye + offset, (target - eye).normalize());
+        targets.flat_map(|target| eyes.map(|eye| ray(eye, target))).collect()
+    };
+    let far = vec3(1e5, -1e5, 2e5);
+    let line = (0..20).map(|i| ball(i as f32, 0.0, 0.0, 0.25)).collect();
+    let flat: Vec<Thing> = (0..6).flat_map(|i| wall(2, 0.0, 1.0 + 0.5 * i as f32)).collect();
+    let broken = Thing::Tile(Triangle { a: Vec3::NAN, b: Vec3::ONE, c: Vec3::splat(f32::NAN) });
+    let with_broken = cluster(1.0, Vec3::ZERO).into_iter().chain([broken, broken]).collect();
+    let teapot = cluster(1e-3, Vec3::ZERO).into_iter();
+    let stadium = (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| wall(axis, side * 1e5, 1e5))).flatten();
+    [
+        ("nothing", Vec::new(), looks(1.0, Vec3::ZERO)),
+        ("one ball", vec![ball(1.0, 1.0, 1.0, 1.0)], looks(1.0, Vec3::ZERO)),
+        ("sixty balls in one place", vec![ball(1.0, 1.0, 1.0, 1.0); 60], looks(1.0, Vec3::ZERO)),
+        ("twelve tiles in one plane", flat, looks(1.0, Vec3::ZERO)),
+        ("twenty balls in a line", line, looks(1.0, Vec3::ZERO)),
+        ("two of fifty primitives not numbers", with_broken, looks(1.0, Vec3::ZERO)),
+        ("48 balls at (1e5, -1e5, 2e5)", cluster(1.0, far), looks(1.0, far)),
+        ("48 balls of 1e-6", cluster(1e-6, Vec3::ZERO), looks(1e-6, Vec3::ZERO)),
+        ("48 balls of 1e30", cluster(1e30, Vec3::ZERO), looks(1e30, Vec3::ZERO)),
+        ("a teapot of 1e-3 in a stadium of 1e5", teapot.chain(stadium).collect(), looks(1e-3, Vec3::ZERO)),
+    ]
+    .map(|(name, things, rays)| (name, Scene::new(things), rays))
+    .into()
+}

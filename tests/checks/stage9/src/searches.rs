@@ -1,0 +1,168 @@
+//! The five searches of cells, asked and judged alike.
+
+use super::scenes::{Scene, Thing, ball, closest, odd_scenes, scenes};
+use super::structures;
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::judge::known;
+use checks::paste::Paste;
+use glam::{UVec3, Vec3, vec3};
+use raykata::kit::{CellsAnswer, CellsQuery, Kit};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+
+/// A search of the student.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Searcher {
+    Grid,
+    OctreeByCells,
+    Octree,
+    KdTree,
+    Bsp,
+}
+
+impl Searcher {
+    /// As students know it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Searcher::Grid => "grid",
+            Searcher::OctreeByCells => "octree, cell by cell",
+            Searcher::Octree => "octree",
+            Searcher::KdTree => "kd-tree",
+            Searcher::Bsp => "BSP tree",
+        }
+    }
+
+    /// Asks for all rays at once, in a structure over `scene` that the checks have built.
+    pub(super) fn ask(self, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
+        let boxes = scene.boxes();
+        match self {
+            Searcher::Grid => {
+                let grid = structures::grid(&boxes, UVec3::new(5, 4, 3));
+                kit.grid_search(&queries(&grid, scene, rays))
+            }
+            Searcher::OctreeByCells => {
+                kit.octree_by_cells(&queries(&structures::octree(&boxes, 3, 3), scene, rays))
+            }
+            Searcher::Octree => kit.octree_search(&queries(&structures::octree(&boxes, 3, 3), scene, rays)),
+            Searcher::KdTree => kit.kd_search(&queries(&structures::kd_tree(&boxes, 3, 7), scene, rays)),
+            Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), 3, 6), scene, rays)),
+        }
+    }
+}
+
+/// One query a ray.
+pub(super) fn queries<S: Clone>(cells: &S, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
+    let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
+    rays.iter().map(query).collect()
+}
+
+/// Small balls at `places`, and rays at every `step`th of them from three eyes, of which one is at `x`.
+pub(super) fn balls_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
+    let balls = places.iter().map(|&center| Thing::Ball(Sphere { center, radius: 0.3 }));
+    let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
+    let at =
+        |eye: Vec3| places.iter().step_by(step).map(move |place| Ray::new(eye, (*place - eye).normalize()));
+    (Scene::new(balls.collect()), eyes.into_iter().flat_map(at).collect())
+}
+
+/// Whether the answer is that of brute force.
+pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> Outcome {
+    let expected = closest(hits, ray);
+    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+    if found == expected {
+        return Ok(());
+    }
+    let tested = expected.is_some_and(|(primitive, _)| yours.tests.contains(&primitive));
+    let diagnosis = match (found, expected) {
+        (Some((_, t)), _) if !ray.contains(t) => "a hit outside of the ray's range",
+        (Some((_, t)), Some((_, best))) if t == best => {
+            "of two hits at one t the smaller primitive number wins"
+        }
+        (Some(_), Some(_)) if tested => {
+            "the farther of two hits was kept: keep the best so far, over all cells"
+        }
+        (Some(_), Some(_)) => "the search stopped before it came to a cell with a nearer hit",
+        (None, Some(_)) if tested => "a hit was found and thrown away: it counts wherever its cell ends",
+        (None, Some(_)) if yours.visits.is_empty() => {
+            "nothing was visited: does the ray meet the box around all?"
+        }
+        (None, Some(_)) => "a cell was left out that the ray goes through",
+        _ => "",
+    };
+    let hits: Vec<String> = hits
+        .iter()
+        .enumerate()
+        .filter(|(_, t)| t.is_finite())
+        .take(8)
+        .map(|(i, t)| format!("{i} at t = {t}"))
+        .collect();
+    let input = format!("{what}\n{}\nhits: {}", ray.paste(), hits.join(", "));
+    Err(Broken::new(input, found, expected, "brute force, (primitive, t)").looks_like(known(diagnosis)))
+}
+
+/// What brute force finds, in random scenes and in odd ones.
+pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
+    // Three balls in a row, few enough for one leaf, the nearest of them listed last; and a ball that reaches through many
+    // cells, with a nearer one before it.
+    let row = Scene::new((0..3).map(|i| ball(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
+    let large = Thing::Ball(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
+    let small = (0..8).map(|i| ball(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
+    let through = Scene::new([large].into_iter().chain(small).collect());
+    for (name, scene) in [("three balls in a row", row), ("a large ball and eight small ones", through)] {
+        let ray = Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X);
+        let yours = searcher.ask(trial.kit, &scene, &[ray]).remove(0);
+        judge(&format!("{} over {name}", searcher.name()), &ray, &scene.hits(&ray), &yours)?;
+    }
+    trial.forall(500, scenes(), |cases| {
+        let one = |(scene, ray): &(Scene, Ray)| {
+            let answer = searcher.ask(trial.kit, scene, std::slice::from_ref(ray)).remove(0);
+            let what = format!("{} over {} primitives", searcher.name(), scene.things.len());
+            judge(&what, ray, &scene.hits(ray), &answer)
+        };
+        cases.iter().map(one).collect()
+    })?;
+    for (name, scene, rays) in odd_scenes() {
+        let answers = searcher.ask(trial.kit, &scene, &rays);
+        for (ray, answer) in rays.iter().zip(&answers) {
+            judge(&format!("{} over {name}", searcher.name()), ray, &scene.hits(ray), answer)?;
+        }
+    }
+    Ok(())
+}
+
+/// Where a ray is in the nodes of a structure: `(node, entry, exit)`, in double precision.
+pub(super) type Parts = Vec<(u32, f64, f64)>;
+
+/// What a search visits must be entered by the ray before its hit: `parts` are all nodes that the ray so much as touches.
+pub(super) fn judge_visits(
+    what: &str,
+    ray: &Ray,
+    parts: &Parts,
+    yours: &CellsAnswer,
+    fewest: bool,
+) -> Outcome {
+    let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
+    // 2⁻¹⁴, far more than roundings need and far less than a cell.
+    let room = (-14f64).exp2();
+    let input = || format!("{what}\n{}", ray.paste());
+    for visit in &yours.visits {
+        let Some((_, enter, _)) = parts.iter().find(|(node, ..)| node == visit) else {
+            let broken = Broken::told(input(), format!("a visit to {visit}"), "none", "the ray passes it by");
+            return Err(broken.looks_like(Some("a cell was visited that the ray does not enter")));
+        };
+        if *enter > end + room * end.abs() {
+            let yours = format!("a visit to {visit}, which begins at t = {enter:.4}");
+            let expected = format!("none beyond the hit at t = {end}");
+            let broken = Broken::told(input(), yours, expected, "counted");
+            return Err(broken.looks_like(Some(
+                "the search goes on behind the best hit: nearest cells first, and stop where they begin behind it",
+            )));
+        }
+        if fewest && yours.visits.iter().filter(|other| *other == visit).count() > 1 {
+            let broken = Broken::told(input(), format!("{visit} is visited again"), "once", "counted");
+            return Err(broken.looks_like(Some("a cell is visited several times")));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,218 @@
+//! Ways to intersect a ray with a triangle: as lectures print them, as folklore has them, and as they should be. Each in
+//! single precision, some in double as well.
+
+use super::printed;
+use glam::{DVec3, Vec3};
+use oracle::exact::{Body, meet};
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+
+/// A way to intersect.
+pub struct Method {
+    /// For the head of a row.
+    pub name: &'static str,
+    /// `t` of the hit.
+    pub hit: fn(&Ray, &Triangle) -> Option<f32>,
+}
+
+/// All of them.
+pub const METHODS: [Method; 25] = [
+    Method { name: "Möller–Trumbore", hit: single::moeller_trumbore },
+    Method { name: "  cut off at |det| < 1e-6", hit: printed::moeller_trumbore_cut_off },
+    Method { name: "  in double", hit: double::moeller_trumbore },
+    Method { name: "Cramer", hit: single::cramer },
+    Method { name: "  as printed in 002", hit: printed::cramer },
+    Method { name: "  in double", hit: double::cramer },
+    Method { name: "plane and Gram", hit: single::gram },
+    Method { name: "  0 <= s + t <= 1 as printed in 001", hit: printed::gram_sum_only },
+    Method { name: "  in double", hit: double::gram },
+    Method { name: "003 I, planes", hit: single::by_planes },
+    Method { name: "  one winding, as printed", hit: printed::by_planes_of_one_winding },
+    Method { name: "  in double", hit: double::by_planes },
+    Method { name: "003 II, directions", hit: single::by_direction },
+    Method { name: "  in double", hit: double::by_direction },
+    Method { name: "003 III, areas", hit: single::by_areas },
+    Method { name: "  in double", hit: double::by_areas },
+    Method { name: "  without signs, as printed", hit: printed::by_unsigned_areas },
+    Method { name: "Plücker", hit: single::pluecker },
+    Method { name: "  with a band of one step", hit: printed::pluecker_with_a_band },
+    Method { name: "  in double", hit: double::pluecker },
+    Method { name: "Woop", hit: single::woop },
+    Method { name: "  t from the plane", hit: single::woop_with_plane },
+    Method { name: "  in double", hit: double::woop },
+    Method { name: "  in double, t from the plane", hit: double::woop_with_plane },
+    Method { name: "exact", hit: exactly },
+];
+
+fn exactly(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+    meet(ray, Body::Triangle(*triangle))?.t
+}
+
+/// The same code for both precisions.
+macro_rules! precision {
+    ($module:ident, $Float:ty, $Vector:ty, $convert:expr) => {
+        pub(super) mod $module {
+            use super::*;
+
+            /// Origin, direction, corners.
+            pub(crate) fn numbers(ray: &Ray, triangle: &Triangle) -> [$Vector; 5] {
+                [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map($convert)
+            }
+
+            pub(crate) fn in_range(ray: &Ray, t: $Float) -> Option<f32> {
+                let t = t as f32;
+                ray.contains(t).then_some(t)
+            }
+
+            pub(crate) fn determinant(x: $Vector, y: $Vector, z: $Vector) -> $Float {
+                x.dot(y.cross(z))
+            }
+
+            pub(crate) fn moeller_trumbore(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let (u, v) = (b - a, c - a);
+                let p = d.cross(v);
+                let det = u.dot(p);
+                if det == 0.0 {
+                    return None;
+                }
+                let s = o - a;
+                let beta = s.dot(p) / det;
+                let q = s.cross(u);
+                let gamma = d.dot(q) / det;
+                let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+                if inside { in_range(ray, v.dot(q) / det) } else { None }
+            }
+
+            pub(crate) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let (u, v, r) = (b - a, c - a, o - a);
+                let det = determinant(u, v, -d);
+                let beta = determinant(r, v, -d) / det;
+                let gamma = determinant(u, r, -d) / det;
+                let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+                if inside { in_range(ray, determinant(u, v, r) / det) } else { None }
+            }
+
+            /// `t` on the plane, and the point there as the lectures compute it: in world space.
+            pub(crate) fn on_plane(ray: &Ray, triangle: &Triangle) -> ($Float, $Vector, $Vector) {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let n = (b - a).cross(c - a);
+                let t = (a.dot(n) - o.dot(n)) / d.dot(n);
+                (t, o + t * d, n)
+            }
+
+            pub(crate) fn gram_weights(ray: &Ray, triangle: &Triangle) -> ($Float, $Float, $Float) {
+                let [_, _, a, b, c] = numbers(ray, triangle);
+                let (t, point, _) = on_plane(ray, triangle);
+                let (u, v, w) = (b - a, c - a, point - a);
+                let (uu, uv, vv, wu, wv) = (u.dot(u), u.dot(v), v.dot(v), w.dot(u), w.dot(v));
+                let d = uv * uv - uu * vv;
+                ((uv * wv - vv * wu) / d, (uv * wu - uu * wv) / d, t)
+            }
+
+            pub(crate) fn gram(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let (beta, gamma, t) = gram_weights(ray, triangle);
+                let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+                if inside { in_range(ray, t) } else { None }
+            }
+
+            pub(crate) fn one_side(signs: [$Float; 3]) -> bool {
+                signs.iter().all(|&sign| sign >= 0.0) || signs.iter().all(|&sign| sign <= 0.0)
+            }
+
+            pub(crate) fn plane_sides(ray: &Ray, triangle: &Triangle) -> ($Float, [$Float; 3]) {
+                let [o, _, a, b, c] = numbers(ray, triangle);
+                let (t, point, _) = on_plane(ray, triangle);
+                let side = |from: $Vector, to: $Vector| (from - o).cross(to - o).dot(point - o);
+                (t, [side(a, b), side(b, c), side(c, a)])
+            }
+
+            pub(crate) fn by_planes(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let (t, sides) = plane_sides(ray, triangle);
+                if one_side(sides) { in_range(ray, t) } else { None }
+            }
+
+            pub(crate) fn by_direction(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let [_, d, a, b, c] = numbers(ray, triangle);
+                let (t, point, _) = on_plane(ray, triangle);
+                let side = |from: $Vector, to: $Vector| d.dot((to - point).cross(from - point));
+                if one_side([side(a, b), side(b, c), side(c, a)]) { in_range(ray, t) } else { None }
+            }
+
+            /// Areas of the three parts, as shares of the whole and with signs.
+            pub(crate) fn by_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let [_, _, a, b, c] = numbers(ray, triangle);
+                let (t, point, n) = on_plane(ray, triangle);
+                let share = |from: $Vector, to: $Vector| (from - point).cross(to - point).dot(n) / n.dot(n);
+                let (alpha, beta) = (share(b, c), share(c, a));
+                let inside = alpha >= 0.0 && beta >= 0.0 && alpha + beta <= 1.0;
+                if inside { in_range(ray, t) } else { None }
+            }
+
+            /// The three edge forms, seen from the origin of the ray.
+            pub(crate) fn edge_forms(ray: &Ray, triangle: &Triangle) -> [$Float; 3] {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let [a, b, c] = [a, b, c].map(|corner| corner - o);
+                // As differences and sums, so that neighbours get the same number for the edge they share.
+                let form = |p: $Vector, q: $Vector| (q - p).cross(q + p).dot(d);
+                [form(b, c), form(c, a), form(a, b)]
+            }
+
+            pub(crate) fn t_of_plane(ray: &Ray, triangle: &Triangle) -> $Float {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let n = (b - a).cross(c - a);
+                (a - o).dot(n) / d.dot(n)
+            }
+
+            pub(crate) fn pluecker(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let forms = edge_forms(ray, triangle);
+                if one_side(forms) { in_range(ray, t_of_plane(ray, triangle)) } else { None }
+            }
+
+            /// Woop's edge functions and the sheared z of the corners.
+            fn sheared(ray: &Ray, triangle: &Triangle) -> ([$Float; 3], [$Float; 3], $Float) {
+                let [o, d, a, b, c] = numbers(ray, triangle);
+                let size = d.abs();
+                let z = if size.x >= size.y && size.x >= size.z {
+                    0
+                } else if size.y >= size.z {
+                    1
+                } else {
+                    2
+                };
+                let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+                let shear = [d[x] / d[z], d[y] / d[z]];
+                let project = |corner: $Vector| {
+                    let corner = corner - o;
+                    [corner[x] - shear[0] * corner[z], corner[y] - shear[1] * corner[z], corner[z]]
+                };
+                let [a, b, c] = [a, b, c].map(project);
+                let edge = |p: [$Float; 3], q: [$Float; 3]| p[0] * q[1] - p[1] * q[0];
+                ([edge(b, c), edge(c, a), edge(a, b)], [a[2], b[2], c[2]], d[z])
+            }
+
+            pub(crate) fn woop(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let (edges, depths, length) = sheared(ray, triangle);
+                let sum: $Float = edges.iter().sum();
+                if !one_side(edges) || sum == 0.0 {
+                    return None;
+                }
+                let depth: $Float = edges.iter().zip(depths).map(|(edge, depth)| edge * depth).sum();
+                in_range(ray, depth / length / sum)
+            }
+
+            pub(crate) fn woop_with_plane(ray: &Ray, triangle: &Triangle) -> Option<f32> {
+                let (edges, ..) = sheared(ray, triangle);
+                let sum: $Float = edges.iter().sum();
+                if !one_side(edges) || sum == 0.0 {
+                    return None;
+                }
+                in_range(ray, t_of_plane(ray, triangle))
+            }
+        }
+    };
+}
+
+precision!(single, f32, Vec3, |v: Vec3| v);
+precision!(double, f64, DVec3, Vec3::as_dvec3);
