@@ -2,9 +2,9 @@
 
 use crate::leak_table;
 use anyhow::Result;
+use glam::Vec3;
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
-use glam::Vec3;
 use raykata::kit::{Kit, TriangleHit, TriangleQuery, mishap};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;

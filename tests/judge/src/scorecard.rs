@@ -1,8 +1,8 @@
 //! `raykata check`, and `raykata` alone: where a student stands and what comes next.
 
+use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, RUBRIC};
-use all_checks::STAGES;
 use checks::{Check, Verdict};
 use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;

@@ -2,8 +2,8 @@
 //! what lies 64 steps of a float behind it.
 
 use anyhow::{Result, anyhow, ensure};
-use oracle::splitmix::Random;
 use glam::Vec3;
+use oracle::splitmix::Random;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, View};

@@ -54,11 +54,6 @@ fn workspace(
         if let Some(header) = header {
             of_workspace = *header == "[workspace.dependencies]";
         }
-        // The profile of a package that nobody builds.
-        let of_package = header.and_then(|header| header.split_once(".package.")).map(|(_, name)| name);
-        let of_package = of_package.map(|name| name.trim_end_matches(']').trim_matches('"'));
-        let unused =
-            of_package.is_some_and(|name| name != "*" && !wanted.contains(name) && name != "raykata");
         let missing = header == Some(&"[[test]]")
             && lines.iter().filter_map(|line| line.strip_prefix("name = ")).any(|name| {
                 let name = name.trim_matches('"');

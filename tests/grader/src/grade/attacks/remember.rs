@@ -5,8 +5,8 @@
 
 use super::source::{self, Function};
 use crate::kits::{Need, Source, Which, root};
-use anyhow::{Result, bail, ensure};
 use all_checks::STAGES;
+use anyhow::{Result, bail, ensure};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use std::collections::BTreeMap;
