@@ -18,7 +18,8 @@ const SHORTEST: usize = 30;
 pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
     let exercises = sync::exercises(root)?;
     let mut public: String = exercises.iter().map(|exercise| exercise.stub.as_str()).collect();
-    for (known, _) in FOLDERS.iter().filter(|(folder, _)| root.join(folder).exists()) {
+    let of_code = FOLDERS.iter().filter(|(_, endings)| endings.contains(&"rs"));
+    for (known, _) in of_code.filter(|(folder, _)| root.join(folder).exists()) {
         public.extend(texts(&root.join(known))?.into_iter().map(|(_, text)| text));
     }
     public += &super::text(root, "tests/rubric.toml")?;
