@@ -15,6 +15,7 @@ pub mod mesh;
 pub mod partition;
 pub mod random;
 pub mod ray;
+pub mod rubric;
 pub mod scene;
 pub mod shape;
 pub mod tracer;

@@ -1,11 +1,11 @@
-//! `raykata gaps`: what a picture lacks while one function of an exercise is not written yet, for each function.
+//! `grader gaps`: what a picture lacks while one function of an exercise is not written yet, for each function.
 //!
 //! The reference must make a picture of whatever is written, and say what is left out and why. With everything written
 //! it never has to, so each function in turn is made a gap.
 
 use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
-use crate::kits::root;
+use crate::kits::{Need, Source, Which, root};
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
 use crate::sync::{self, Block};
@@ -52,9 +52,10 @@ impl Gap {
 pub fn run(options: &Options) -> Result<bool> {
     let root = root()?;
     let gaps = all(&root)?;
-    let scenes = Scenes::read(&root)?.of_gaps();
-    let whole = scenes.shown_by(&raykata::kit::Linked(solutions::Kit));
-    let workshops = Workshop::open_all(&root, queue::cores())?;
+    let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
+    let scenes = Scenes::read(&root, &*reference)?.of_gaps();
+    let whole = scenes.shown_by(&*reference);
+    let workshops = Workshop::open_all(&root, queue::cores(), Need::Frames)?;
     let told = told(&workshops, &gaps, &scenes, &whole)?;
     let text: String =
         gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
@@ -70,7 +71,7 @@ pub fn run(options: &Options) -> Result<bool> {
     for (now, before) in text.lines().zip(kept.lines()).filter(|(now, before)| now != before) {
         println!("now     {now}\nbefore  {before}\n");
     }
-    println!("{RECORD} differs: look at it, then `cargo run -- gaps --bless`");
+    println!("{RECORD} differs: look at it, then `cargo run -p grader -- gaps --bless`");
     Ok(false)
 }
 

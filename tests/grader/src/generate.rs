@@ -1,4 +1,4 @@
-//! `raykata generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, a tree, and the images of the
+//! `grader generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, a tree, and the images of the
 //! scenes,
 //! so that the repository needs nobody else's work.
 

@@ -5,7 +5,7 @@ use anyhow::{Context, Result, anyhow};
 use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, Kit, RenderJob, Rendering, TracedRay, View, mishap};
+use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod, load};
 use sha2::{Digest, Sha256};
 use std::fmt;
@@ -46,8 +46,8 @@ pub struct Shown {
 }
 
 impl Scenes {
-    /// Reads the scenes of the kit at `root`, those of the fewest primitives first.
-    pub fn read(root: &Path) -> Result<Scenes> {
+    /// Reads the scenes of the kit at `root`, those of the fewest primitives first, as `reference` counts them.
+    pub fn read(root: &Path, reference: &dyn Kit) -> Result<Scenes> {
         let mut files: Vec<_> = std::fs::read_dir(root.join("scenes"))?
             .filter_map(|entry| Some(entry.ok()?.path()))
             .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
@@ -59,7 +59,7 @@ impl Scenes {
             let mut scene = load::load(&file).map_err(|error| anyhow!("{error}"))?;
             (scene.film.width, scene.film.height) = SIZE;
             scene.quality.samples_per_pixel = scene.quality.samples_per_pixel.min(4);
-            let primitives = primitives_of(&scene)? as usize;
+            let primitives = primitives_of(&scene, reference)? as usize;
             if primitives <= MOST_PRIMITIVES {
                 scenes.push((primitives, name, scene));
             }
@@ -107,11 +107,11 @@ impl Scenes {
 }
 
 /// How many primitives the reference makes of a scene.
-fn primitives_of(scene: &Scene) -> Result<u64> {
+fn primitives_of(scene: &Scene, reference: &dyn Kit) -> Result<u64> {
     let mut scene = scene.clone();
     (scene.film.width, scene.film.height) = (1, 1);
     let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-    let frame = mishap::catch(|| raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched))?;
+    let frame = mishap::catch(|| reference.render(&job, &Unwatched))?;
     Ok(frame.context("nobody cancels")?.primitives)
 }
 

@@ -1,4 +1,4 @@
-//! `raykata sync`: makes `exercises/src` from `solutions/src`.
+//! `grader sync`: makes `exercises/src` from `solutions/src`.
 //!
 //! An answer stands between `// <solution>` and `// </solution>`. In the exercise it gives way to the lines marked
 //! `// <stub>` inside, without that mark; the marks themselves go, too. Everything else is the same in both.
@@ -73,7 +73,7 @@ pub fn check(root: &Path) -> Result<()> {
         println!("exercises/ is what solutions/ makes it");
         return Ok(());
     }
-    bail!("not what `raykata sync` would write from solutions/:\n{}", different.join("\n"))
+    bail!("not what `grader sync` would write from solutions/:\n{}", different.join("\n"))
 }
 
 /// Writes all exercises that nobody has begun; with `force`, the others as well.
@@ -96,7 +96,7 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
         record.iter().map(|(path, print)| format!("{print} {}\n", path.display())).collect();
     write(&root.join(RECORD), &lines.concat())?;
     for path in &kept {
-        println!("kept {path}: you have begun it (`raykata sync --force` would overwrite it)");
+        println!("kept {path}: you have begun it (`grader sync --force` would overwrite it)");
     }
     Ok(())
 }

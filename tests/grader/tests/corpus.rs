@@ -1,7 +1,5 @@
 //! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
-//! about just these entries. Building and trying them is `cargo run -- corpus --check`, which takes minutes.
-
-#![cfg(feature = "author")]
+//! about just these entries. Building and trying them is `cargo run -p grader -- corpus --check`, which takes minutes.
 
 use grader::corpus::entry::{Claim, Entry, read_all};
 use grader::corpus::records::{Matrix, message_file};
@@ -55,7 +53,7 @@ fn the_matrix_is_about_these_entries_and_all_is_as_it_must_be() {
     let names: BTreeSet<String> = entries.iter().map(ToString::to_string).collect();
     let known: BTreeSet<String> = matrix.0.keys().cloned().collect();
     let different: Vec<&String> = names.symmetric_difference(&known).collect();
-    assert!(different.is_empty(), "run `cargo run -- corpus --bless`: {different:?}");
+    assert!(different.is_empty(), "run `cargo run -p grader -- corpus --bless`: {different:?}");
     for entry in &entries {
         let failed = &matrix.0[&entry.to_string()];
         match &entry.claim {
@@ -106,12 +104,12 @@ fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
 
 #[test]
 fn an_entry_that_does_not_exist_is_told() {
-    let raykata = Command::new(env!("CARGO_BIN_EXE_raykata"))
+    let output = Command::new(env!("CARGO_BIN_EXE_grader"))
         .current_dir(root())
         .args(["corpus", "no_such_entry"])
         .output()
         .expect("the program starts");
-    assert_eq!(raykata.status.code(), Some(1));
-    let complaint = String::from_utf8_lossy(&raykata.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = String::from_utf8_lossy(&output.stderr);
     assert!(complaint.contains("has no entry `no_such_entry`"), "{complaint}");
 }

@@ -1,11 +1,10 @@
 //! What is written for Gradescope and GitHub Classroom, and that grading one submission always ends in an answer.
 
-#![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
 mod program_runs;
 
-use program_runs::{raykata, root, told};
+use program_runs::{grader, root, told};
 use serde_json::Value;
 use std::fs;
 use std::io::Read;
@@ -16,7 +15,7 @@ fn written(arguments: &[&str]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
     let out = out.to_string_lossy();
-    let output = raykata(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
+    let output = grader(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
     assert!(output.status.success(), "{}", told(&output).1);
     folder
 }
@@ -87,7 +86,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
     }
     // What is there is somebody's work by now.
     let out = folder.path().join("out");
-    let again = raykata(&["export", "classroom", "--out", &out.to_string_lossy()]);
+    let again = grader(&["export", "classroom", "--out", &out.to_string_lossy()]);
     assert!(told(&again).1.contains("is there already"), "{}", told(&again).1);
 }
 
@@ -97,7 +96,7 @@ fn entry_point(program: &str) -> Value {
     let release = folder.path().join("source/target/release");
     fs::create_dir_all(&release).expect("made");
     fs::create_dir(folder.path().join("submission")).expect("made");
-    std::os::unix::fs::symlink(program, release.join("raykata")).expect("linked");
+    std::os::unix::fs::symlink(program, release.join("grader")).expect("linked");
     let script = root().join("tests/grader/src/export/run_autograder");
     let run = Command::new("sh").arg(script).env("AUTOGRADER_ROOT", folder.path()).output().expect("sh");
     assert!(run.status.success(), "{}", told(&run).1);
@@ -118,7 +117,7 @@ fn what_breaks_in_the_grader_is_an_answer_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let (gradescope, classroom) = (folder.path().join("g.json"), folder.path().join("c.json"));
     // No kit is here.
-    let output = Command::new(env!("CARGO_BIN_EXE_raykata"))
+    let output = Command::new(env!("CARGO_BIN_EXE_grader"))
         .current_dir(folder.path())
         .args(["grade-one", "nothing", "--stages", "1", "--seed", "5", "--gradescope"])
         .arg(&gradescope)
@@ -147,7 +146,7 @@ fn one_submission_is_graded_for_both() {
     fs::write(file, grader::sync::answer(&text, &solution).expect("marks that match")).expect("written");
     let exercises = root().join("exercises").to_string_lossy().into_owned();
     for (submission, share) in [(at("right"), 1.0), (exercises, 0.0)] {
-        let output = raykata(&[
+        let output = grader(&[
             "grade-one",
             &submission,
             "--stages",

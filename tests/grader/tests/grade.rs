@@ -1,6 +1,5 @@
-//! `raykata grade` and `merge` as instructors run them: a class of a few, on stage 1.
+//! `grader grade` and `merge` as instructors run them: a class of a few, on stage 1.
 
-#![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
 use grader::kits::root;
@@ -12,14 +11,14 @@ use std::time::{Duration, Instant, SystemTime};
 
 const SEED: &str = "11";
 
-fn raykata() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
+fn grader() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_grader"));
     command.current_dir(root().unwrap()).stdin(Stdio::null());
     command
 }
 
 fn grade(class: &Path, out: &Path, more: &[&str]) -> Command {
-    let mut command = raykata();
+    let mut command = grader();
     command.arg("grade").arg(class).arg("--out").arg(out);
     command.args(["--stages", "1", "--seed", SEED]).args(more);
     command
@@ -141,7 +140,7 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
         assert!(out.join("results.json").exists(), "{}", said(&output));
     }
     let merged = tempfile::tempdir().unwrap();
-    let mut merge = raykata();
+    let mut merge = grader();
     merge.arg("merge").args([first, second]).arg("--out").arg(merged.path());
     assert_eq!(merge.status().unwrap().code(), Some(1));
     assert_eq!(results(merged.path()), results(whole));
@@ -207,28 +206,22 @@ fn what_cannot_be_graded_is_said_in_words() {
         (&["--shard", "3/2"], "parts are counted from 1"),
         (&["--jobs", "0"], "0 is not in 1.."),
     ] {
-        let output = raykata()
-            .arg("grade")
-            .arg(class.path())
-            .arg("--out")
-            .arg(out.path())
-            .args(more)
-            .output()
-            .unwrap();
+        let output =
+            grader().arg("grade").arg(class.path()).arg("--out").arg(out.path()).args(more).output().unwrap();
         assert!(!output.status.success() && said(&output).contains(says), "{}", said(&output));
     }
-    let nowhere = raykata().args(["grade", "/no/such/folder", "--out"]).arg(out.path()).output().unwrap();
+    let nowhere = grader().args(["grade", "/no/such/folder", "--out"]).arg(out.path()).output().unwrap();
     assert!(said(&nowhere).contains("cannot read the folder /no/such/folder"), "{}", said(&nowhere));
     let empty = said(&grade(class.path(), out.path(), &[]).output().unwrap());
     assert!(empty.contains("no submission"), "{empty}");
-    let none = raykata().arg("merge").arg(class.path()).arg("--out").arg(out.path()).output().unwrap();
+    let none = grader().arg("merge").arg(class.path()).arg("--out").arg(out.path()).output().unwrap();
     assert!(said(&none).contains("holds no grades"), "{}", said(&none));
 }
 
 #[test]
 fn every_option_is_explained() {
     let text = done({
-        let mut help = raykata();
+        let mut help = grader();
         help.args(["grade", "--help"]);
         help
     });

@@ -1,25 +1,37 @@
 //! What the judge makes of jailed workers that do everything wrong: one mishap for the call, never a wait without end.
 
-#![cfg(feature = "author")]
 #![cfg(target_os = "linux")]
 
-#[path = "misbehaving/asking.rs"]
+#[path = "../../misbehaving/tests/asking/mod.rs"]
 mod asking;
 
 use asking::{ask, how_it_crashed, query};
 use grader::jail::{Jail, Purpose};
+use grader::kits::{self, Need, Program, Source, Which};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Duration;
 
-fn jailed(program: &str, seconds: u64) -> Door<Worker> {
-    Door(Worker::jailed(program.into(), Duration::from_secs(seconds), Jail::new(Purpose::Worker)))
+fn jailed(program: impl Into<PathBuf>, seconds: u64) -> Door<Worker> {
+    Door(Worker::sandboxed(program.into(), Duration::from_secs(seconds), Jail::new(Purpose::Worker)))
+}
+
+/// The program that misbehaves. It is in a package of its own, because it links the solutions.
+fn misbehaving() -> PathBuf {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    let build = || {
+        let program = Program { package: "misbehaving", name: "misbehaving-worker", feature: None };
+        let built = kits::build(&kits::root().expect("a kit"), "a worker that misbehaves", &[program]);
+        built.expect("it builds").remove(0)
+    };
+    BUILT.get_or_init(build).clone()
 }
 
 fn door() -> Door<Worker> {
-    jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 1)
+    jailed(misbehaving(), 1)
 }
 
 fn crash(door: &Door<Worker>, radius: f32) -> String {
@@ -31,7 +43,7 @@ fn an_honest_worker_passes_every_check_in_a_jail() {
     for (_, checks) in all_checks::STAGES {
         for check in *checks {
             // The patience of the tool: some checks take a while where others run at the same time.
-            let kit = jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 10);
+            let kit = jailed(misbehaving(), 10);
             let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(kit);
             assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
         }
@@ -67,7 +79,7 @@ fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
         assert_eq!(ask(&door, radius), Err(Mishap::TimedOut { seconds: 1 }));
     }
     // It sleeps for three seconds, as if others had the processor: twice that is granted.
-    assert!(ask(&jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 2), -14.0).is_ok());
+    assert!(ask(&jailed(misbehaving(), 2), -14.0).is_ok());
 }
 
 #[test]
@@ -95,15 +107,16 @@ fn a_worker_that_does_not_read_does_not_stop_the_judge() {
 }
 
 #[test]
-fn a_frame_in_a_jail_is_the_frame_that_is_linked() {
+fn a_frame_in_a_jail_is_the_frame_outside() {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
     let mut scene = raykata::scene::load::load(file).expect("the scene");
     (scene.film.width, scene.film.height) = (40, 25);
     // Two threads are asked for; there are none in a jail.
     let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
     let watch: &dyn Watch = &Unwatched;
-    let kit = jailed(env!("CARGO_BIN_EXE_misbehaving-worker"), 10);
+    let kit = jailed(misbehaving(), 10);
     let jailed = kit.render(&job, watch).expect("nobody cancels");
-    let linked = raykata::kit::Linked(solutions::Kit).render(&job, watch).expect("nobody cancels");
-    assert_eq!((jailed.film, jailed.counts, jailed.notes), (linked.film, linked.counts, linked.notes));
+    let solutions = Source::prepare(&kits::root().expect("a kit"), Which::Solutions, Need::Frames);
+    let free = solutions.expect("it builds").fresh().render(&job, watch).expect("nobody cancels");
+    assert_eq!((jailed.film, jailed.counts, jailed.notes), (free.film, free.counts, free.notes));
 }

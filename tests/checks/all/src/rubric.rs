@@ -17,6 +17,10 @@ pub fn differences() -> Vec<String> {
                 Some(entry) => differences.extend(faults(entry, check.name)),
             }
         }
+        let order = stage.in_order().into_iter().map(|(name, _)| name);
+        if !order.eq(checks.iter().map(|check| check.name)) {
+            differences.push(format!("the rubric has the checks of stage {number} in another order"));
+        }
         for name in stage.checks.keys() {
             if !checks.iter().any(|check| check.name == name) {
                 differences

@@ -1,20 +1,21 @@
-//! `raykata corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
+//! `grader corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
 //! must catch and name, or another right way to do it, which every check must accept.
 //!
-//! `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
+//! `carry` (patches follow their files) · `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
 
+mod carry;
 pub mod entry;
 pub mod records;
 pub mod verdict;
 pub mod workshop;
 
-use crate::check::run_checks_on;
-use crate::kits::Source;
+use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
-use clap::Args;
+use clap::{Args, Subcommand};
 use entry::{Claim, Entry};
+use judge::scorecard::run_checks_on;
 use records::Matrix;
 use std::path::Path;
 use verdict::{Fate, Tried};
@@ -22,7 +23,10 @@ use workshop::{Built, Workshop};
 
 /// Which entries to try, and what to do with what comes of it.
 #[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct Options {
+    #[command(subcommand)]
+    what: Option<What>,
     /// Entries by name; all, if none is named.
     names: Vec<String>,
     /// One stage only.
@@ -49,8 +53,18 @@ pub struct Options {
     seed: Option<u64>,
 }
 
+/// What else can be done with the corpus.
+#[derive(Subcommand)]
+enum What {
+    /// Make the patches follow files of the solutions that have moved, were split or have changed.
+    Carry(carry::Options),
+}
+
 /// Tries entries and reports; whether all is as it must be.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    if let Some(What::Carry(options)) = &options.what {
+        return carry::run(root, options);
+    }
     let all = entry::read_all(root)?;
     let n_all = all.len();
     let chosen = choose(all, options)?;
@@ -113,7 +127,7 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Re
     let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
     let jobs = jobs.min(entries.len());
-    let workshops = Workshop::open_all(root, jobs)?;
+    let workshops = Workshop::open_all(root, jobs, Need::Checks)?;
     let threads = queue::cores().div_ceil(jobs);
     let tried = queue::run(&workshops, entries, |workshop, entry| {
         bar.set_message(entry.to_string());
@@ -133,7 +147,8 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
         Built::DoesNotCompile(error) => return tried(Fate::DoesNotCompile(error), Default::default()),
     };
     let wanted = |stage| stage == entry.stage;
-    let graded = run_checks_on(threads, &Source::Worker(worker), wanted, seed.unwrap_or(0))?;
+    let source = Source { which: Which::Solutions, program: worker };
+    let graded = run_checks_on(threads, &source, wanted, seed.unwrap_or(0))?;
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     let fate = match Fate::of(entry, &failures) {
@@ -193,6 +208,9 @@ fn report(tried: &[Tried], differences: &[String]) {
         println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));
     }
     if !differences.is_empty() {
-        println!("\n{} differences: look at them, then `cargo run -- corpus --bless`", differences.len());
+        println!(
+            "\n{} differences: look at them, then `cargo run -p grader -- corpus --bless`",
+            differences.len()
+        );
     }
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 pub const MATRIX: &str = "tests/corpus/matrix.txt";
 
 const ABOUT: &str = "# Which checks each entry of the corpus fails; `=` marks the check that is named to catch it. Written by\n\
-                     # `cargo run -- corpus --bless`, compared by `cargo run -- corpus --check`.\n";
+                     # `cargo run -p grader -- corpus --bless`, compared by `cargo run -p grader -- corpus --check`.\n";
 
 /// The lines of a matrix by entry.
 #[derive(Debug, Default, PartialEq)]

@@ -6,6 +6,7 @@
 //! which cargo found the solutions unchanged is refused: its verdict would be about the entry before.
 
 use super::entry;
+use crate::kits::Need;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -22,6 +23,8 @@ const QUICK_BUILD: [&str; 4] =
 pub struct Workshop {
     root: PathBuf,
     folder: PathBuf,
+    /// What its workers are for.
+    need: Need,
 }
 
 /// What came of building an entry.
@@ -35,9 +38,9 @@ pub enum Built {
 }
 
 impl Workshop {
-    /// So many workshops, in each of which the solutions are known to build as they are.
-    pub fn open_all(root: &Path, jobs: usize) -> Result<Vec<Workshop>> {
-        let first = Workshop::open(root, 0)?;
+    /// So many workshops for workers of this kind, in each of which the solutions are known to build as they are.
+    pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<Workshop>> {
+        let first = Workshop::open(root, 0, need)?;
         // The reference itself must build, and what it needs is then there for all workshops.
         match first.build_original()? {
             Built::Worker(_) => {}
@@ -47,7 +50,7 @@ impl Workshop {
         }
         let mut workshops = vec![first];
         for number in 1..jobs {
-            let workshop = Workshop::open(root, number)?;
+            let workshop = Workshop::open(root, number, need)?;
             workshop.take_over(&workshops[0])?;
             workshops.push(workshop);
         }
@@ -55,9 +58,9 @@ impl Workshop {
     }
 
     /// The workshop of this number for the kit at `root`, brought up to date.
-    fn open(root: &Path, number: usize) -> Result<Workshop> {
+    fn open(root: &Path, number: usize, need: Need) -> Result<Workshop> {
         let folder = root.join(format!("target/corpus/{number}"));
-        let workshop = Workshop { root: root.to_owned(), folder };
+        let workshop = Workshop { root: root.to_owned(), folder, need };
         write_if_new(
             &workshop.folder.join("Cargo.toml"),
             &cut_manifest(&read(&root.join("Cargo.toml"))?, &["dev-dependencies", "[test]", "[bench]"]),
@@ -131,6 +134,7 @@ impl Workshop {
             .current_dir(&self.folder)
             .args(["build", "--quiet", "--package", "solutions", "--bin", "solutions-worker"])
             .args(["--message-format=json", "--target-dir", "target"])
+            .args(self.need.feature().map(|feature| format!("--features=solutions/{feature}")))
             .args(QUICK_BUILD)
             .stdin(Stdio::null())
             .output()
@@ -204,7 +208,10 @@ fn mirror(from: &Path, to: &Path) -> Result<()> {
         let entry = entry?;
         wanted.insert(entry.file_name());
         let target = to.join(entry.file_name());
-        if entry.file_type()?.is_dir() {
+        if entry.path().join("Cargo.toml").is_file() {
+            // A package of its own, which the solutions do not need.
+            wanted.remove(&entry.file_name());
+        } else if entry.file_type()?.is_dir() {
             mirror(&entry.path(), &target)?;
         } else {
             write_if_new(&target, &read(&entry.path())?)?;

@@ -1,4 +1,4 @@
-//! `raykata export`: what Gradescope and GitHub Classroom need to grade as `raykata grade` does.
+//! `grader export`: what Gradescope and GitHub Classroom need to grade as `grader grade` does.
 
 mod bundle;
 
@@ -49,7 +49,7 @@ fn known_stages(text: &str) -> Result<String> {
 }
 
 impl Grading {
-    /// As options of `raykata grade-one`.
+    /// As options of `grader grade-one`.
     fn options(&self) -> String {
         let seed = self.seed.unwrap_or_else(draw_seed);
         let stages = self.stages.as_ref().map_or_else(String::new, |stages| format!("--stages {stages} "));

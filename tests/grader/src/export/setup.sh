@@ -16,7 +16,7 @@ if ! command -v cargo >/dev/null; then
 fi
 
 cd "$root/source"
-cargo build --locked --release --package grader --bin raykata
+cargo build --locked --release --package grader --bin grader --package solutions --bin solutions-worker
 # What submissions are compiled against.
 cargo build --locked --package raykata --lib
 # A first try, on exercises that nobody has begun: 0 points, and the log of the image says if anything is amiss.

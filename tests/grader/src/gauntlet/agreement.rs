@@ -1,20 +1,19 @@
 //! Searches against brute force over exact predicates: a search is right if what it finds is among the triangles that the
 //! ray exactly meets first.
 
-use super::traversal::{Packet, Triangles, hierarchy};
-use glam::{UVec3, Vec3};
+use super::scenes;
+use crate::kits::Source;
+use crate::queue;
+use anyhow::Result;
 use oracle::exact::{Body, meet, triangle};
 use oracle::gauntlet::scenes::{HardScene, hard_scenes};
 use oracle::splitmix::Random;
-use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, PrimitiveHit};
-use raykata::partition::{KdHeuristics, KdTree};
+use raykata::bvh::PrimitiveHit;
+use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, mishap};
+use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
-use raykata::scene::Split;
+use raykata::scene::{Accelerator, Quality, Split};
 use raykata::shape::Triangle;
-use solutions::{
-    stage2_triangles, stage3_bvh, stage9_bsp, stage9_coherence, stage9_grid, stage9_kd_tree, stage9_octree,
-};
 
 /// What came of one way to search one scene.
 #[derive(Clone, Debug)]
@@ -50,14 +49,11 @@ struct Asked {
 const ON_AN_EDGE: f64 = 1e-6;
 
 impl Asked {
-    fn new(scene: &HardScene, random: &mut Random) -> Asked {
-        let ray = scene.ray(random);
+    /// What may be found with a ray that finds `brute` when it asks all triangles.
+    fn new(scene: &HardScene, ray: Ray, brute: Option<PrimitiveHit>) -> Asked {
         let ties = triangle::tie_set(&ray, &scene.triangles);
         let sure = scene.triangles.iter().filter(|triangle| !is_on_an_edge(&ray, triangle));
         let sure = sure.filter_map(|triangle| exact_t(&ray, triangle)).min_by(f32::total_cmp);
-        let no_tree = Bvh::default();
-        let mut probe = Triangles::new(&no_tree, &scene.triangles, &ray);
-        let brute = stage2_triangles::brute_force(scene.triangles.len() as u32, &mut probe, &ray);
         Asked { ray, ties, sure, brute }
     }
 
@@ -109,101 +105,114 @@ fn exact_t(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     meet(ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t)
 }
 
-type Search = fn(&Bvh, &mut Triangles<'_>, &Ray) -> Option<PrimitiveHit>;
-
 /// Every search of the reference on every hard scene, with so many rays each.
-pub fn all(seed: u64, rays: u64) -> Vec<Agreement> {
-    let searches: [(&str, Search); 2] = [
-        ("both children", |bvh, probe, ray| stage3_bvh::closest_hit_both(bvh, probe, ray)),
-        ("nearer first", |bvh, probe, ray| stage3_bvh::closest_hit(bvh, probe, ray)),
-    ];
-    let mut agreements = Vec::new();
-    for scene in hard_scenes() {
-        let mut random = Random::new(seed, 21);
-        let asked: Vec<Asked> = (0..rays).map(|_| Asked::new(&scene, &mut random)).collect();
-        agreements.push(agreement(&scene, "brute force".into(), &asked, |one| {
-            one.judge(&scene.triangles, one.brute)
-        }));
-        for (split, leaf_size) in Split::ALL.into_iter().flat_map(|split| [(split, 1), (split, 4)]) {
-            let bvh = hierarchy(&scene.triangles, split, leaf_size);
-            for (name, search) in searches {
-                let told = format!("{split:?}, leaves of {leaf_size}, {name}");
-                agreements.push(agreement(&scene, told, &asked, |one| {
-                    let mut probe = Triangles::new(&bvh, &scene.triangles, &one.ray);
-                    one.judge(&scene.triangles, search(&bvh, &mut probe, &one.ray))
-                }));
-            }
-            let told = format!("{split:?}, leaves of {leaf_size}, any hit");
-            agreements.push(agreement(&scene, told, &asked, |one| {
-                let mut probe = Triangles::new(&bvh, &scene.triangles, &one.ray);
-                one.judge_any(stage3_bvh::any_hit(&bvh, &mut probe, &one.ray))
-            }));
-        }
-        for (told, found) in partitions(&scene, &asked) {
-            let mut found = found.into_iter();
-            agreements.push(agreement(&scene, told, &asked, |one| {
-                one.judge(&scene.triangles, found.next().flatten())
-            }));
-        }
+pub fn all(reference: &Source, seed: u64, rays: u64) -> Result<Vec<Agreement>> {
+    let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
+    let of_scenes = queue::run(&kits, &hard_scenes(), |kit, scene| {
+        Ok(mishap::catch(|| of_scene(&**kit, scene, seed, rays))?)
+    })?;
+    Ok(of_scenes.into_iter().flatten().collect())
+}
+
+fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agreement> {
+    let mut random = Random::new(seed, 21);
+    let rays: Vec<Ray> = (0..rays).map(|_| scene.ray(&mut random)).collect();
+    let found_by = |quality: Quality| kit.first_hits(&scenes::job(&scene.triangles, quality), &rays);
+    let with = |accelerator: Accelerator, leaf_size: u32| Quality {
+        accelerator,
+        leaf_size,
+        split: Split::SurfaceArea,
+        ..Quality::default()
+    };
+    let brute = found_by(with(Accelerator::BruteForce, 1));
+    let asked: Vec<Asked> =
+        rays.iter().zip(&brute).map(|(ray, brute)| Asked::new(scene, *ray, *brute)).collect();
+    let compared = |search: String, found: Vec<Option<PrimitiveHit>>| {
+        let mut found = found.into_iter();
+        agreement(scene, search, &asked, |one| one.judge(&scene.triangles, found.next().flatten()))
+    };
+    let mut agreements = vec![compared("brute force".into(), brute.clone())];
+    let distances = distances(kit, scene, &rays);
+    for (split, leaf_size) in Split::ALL.into_iter().flat_map(|split| [(split, 1), (split, 4)]) {
+        let named = |how: &str| format!("{split:?}, leaves of {leaf_size}, {how}");
+        let queries = searches(kit, scene, &rays, &distances, split, leaf_size);
+        let both = in_batches(&queries, |batch| kit.closest_hit_both(batch));
+        agreements.push(compared(named("both children"), both.iter().map(|answer| answer.hit).collect()));
+        let quality = Quality { split, ..with(Accelerator::Bvh, leaf_size) };
+        agreements.push(compared(named("nearer first"), found_by(quality)));
+        let mut any = in_batches(&queries, |batch| kit.any_hit(batch)).into_iter();
+        let judge = |one: &Asked| one.judge_any(any.next().is_some_and(|(found, _)| found));
+        agreements.push(agreement(scene, named("any hit"), &asked, judge));
+    }
+    for (search, quality) in structures(with) {
+        agreements.push(compared(search, found_by(quality)));
     }
     agreements
 }
 
-/// What the structures of stage 9 find, ray by ray.
-fn partitions(scene: &HardScene, asked: &[Asked]) -> Vec<(String, Vec<Option<PrimitiveHit>>)> {
-    let triangles = &scene.triangles;
-    let bounds: Vec<Aabb> = triangles.iter().map(stage3_bvh::triangle_bounds).collect();
-    let around =
-        bounds.iter().filter(|one| !one.is_empty()).fold(Aabb::EMPTY, |p, q| stage3_bvh::union(&p, q));
-    let hulls: Vec<Vec<Vec3>> = triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
-    let no_tree = Bvh::default();
-    let each = |search: &dyn Fn(&mut Triangles<'_>, &Ray) -> Option<PrimitiveHit>| {
-        let find = |one: &Asked| search(&mut Triangles::new(&no_tree, triangles, &one.ray), &one.ray);
-        asked.iter().map(find).collect::<Vec<_>>()
-    };
-    let mut found = Vec::new();
-    let formula = stage9_grid::resolution(&around, triangles.len(), 4.0);
-    for (name, resolution) in [("of 3³ cells", UVec3::splat(3)), ("by the formula", formula)] {
-        let grid = stage9_grid::build(&bounds, resolution);
-        found.push((format!("grid {name}"), each(&|probe, ray| stage9_grid::closest_hit(&grid, probe, ray))));
+/// The structures of stage 9, and other ways through a hierarchy.
+fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Quality)> {
+    let mut structures: Vec<(String, Quality)> = Vec::new();
+    for (name, grid_resolution) in [("of 3 cells along", 3), ("by the formula", 0)] {
+        let quality = Quality { grid_resolution, ..with(Accelerator::Grid, 1) };
+        structures.push((format!("grid {name}"), quality));
     }
     for leaf_size in [1, 8] {
-        let tree = stage9_octree::build(&bounds, leaf_size, 12);
-        let named = |how: &str| format!("octree, leaves of {leaf_size}, {how}");
-        let by_cells = each(&|probe, ray| stage9_octree::closest_hit_by_cells(&tree, probe, ray));
-        found.push((named("by cells"), by_cells));
-        found.push((
-            named("from the root"),
-            each(&|probe, ray| stage9_octree::closest_hit(&tree, probe, ray)),
-        ));
+        for (how, accelerator) in
+            [("by cells", Accelerator::OctreeByCells), ("from the root", Accelerator::Octree)]
+        {
+            structures.push((format!("octree, leaves of {leaf_size}, {how}"), with(accelerator, leaf_size)));
+        }
     }
-    for (name, heuristics) in
+    for (name, kd_heuristics) in
         [("all heuristics", KdHeuristics::default()), ("no heuristic", KdHeuristics::NONE)]
     {
-        let tree = stage9_kd_tree::build(&bounds, &heuristics, 2);
-        found.push((
-            format!("kd-tree, {name}"),
-            each(&|probe, ray| stage9_kd_tree::closest_hit(&tree, probe, ray)),
-        ));
+        let quality = Quality { kd_heuristics, ..with(Accelerator::KdTree, 2) };
+        structures.push((format!("kd-tree, {name}"), quality));
     }
-    let tree = stage9_bsp::build(&hulls, 2, KdTree::most_depth(hulls.len()));
-    found.push(("BSP tree".into(), each(&|probe, ray| stage9_bsp::closest_hit(&tree, probe, ray))));
+    structures.push(("BSP tree".into(), with(Accelerator::Bsp, 2)));
+    structures.push(("hierarchy, last hit first".into(), with(Accelerator::CachedBvh, 2)));
+    structures.push(("hierarchy, packets".into(), with(Accelerator::PacketBvh, 2)));
+    structures
+}
 
-    let bvh = hierarchy(triangles, Split::SurfaceArea, 2);
-    let mut last = None;
-    let cached = |one: &Asked| {
-        let search = |probe: &mut Triangles<'_>, ray: &Ray| stage3_bvh::closest_hit(&bvh, probe, ray);
-        let mut probe = Triangles::new(&bvh, triangles, &one.ray);
-        let hit = stage9_coherence::closest_hit_cached(last, &mut probe, &one.ray, search);
-        last = hit.map_or(last, |hit| Some(hit.primitive));
-        hit
+/// For each ray the `t` of each triangle, as tables of searches have it.
+fn distances(kit: &dyn Kit, scene: &HardScene, rays: &[Ray]) -> Vec<Vec<f32>> {
+    let of_ray = |ray: &Ray| {
+        let query = |&triangle: &Triangle| TriangleQuery { ray: *ray, triangle };
+        let queries: Vec<TriangleQuery> = scene.triangles.iter().map(query).collect();
+        let hits = kit.triangle_choice(&queries);
+        hits.into_iter().map(|hit| hit.map_or(f32::INFINITY, |hit| hit.t)).collect()
     };
-    found.push(("hierarchy, last hit first".into(), asked.iter().map(cached).collect()));
-    let rays: Vec<Ray> = asked.iter().map(|one| one.ray).collect();
-    let first = rays.first().copied().unwrap_or_else(|| Ray::new(Vec3::ZERO, Vec3::X));
-    let mut packet = Packet(Triangles::new(&bvh, triangles, &first));
-    found.push(("hierarchy, packets".into(), stage9_coherence::closest_hit_packet(&bvh, &mut packet, &rays)));
-    found
+    rays.iter().map(of_ray).collect()
+}
+
+/// One search per ray through a hierarchy of the kit, with the answers of the kit to all questions about boxes and triangles.
+fn searches(
+    kit: &dyn Kit,
+    scene: &HardScene,
+    rays: &[Ray],
+    distances: &[Vec<f32>],
+    split: Split,
+    leaf_size: u32,
+) -> Vec<SearchQuery> {
+    let bounds = kit.triangle_bounds(&scene.triangles);
+    let query = BuildQuery { bounds, split, leaf_size: leaf_size as usize };
+    let bvh = kit.build(std::slice::from_ref(&query)).pop().unwrap_or_default();
+    let of_ray = |(ray, distances): (&Ray, &Vec<f32>)| {
+        let queries: Vec<SlabQuery> =
+            bvh.nodes.iter().map(|node| SlabQuery { ray: *ray, bounds: node.bounds }).collect();
+        let miss = (f32::INFINITY, f32::NEG_INFINITY);
+        let boxes = kit.slab(&queries).into_iter().map(|span| span.unwrap_or(miss)).collect();
+        let table = Table { boxes, primitives: distances.clone() };
+        SearchQuery { bvh: bvh.clone(), ray: *ray, table }
+    };
+    rays.iter().zip(distances).map(of_ray).collect()
+}
+
+/// Asks some searches at a time, because each brings its hierarchy along.
+fn in_batches<A>(queries: &[SearchQuery], ask: impl Fn(&[SearchQuery]) -> Vec<A>) -> Vec<A> {
+    queries.chunks(100).flat_map(ask).collect()
 }
 
 fn agreement(

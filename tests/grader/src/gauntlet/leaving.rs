@@ -6,7 +6,7 @@ use glam::Vec3;
 use oracle::splitmix::Random;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, RenderJob, View};
+use raykata::kit::{Kit, RenderJob, View};
 use raykata::scene::load;
 use std::path::Path;
 
@@ -67,12 +67,10 @@ impl Pane {
 }
 
 /// What a frame of the pane cost; every ray from the camera must have met it and have sent on two.
-fn counts(scene: &str) -> Result<Counts> {
+fn counts(kit: &dyn Kit, scene: &str) -> Result<Counts> {
     let scene = load::parse(Path::new("pane.toml"), scene).map_err(|error| anyhow!("{error}"))?;
     let job = RenderJob { scene, view: View::Shaded, seed: 1, threads: 1, count: true };
-    let counts = raykata::kit::Linked(solutions::Kit)
-        .render(&job, &Unwatched)
-        .map_or_else(Counts::default, |frame| frame.counts);
+    let counts = kit.render(&job, &Unwatched).map_or_else(Counts::default, |frame| frame.counts);
     ensure!(
         counts.reflection == counts.primary && counts.transmission == counts.primary,
         "not every ray from the eye met the pane: {counts:?}"
@@ -81,13 +79,13 @@ fn counts(scene: &str) -> Result<Counts> {
 }
 
 /// Of [`RAYS`] rays each that a mirror and a pane of glass send on in one frame: how many meet it once more.
-pub fn self_hits(random: &mut Random) -> Result<u64> {
-    let counts = counts(&Pane::draw(random).scene(false))?;
+pub fn self_hits(kit: &dyn Kit, random: &mut Random) -> Result<u64> {
+    let counts = counts(kit, &Pane::draw(random).scene(false))?;
     Ok(counts.hits - counts.primary)
 }
 
 /// Of [`RAYS`] rays through a pane in one frame: how many miss the wall right behind it.
-pub fn lost_contacts(random: &mut Random) -> Result<u64> {
-    let counts = counts(&Pane::draw(random).scene(true))?;
+pub fn lost_contacts(kit: &dyn Kit, random: &mut Random) -> Result<u64> {
+    let counts = counts(kit, &Pane::draw(random).scene(true))?;
     Ok(counts.transmission.saturating_sub(counts.hits - counts.primary))
 }

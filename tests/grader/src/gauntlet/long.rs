@@ -1,23 +1,22 @@
 //! The long run: rays by the hundred million at edges and vertices of closed meshes, in every structure of the
 //! reference, and at corners of boxes. What is done is kept in a file, so that a run can be stopped and goes on.
 
-use super::leaving;
-use super::traversal::{Triangles, hierarchy};
+use super::{leaving, scenes};
+use crate::kits::Source;
 use crate::queue;
 use crate::report::{Thousands, bar_of_steps, make_folder_of};
 use anyhow::{Context, Result, bail};
+use judge::gauntlet::Input;
+use judge::leak_table::leaks_of;
 use oracle::exact::aabb::overlap;
 use oracle::gauntlet::boxes::at_a_corner;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::bvh::Bvh;
-use raykata::kit::SlabQuery;
+use raykata::kit::{Kit, SlabQuery, TriangleQuery, mishap};
 use raykata::ray::Ray;
-use raykata::scene::Split;
-use raykata::shape::Triangle;
+use raykata::scene::{Accelerator, Quality, Split};
 use serde::{Deserialize, Serialize};
-use solutions::{stage2_triangles, stage3_bvh};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Mutex;
@@ -70,35 +69,20 @@ impl Structure {
     }
 }
 
-/// A mesh with a hierarchy for each strategy.
-struct Prepared {
-    mesh: Closed,
-    triangles: Vec<Triangle>,
-    hierarchies: Vec<(Split, Bvh)>,
-}
-
-impl Prepared {
-    fn new(mesh: Closed) -> Self {
-        let triangles = mesh.all();
-        let hierarchies = Split::ALL.map(|split| (split, hierarchy(&triangles, split, 4))).into();
-        Prepared { mesh, triangles, hierarchies }
-    }
-
-    fn hits(&self, structure: Structure, ray: &Ray, vertex: u32) -> bool {
-        match structure {
-            Structure::BruteForce => {
-                let hit = |ray: &Ray, triangle: &Triangle| {
-                    stage2_triangles::triangle_choice(ray, triangle).map(|hit| hit.t)
-                };
-                !oracle::gauntlet::leaks::leaks(&self.mesh, ray, vertex, hit)
-            }
-            Structure::Bvh(split) => {
-                let bvh = self.hierarchies.iter().find(|(other, _)| *other == split).map(|(_, bvh)| bvh);
-                bvh.is_some_and(|bvh| {
-                    let mut probe = Triangles::new(bvh, &self.triangles, ray);
-                    stage3_bvh::closest_hit(bvh, &mut probe, ray).is_some()
-                })
-            }
+/// How many rays that start inside a closed mesh, each with a vertex near which it hits, meet nothing.
+fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]) -> u64 {
+    match structure {
+        Structure::BruteForce => leaks_of(mesh, rays, |inputs: &[Input]| {
+            let queries: Vec<TriangleQuery> =
+                inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
+            kit.triangle_choice(&queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
+        }),
+        Structure::Bvh(split) => {
+            let quality =
+                Quality { accelerator: Accelerator::Bvh, split, leaf_size: 4, ..Quality::default() };
+            let rays: Vec<Ray> = rays.iter().map(|(ray, _)| *ray).collect();
+            let hits = kit.first_hits(&scenes::job(&mesh.all(), quality), &rays);
+            hits.iter().filter(|hit| hit.is_none()).count() as u64
         }
     }
 }
@@ -130,34 +114,35 @@ impl Trial {
     }
 
     /// Failures among the rays of piece `piece`.
-    fn failures(self, meshes: &[Prepared], seed: u64, piece: u64) -> Result<u64> {
+    fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, piece: u64) -> Result<u64> {
         let mut random = Random::new(seed, piece);
-        let count = |mut failed: Box<dyn FnMut(u64) -> bool + '_>| {
-            Ok((0..PIECE).filter(|&n| failed(n)).count() as u64)
-        };
         match self {
-            Trial::SelfHit => leaving::self_hits(&mut random),
-            Trial::Contact => leaving::lost_contacts(&mut random),
-            Trial::Slab => count(Box::new(move |_| slab_misses(&mut random))),
-            Trial::Mesh(structure, aim) => count(Box::new(move |n| {
-                let prepared = &meshes[n as usize % meshes.len()];
-                let (ray, vertex) = aimed(&prepared.mesh, aim, &mut random);
-                !prepared.hits(structure, &ray, vertex)
-            })),
+            Trial::SelfHit => leaving::self_hits(kit, &mut random),
+            Trial::Contact => leaving::lost_contacts(kit, &mut random),
+            Trial::Slab => {
+                let queries: Vec<SlabQuery> = (0..PIECE).filter_map(|_| at_a_corner(&mut random)).collect();
+                let meets = |query: &SlabQuery| {
+                    overlap(&query.ray, &query.bounds).is_some_and(|overlap| overlap.verdict.is_hit())
+                };
+                let answers = kit.slab(&queries);
+                let missed =
+                    queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
+                Ok(missed.count() as u64)
+            }
+            Trial::Mesh(structure, aim) => {
+                let mut rays: Vec<Vec<(Ray, u32)>> = vec![Vec::new(); meshes.len()];
+                for n in 0..PIECE as usize {
+                    let mesh = n % meshes.len();
+                    rays[mesh].push(aimed(&meshes[mesh], aim, &mut random));
+                }
+                Ok(meshes.iter().zip(&rays).map(|(mesh, rays)| leaks(kit, mesh, structure, rays)).sum())
+            }
         }
     }
 }
 
-/// Whether the slab test misses a box that the ray meets.
-fn slab_misses(random: &mut Random) -> bool {
-    at_a_corner(random).is_some_and(|SlabQuery { ray, bounds }| {
-        let meets = overlap(&ray, &bounds).is_some_and(|overlap| overlap.verdict.is_hit());
-        meets && stage3_bvh::slab(&ray, ray.dir.recip(), &bounds).is_none()
-    })
-}
-
 /// Runs until `rays` rays of each kind are done; whether nothing failed.
-pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
+pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool> {
     let mut state = read(file)?;
     if state.seed != seed && !state.done.is_empty() {
         bail!(
@@ -176,11 +161,12 @@ pub fn run(rays: u64, seed: u64, file: &Path) -> Result<bool> {
         .flat_map(|trial| (0..pieces).map(move |piece| (trial, piece)))
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
-    let meshes: Vec<Prepared> = closed().into_iter().map(Prepared::new).collect();
+    let meshes = closed();
+    let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
     let bar = bar_of_steps(work.len());
     let state = Mutex::new((state, Instant::now()));
-    queue::run(&queue::one_a_core(), &work, |(), &(trial, piece)| {
-        let failures = trial.failures(&meshes, seed, piece)?;
+    queue::run(&kits, &work, |kit, &(trial, piece)| {
+        let failures = mishap::catch(|| trial.failures(&**kit, &meshes, seed, piece))??;
         bar.inc(1);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
         let (state, kept) = &mut *guard;

@@ -1,35 +1,30 @@
-//! `raykata gauntlet`: what accuracy costs. Methods against distributions, judged exactly; with `--rays`, the long run
+//! `grader gauntlet`: what accuracy costs. Methods against distributions, judged exactly; with `--rays`, the long run
 //! that looks for a leak in the reference.
 
 pub mod agreement;
-mod leak_table;
 mod leaving;
 mod long;
 mod methods;
 mod printed;
-pub mod traversal;
+mod scenes;
 
-use crate::kits::{Source, Which};
-use crate::report::{Thousands, bar_of_steps};
+use crate::kits::{Need, Source, Which};
+use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
 use clap::Args;
-use glam::Vec3;
+use judge::gauntlet::{Input, Row, rows_of_kit, tables};
 use methods::METHODS;
-use oracle::gauntlet::distributions::DISTRIBUTIONS;
-use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
-use raykata::kit::{Kit, TriangleQuery, mishap};
-use raykata::ray::Ray;
-use raykata::shape::Triangle;
-use serde::Serialize;
-use std::hint::black_box;
-use std::path::PathBuf;
+use raykata::kit::Kit;
+use raykata_cli::args::chosen;
+use raykata_cli::cost::Summary;
+use std::path::{Path, PathBuf};
 
 /// How long, and whose code.
 #[derive(Args)]
 pub struct Options {
-    /// Whose triangle tests join the methods.
-    #[arg(long, value_enum, default_value_t = Which::Solutions)]
+    /// Whose triangle tests join the methods: exercises or solutions.
+    #[arg(long, default_value = "solutions", value_parser = |text: &str| chosen(text, &Which::NAMES))]
     kit: Which,
     /// Inputs of each distribution, and rays at each closed mesh.
     #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(100..))]
@@ -47,141 +42,37 @@ pub struct Options {
 }
 
 /// Runs the gauntlet; whether nothing leaked.
-pub fn run(options: &Options) -> Result<bool> {
-    match options.rays {
-        Some(rays) => long::run(rays, options.seed, &options.state),
-        None => tables(options),
+pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let reference = Source::prepare(root, Which::Solutions, Need::Frames)?;
+    if let Some(rays) = options.rays {
+        return long::run(&reference, rays, options.seed, &options.state);
     }
+    let source = Source::prepare(root, options.kit, Need::Checks)?;
+    let kit = source.fresh();
+    tables(rows(&*kit), options.inputs, options.seed)?;
+    println!();
+    agreement_table(&reference, options)
 }
 
-/// A question to a method.
-type Input = (Ray, Triangle);
-/// The `t` of each hit.
-type Answers = Vec<Option<f32>>;
-/// Answers many questions.
-type Ask<'a> = Box<dyn Fn(&[Input]) -> Answers + 'a>;
-
-/// A method or a function of the kit: its name, and how it answers all inputs.
-struct Row<'a> {
-    name: String,
-    answer: Ask<'a>,
-}
-
+/// All methods and the functions of the kit.
 fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
-    let methods = METHODS.iter().map(|method| Row {
-        name: method.name.into(),
-        answer: Box::new(|inputs| inputs.iter().map(|(ray, triangle)| (method.hit)(ray, triangle)).collect()),
+    let methods = METHODS.iter().map(|method| {
+        let hit = method.hit;
+        let answer =
+            move |inputs: &[Input]| inputs.iter().map(|(ray, triangle)| hit(ray, triangle)).collect();
+        Row { name: method.name.into(), answer: Box::new(answer), method: Some(hit) }
     });
-    let mut rows: Vec<Row<'_>> = methods.collect();
-    let example = (Ray::new(Vec3::Z, Vec3::NEG_Z), Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y });
-    type Function = fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<raykata::kit::TriangleHit>>;
-    let asked: [(&str, Function); 3] = [
-        ("kit: triangle_cramer", |kit, queries| kit.triangle_cramer(queries)),
-        ("kit: triangle_gram", |kit, queries| kit.triangle_gram(queries)),
-        ("kit: triangle_choice", |kit, queries| kit.triangle_choice(queries)),
-    ];
-    for (name, ask) in asked {
-        let answer = move |inputs: &[Input]| {
-            let queries: Vec<TriangleQuery> =
-                inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
-            ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
-        };
-        // A row that is not written yet is left out, with a word about it.
-        match mishap::catch(|| answer(&[example])) {
-            Ok(_) => rows.push(Row { name: name.into(), answer: Box::new(answer) }),
-            Err(mishap) => println!("{name} is left out: {mishap}"),
-        }
-    }
-    rows
+    methods.chain(rows_of_kit(kit)).collect()
 }
-
-/// A method in three numbers.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary {
-    /// What it is called.
-    pub name: String,
-    /// Of one call, with the answer stored.
-    pub nanoseconds: f64,
-    /// Verdicts that are not the exact one, mean over all distributions.
-    pub wrong_per_million: f64,
-    /// Rays from inside closed meshes, at edges and vertices, that meet nothing.
-    pub leaks_per_million: f64,
-}
-
-/// Inputs of each distribution, and rays at the edges and at the vertices of each mesh, for a [`summary`].
-const INPUTS_OF_SUMMARY: usize = 10_000;
 
 /// All methods and the functions of the kit in short.
 pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
-    const SEED: u64 = 1;
-    let rows = rows(kit);
-    let bar = bar_of_steps(rows.len());
-    bar.set_message("ray/triangle tests");
-    let judged: Vec<Judged> =
-        DISTRIBUTIONS.iter().map(|distribution| judge(distribution, SEED, INPUTS_OF_SUMMARY)).collect();
-    let summaries = rows.into_iter().map(|row| {
-        let wrong = judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs)).wrong);
-        let summary = Summary {
-            nanoseconds: nanoseconds(&judged[0], |inputs| {
-                black_box((row.answer)(black_box(inputs)));
-            }),
-            wrong_per_million: 1e4 * wrong.sum::<f64>() / judged.len() as f64,
-            leaks_per_million: leak_table::per_million(&row, SEED, INPUTS_OF_SUMMARY as u64),
-            name: row.name,
-        };
-        bar.inc(1);
-        summary
-    });
-    let summaries = summaries.collect();
-    bar.finish_and_clear();
-    summaries
-}
-
-fn tables(options: &Options) -> Result<bool> {
-    let source = Source::here(options.kit)?;
-    let kit = &*source.fresh();
-    let rows = rows(kit);
-    let bar = bar_of_steps(DISTRIBUTIONS.len() + rows.len());
-    let judged: Vec<Judged> = DISTRIBUTIONS
-        .iter()
-        .map(|distribution| {
-            bar.inc(1);
-            judge(distribution, options.seed, options.inputs as usize)
-        })
-        .collect();
-    let mut cells: Vec<Vec<Cell>> = Vec::new();
-    let mut times = Vec::new();
-    for row in &rows {
-        cells.push(judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs))).collect());
-        times.push(nanoseconds(&judged[0], |inputs| {
-            black_box((row.answer)(black_box(inputs)));
-        }));
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
-
-    let heads: Vec<&str> = DISTRIBUTIONS.iter().map(|distribution| distribution.name).collect();
-    print_table("wrong %", &rows, &heads, |row, column| percent(cells[row][column].wrong), Some(&times));
-    print_table("worst μ", &rows, &heads, |row, column| short(cells[row][column].margin), None);
-    print_table("t, ulps", &rows, &heads, |row, column| short(cells[row][column].ulps), None);
-    println!(
-        "wrong %: verdicts that are not the exact one; ns: of one call, with the answer stored (interior).\n\
-         worst μ: how many roundings the worst of them was from flipping; a stable method stays below 64.\n\
-         t, ulps: 99 of 100 hits have a t that is off by less.\n\n\
-         The distributions:"
-    );
-    for distribution in &DISTRIBUTIONS {
-        println!("  {:<9} {}", distribution.name, distribution.what);
-    }
-    println!();
-    leak_table::table(&rows, options.seed, options.inputs)?;
-    println!();
-    Ok(agreement_table(options))
+    judge::gauntlet::summary(rows(kit))
 }
 
 /// The reference's searches on scenes that are hard to search; whether all answers are right.
-fn agreement_table(options: &Options) -> bool {
-    let all = agreement::all(options.seed, (options.inputs / 20).max(100));
+fn agreement_table(reference: &Source, options: &Options) -> Result<bool> {
+    let all = agreement::all(reference, options.seed, (options.inputs / 20).max(100))?;
     println!(
         "searches against all triangles, exactly (brute force and 18 searches of hierarchies, on each scene)"
     );
@@ -202,40 +93,5 @@ fn agreement_table(options: &Options) -> bool {
         "by rounding: the ray passes exactly through an edge, and double precision took it for a neighbour or a miss.\n\
          wrong: not among the triangles that are exactly met first, or not what asking all triangles finds."
     );
-    all.iter().all(|one| one.mismatches == 0)
-}
-
-fn print_table(
-    title: &str,
-    rows: &[Row<'_>],
-    heads: &[&str],
-    cell: impl Fn(usize, usize) -> String,
-    times: Option<&[f64]>,
-) {
-    let columns: String = heads.iter().map(|head| format!("{head:>9}")).collect();
-    println!("{title:<36}{columns}{}", if times.is_some() { "       ns" } else { "" });
-    for (index, row) in rows.iter().enumerate() {
-        let cells: String = (0..heads.len()).map(|column| format!("{:>9}", cell(index, column))).collect();
-        let time = times.map_or(String::new(), |times| format!("{:>9.1}", times[index]));
-        println!("{:<36}{cells}{time}", row.name);
-    }
-    println!();
-}
-
-fn percent(share: f64) -> String {
-    match share {
-        0.0 => "0".into(),
-        share if share < 0.01 => "<0.01".into(),
-        share => format!("{share:.2}"),
-    }
-}
-
-/// Three digits, whatever the size.
-fn short(number: f64) -> String {
-    match number {
-        0.0 => "0".into(),
-        n if n < 0.01 => "<0.01".into(),
-        n if n < 1000.0 => format!("{n:.2}"),
-        n => format!("{n:.0e}"),
-    }
+    Ok(all.iter().all(|one| one.mismatches == 0))
 }

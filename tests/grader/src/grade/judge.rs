@@ -4,8 +4,9 @@ use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
 use crate::jail::{Jail, Purpose, Walls};
+use crate::kits::{Need, Source, Which};
 use crate::queue;
-use crate::worker::Worker;
+use crate::worker::{self, Worker};
 use all_checks::STAGES;
 use anyhow::{Result, ensure};
 use base64::Engine;
@@ -75,20 +76,23 @@ impl Answered {
 impl Judge {
     /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
     /// put once, and one on which the reference itself fails with this seed is unfair; its seed is left out, with a word.
-    pub fn of(stages: &[u8], seed: u64, walls: Walls) -> Result<Judge> {
+    pub fn of(root: &Path, stages: &[u8], seed: u64, walls: Walls) -> Result<Judge> {
         checks::golden::seal();
+        let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
-        let hides = |_: &(), check: &&'static Check| {
+        let hides = |reference: &Arc<Worker>, check: &&'static Check| {
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
-                [0, seed].map(|seed| asked(check, seed));
+                [0, seed].map(|seed| asked(reference, check, seed));
             ensure!(passes, "the reference fails {} of stage {}: is the kit whole?", check.name, check.stage);
             if !passes_hidden {
                 eprintln!("{} of stage {} is put with the known inputs alone", check.name, check.stage);
             }
             Ok(Put { check, hides: passes_hidden && known != hidden, asks })
         };
-        let checks = queue::run(&queue::one_a_core(), &checks, hides)?;
+        let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
+        let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
+        let checks = queue::run(&workers, &checks, hides)?;
         Ok(Judge { checks, seed, walls, drawn: Arc::default() })
     }
 
@@ -105,7 +109,7 @@ impl Judge {
     ) -> Vec<CheckResult> {
         let fresh = || {
             let jail = Jail::with(self.walls, Purpose::Worker);
-            Arc::new(Worker::jailed(worker.to_owned(), CALL_PATIENCE, jail))
+            Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, jail))
         };
         let mut seasoned: Option<Arc<Worker>> = None;
         let until = Instant::now() + BUDGET;
@@ -230,27 +234,35 @@ fn result(check: &Check, answered: Answered) -> CheckResult {
 }
 
 /// What the reference is asked by a check: a fingerprint of the questions, and to which functions; and whether it passes.
-fn asked(check: &Check, seed: u64) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
+fn asked(
+    reference: &Arc<Worker>,
+    check: &Check,
+    seed: u64,
+) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
     let heard = Arc::new(Mutex::new((Sha256::new(), HashSet::new())));
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Overheard(heard.clone())));
+    let overheard = Overheard { reference: reference.clone(), heard: heard.clone() };
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(overheard));
     let passes = matches!(checks::examine(check, &kit, seed), Ok(Ok(())));
     let (questions, functions) = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
     (questions.finalize().to_vec(), functions, passes)
 }
 
 /// The reference, with somebody who writes down what it is asked.
-struct Overheard(Arc<Mutex<(Sha256, HashSet<Discriminant<Request>>)>>);
+struct Overheard {
+    reference: Arc<Worker>,
+    heard: Arc<Mutex<(Sha256, HashSet<Discriminant<Request>>)>>,
+}
 
 impl Transport for Overheard {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
         // Into a vector nothing fails.
         let _ = raykata::worker::send(&mut message, &request);
-        let mut heard = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         heard.0.update(message);
         heard.1.insert(discriminant(&request));
         drop(heard);
-        request.answer(&raykata::kit::Linked(solutions::Kit), watch)
+        self.reference.call(request, watch)
     }
 }
 

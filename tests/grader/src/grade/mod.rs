@@ -1,4 +1,4 @@
-//! `raykata grade`: a verdict on each submission of a class, reached outside the students' processes.
+//! `grader grade`: a verdict on each submission of a class, reached outside the students' processes.
 //!
 //! The way of a submission: `submission` takes the files in which students write and nothing else, `lint` says what no
 //! exercise needs, `forge` compiles the rest in a jail, `judge` puts the laws to the worker that came of it, `store`
@@ -46,7 +46,7 @@ pub struct Options {
     /// How many submissions are graded at a time; one a core if not given.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Only part I of N of the class, as `2/8`; `raykata merge` puts parts together. Needs --seed.
+    /// Only part I of N of the class, as `2/8`; `grader merge` puts parts together. Needs --seed.
     #[arg(long, value_parser = shard, requires = "seed")]
     shard: Option<Shard>,
     /// Go on with the grades in the folder: only what is new or has changed is graded.

@@ -1,4 +1,4 @@
-//! `raykata grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
+//! `grader grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
 
 use super::report;
 use super::result::{Graded, Session};

@@ -1,4 +1,4 @@
-//! `raykata rehearse`: a class that is made up of what is known (right ways and mistakes of the corpus, attacks, files that
+//! `grader rehearse`: a class that is made up of what is known (right ways and mistakes of the corpus, attacks, files that
 //! nobody has begun) is graded, and every grade is compared with what it must be.
 
 use super::Options as GradeOptions;
@@ -40,7 +40,7 @@ pub struct Options {
 /// The stages of the class: those that a first half of a course has.
 const STAGES_OF_CLASS: [u8; 4] = [1, 2, 3, 4];
 
-/// Attacks that take longer than this by their own word are left to `raykata attacks`.
+/// Attacks that take longer than this by their own word are left to `grader attacks`.
 const MOST_SECONDS: u64 = 60;
 
 /// What a student has handed in.

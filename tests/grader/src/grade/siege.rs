@@ -1,4 +1,4 @@
-//! `raykata attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
+//! `grader attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
 
 use super::attacks::{self, Tried};
 use super::class::Grader;
@@ -37,7 +37,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         if let Some(judge) = judges.get(stages) {
             return Ok(judge.clone());
         }
-        let judge = Arc::new(Judge::of(stages, SEED, Walls::Closed)?);
+        let judge = Arc::new(Judge::of(root, stages, SEED, Walls::Closed)?);
         judges.insert(stages.to_owned(), judge.clone());
         Ok(judge)
     };

@@ -45,7 +45,7 @@ impl Terms {
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
         };
-        let judge = Judge::of(&session.stages, session.seed, walls)?;
+        let judge = Judge::of(root, &session.stages, session.seed, walls)?;
         let allowed = self.allow.clone();
         Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), walls, allowed }, session))
     }
@@ -103,8 +103,9 @@ fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     let mut hash = Sha256::new();
     hash.update(forge.fingerprint());
     hash.update(allow.join(","));
-    let judges = ["tests/checks", "tests/oracle", "tests/golden", "tests/rubric.toml"];
-    let mut waiting = judges.map(|path| root.join(path)).to_vec();
+    let decide = ["tests/checks", "tests/golden", "tests/oracle", "tests/rubric.toml"];
+    let mut waiting: Vec<PathBuf> =
+        decide.iter().map(|path| root.join(path)).filter(|path| path.exists()).collect();
     while let Some(path) = waiting.pop() {
         if path.is_dir() {
             let mut inside: Vec<PathBuf> =

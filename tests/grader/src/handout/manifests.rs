@@ -1,51 +1,59 @@
-//! Manifests without what is not handed out. They are cut as text, so that students read the comments, too.
+//! The manifest of the workspace without what is not handed out. It is cut as text, so that students read the comments, too.
 
 use anyhow::{Context, Result};
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// The members of a hand-out's workspace.
-const MEMBERS: [&str; 5] = ["exercises", "tests/checks", "tests/checks/all", "tests/oracle", "tests/grader"];
-
-/// How many stages have a package of their own in `tests/checks`.
-const STAGES: u8 = 10;
-
-/// All manifests of a hand-out, by their paths. `present` tells which other files it has.
-pub(super) fn all(root: &Path, present: &dyn Fn(&str) -> bool) -> Result<Vec<(String, String)>> {
-    let mut manifests = Vec::new();
-    let workspace = super::text(root, "Cargo.toml")?;
-    let mut wanted = dependencies(&workspace)?;
-    let stages = (1..=STAGES).map(|stage| format!("tests/checks/stage{stage}"));
-    for folder in MEMBERS.into_iter().map(str::to_owned).chain(stages) {
-        let path = format!("{folder}/Cargo.toml");
-        let text = member(&super::text(root, &path)?);
-        wanted.extend(dependencies(&text).with_context(|| path.clone())?);
-        manifests.push((path, text));
+/// The manifest of a hand-out that has these files, those of its packages among them.
+pub(super) fn of_workspace(text: &str, files: &BTreeMap<String, Vec<u8>>) -> Result<String> {
+    let mut wanted = dependencies(text)?;
+    for (path, manifest) in files.iter().filter(|(path, _)| path.ends_with("/Cargo.toml")) {
+        wanted.extend(dependencies(&String::from_utf8_lossy(manifest)).with_context(|| path.to_owned())?);
     }
-    manifests.push(("Cargo.toml".into(), self::workspace(&workspace, &wanted, present)));
-    Ok(manifests)
+    let lock = files.get("Cargo.lock").map(|lock| String::from_utf8_lossy(lock).into_owned());
+    let built = built(&lock.unwrap_or_default(), &wanted)?;
+    Ok(workspace(text, &wanted, &built, &|path| {
+        let (start, end) = path.split_once('*').unwrap_or((path, ""));
+        let is = |file: &String| file.starts_with(start) && file.ends_with(end) && file.len() >= path.len();
+        if path.contains('*') { files.keys().any(is) } else { files.contains_key(path) }
+    }))
 }
 
-/// A member without what only the feature `author` needs.
-fn member(text: &str) -> String {
-    cut(text, |lines, kept| {
-        let starts = |start: &str| lines.iter().any(|line| line.starts_with(start));
-        let gone = starts("[features]") || starts("required-features");
-        kept.retain(|line| !gone && !line.contains("optional = true"));
-    })
+/// The names of all packages that these need, by the versions that are locked.
+fn built(lock: &str, wanted: &BTreeSet<String>) -> Result<BTreeSet<String>> {
+    let lock: toml::Table = toml::from_str(lock)?;
+    let packages = lock.get("package").and_then(|packages| packages.as_array()).into_iter().flatten();
+    let mut needs: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for package in packages {
+        let name = package.get("name").and_then(|name| name.as_str()).unwrap_or_default();
+        let list = package.get("dependencies").and_then(|list| list.as_array()).into_iter().flatten();
+        // Where there are several versions, one follows the name.
+        let list = list.filter_map(|one| one.as_str()?.split(' ').next());
+        needs.entry(name).or_default().extend(list);
+    }
+    let mut built = wanted.clone();
+    let mut waiting: Vec<&str> = wanted.iter().map(String::as_str).collect();
+    while let Some(name) = waiting.pop() {
+        let list = needs.get(name).into_iter().flatten();
+        waiting.extend(list.filter(|one| built.insert((**one).to_owned())));
+    }
+    Ok(built)
 }
 
-/// The workspace without the solutions, and with the dependencies that its members still want.
-fn workspace(text: &str, wanted: &BTreeSet<String>, present: &dyn Fn(&str) -> bool) -> String {
-    let text = text.replace("\"solutions\", ", "");
+/// The workspace with the members that are present, and with the dependencies that these still want. Settings stay for
+/// packages that are built. `present` tells whether a file is there; its name may hold a `*`.
+fn workspace(
+    text: &str,
+    wanted: &BTreeSet<String>,
+    built: &BTreeSet<String>,
+    present: &dyn Fn(&str) -> bool,
+) -> String {
+    let text = with_settings_of(built, &with_members(text, present));
     let mut of_workspace = false;
     cut(&text, |lines, kept| {
         let header = lines.iter().find(|line| line.starts_with('['));
         if let Some(header) = header {
             of_workspace = *header == "[workspace.dependencies]";
         }
-        let one_package =
-            header.is_some_and(|header| header.contains(".package.") && !header.contains("\"*\""));
         let missing = header == Some(&"[[test]]")
             && lines.iter().filter_map(|line| line.strip_prefix("name = ")).any(|name| {
                 let name = name.trim_matches('"');
@@ -53,9 +61,53 @@ fn workspace(text: &str, wanted: &BTreeSet<String>, present: &dyn Fn(&str) -> bo
             });
         kept.retain(|line| {
             let dependency = line.split_once(" = ").filter(|_| of_workspace && !line.starts_with('#'));
-            !one_package && !missing && dependency.is_none_or(|(name, _)| wanted.contains(name))
+            !missing && dependency.is_none_or(|(name, _)| wanted.contains(name))
         });
     })
+}
+
+/// The text with the settings of packages that are built, and of no others: cargo warns of those.
+fn with_settings_of(built: &BTreeSet<String>, text: &str) -> String {
+    let mut keep = true;
+    let mut kept = String::new();
+    for line in text.lines() {
+        if line.is_empty() || line.starts_with('[') || line.starts_with('#') {
+            let of_package = line.strip_prefix("[profile.").and_then(|rest| rest.split_once(".package."));
+            let name = of_package.map(|(_, name)| name.trim_end_matches(']').trim_matches('"'));
+            keep = name.is_none_or(|name| name == "*" || built.contains(name));
+        }
+        if keep {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    // A comment about nothing.
+    let stood_alone = |part: &str| text.split("\n\n").any(|one| one.trim_end() == part.trim_end());
+    let parts = kept.split("\n\n").filter(|part| !is_comment(part) || stood_alone(part));
+    parts.collect::<Vec<_>>().join("\n\n")
+}
+
+fn is_comment(paragraph: &str) -> bool {
+    paragraph.lines().all(|line| line.starts_with('#'))
+}
+
+/// The text with only those members, and default members, that are present.
+fn with_members(text: &str, present: &dyn Fn(&str) -> bool) -> String {
+    let mut rest = text;
+    let mut changed = String::new();
+    while let Some(start) = rest.find("members = [") {
+        let list = start + "members = [".len();
+        let Some(length) = rest[list..].find(']') else { break };
+        let members = rest[list..list + length].split(',').map(|member| member.trim().trim_matches('"'));
+        let is_present = |member: &&str| {
+            *member == "." || (!member.is_empty() && present(&format!("{member}/Cargo.toml")))
+        };
+        let kept: Vec<String> = members.filter(is_present).map(|member| format!("\"{member}\"")).collect();
+        changed += &rest[..list];
+        changed += &kept.join(", ");
+        rest = &rest[list + length..];
+    }
+    changed + rest
 }
 
 /// Puts each paragraph to `choose`, which takes lines out of the second of its arguments. A paragraph of which only
@@ -87,30 +139,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_authors_need_goes_with_its_comments() {
-        let manifest = "[package]\nname = \"a\"\n\n# Gates.\n[features]\ndefault = [\"author\"]\n\n# A bench.\n[[bench]]\n\
-                        name = \"b\"\nrequired-features = [\"author\"]\n\n[dependencies]\nclap.workspace = true\n\
-                        syn = { workspace = true, optional = true }\n\n# Walls.\n[target.'cfg(unix)'.dependencies]\n\
-                        nix = { workspace = true, optional = true }\n\n[lints]\nworkspace = true\n";
-        assert_eq!(
-            member(manifest),
-            "[package]\nname = \"a\"\n\n[dependencies]\nclap.workspace = true\n\n[lints]\nworkspace = true\n"
-        );
-    }
-
-    #[test]
     fn a_workspace_keeps_what_its_members_want() {
-        let manifest = "[workspace]\nmembers = [\"exercises\", \"solutions\", \"tests/checks\"]\n\n\
+        let manifest = "[workspace]\nmembers = [\"exercises\", \"solutions\", \"tests/checks\", \"tests/x*\"]\n\n\
                         [workspace.dependencies]\nglam = \"1\" # vectors\nsolutions = { path = \"solutions\" }\n\n\
                         # Only for authors.\nsyn = \"3\"\n\n# All of them.\n\n[[test]]\nname = \"stage1\"\n\n\
                         [[test]]\nname = \"untouched\"\n\n[profile.dev.package.\"*\"]\nopt-level = 2\n\n\
+                        [profile.dev.package.matrixmultiply]\nopt-level = 3\n\n\
                         # A database.\n[profile.dev.package.sqlite]\nopt-level = 0\n";
         let wanted = BTreeSet::from(["glam".to_owned()]);
+        let lock = "[[package]]\nname = \"glam\"\ndependencies = [\"matrixmultiply 1.0.0\"]\n\
+                    [[package]]\nname = \"sqlite\"\n";
+        let built = built(lock, &wanted).unwrap();
         assert_eq!(
-            workspace(manifest, &wanted, &|path| path == "tests/stage1.rs"),
+            workspace(manifest, &wanted, &built, &|path| {
+                ["tests/stage1.rs", "exercises/Cargo.toml", "tests/checks/Cargo.toml"].contains(&path)
+            }),
             "[workspace]\nmembers = [\"exercises\", \"tests/checks\"]\n\n[workspace.dependencies]\n\
              glam = \"1\" # vectors\n\n# All of them.\n\n[[test]]\nname = \"stage1\"\n\n\
-             [profile.dev.package.\"*\"]\nopt-level = 2\n"
+             [profile.dev.package.\"*\"]\nopt-level = 2\n\n[profile.dev.package.matrixmultiply]\nopt-level = 3\n"
         );
     }
 }

@@ -1,8 +1,8 @@
-//! `raykata handout`: the student's repository, without the answers and without what only authors and instructors need.
+//! `grader handout`: the student's repository, without the answers and without what only authors and instructors need.
+//! Folders are copied as they are; only manifests that name what is missing are changed.
 
 mod leaks;
 mod manifests;
-mod source;
 
 pub use leaks::{CANARY, answers, leaks};
 
@@ -20,24 +20,31 @@ pub struct Options {
     folder: PathBuf,
 }
 
-/// Folders that are handed out, and the endings of the files in them that are.
-const FOLDERS: [(&str, &[&str]); 7] = [
-    ("src", &["rs", "md"]),
-    ("tests/checks", &["rs"]),
-    ("tests/oracle", &["rs"]),
+/// Folders that are handed out, with all folders in them, and the endings of the files that are. A folder that is not
+/// there is left out.
+const FOLDERS: [(&str, &[&str]); 8] = [
+    ("src", &["css", "md", "rs", "snap", "toml"]),
+    ("tests/checks", &["rs", "toml"]),
+    ("tests/oracle", &["rs", "toml"]),
+    ("tests/judge", &["rs", "toml"]),
     ("scenes", &["toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
-    // A plot that a test of the tool knows.
-    ("tests/grader/src/cost/snapshots", &["snap"]),
+    ("slides", &["md", "svg"]),
 ];
 
+/// What lies in those folders and is not handed out: tests of the kit itself, which need the solutions or fail once an
+/// exercise is begun.
+const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
+
 /// Files that are handed out as they are.
-const FILES: [&str; 7] = [
+const FILES: [&str; 9] = [
     ".cargo/config.toml",
     ".gitignore",
+    "Cargo.lock",
     "LICENSE-APACHE",
     "LICENSE-MIT",
+    "exercises/Cargo.toml",
     "rustfmt.toml",
     "scenes/showcase.png",
     "tests/rubric.toml",
@@ -71,11 +78,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         let _ = fs::remove_dir_all(&draft);
         return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
     }
-    println!(
-        "{}: {} files; `cargo run` in it says what to do first",
-        options.folder.display(),
-        files.len() + 1
-    );
+    println!("{}: {} files; `cargo run` in it says what to do first", options.folder.display(), files.len());
     Ok(())
 }
 
@@ -85,8 +88,8 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     for path in FILES {
         files.insert(path.to_owned(), read(root, path)?);
     }
-    for (folder, endings) in FOLDERS {
-        gather(root, folder, endings, !folder.starts_with("scenes"), &mut files)?;
+    for (folder, endings) in FOLDERS.into_iter().filter(|(folder, _)| root.join(folder).is_dir()) {
+        gather(root, folder, endings, &mut files)?;
     }
     for (path, bytes) in
         named(root, "tests", "stage")?.into_iter().chain(named(root, "tests/golden", "stage")?)
@@ -96,34 +99,21 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     for (name, text) in crate::sync::pristine(root)? {
         files.insert(format!("exercises/src/{name}"), text.into_bytes());
     }
-    // Compares the exercises with the solutions.
-    files.remove("tests/checks/all/tests/untouched.rs");
-    for (path, text) in source::tool(root)? {
-        files.insert(path, text.into_bytes());
-    }
-    for (path, text) in manifests::all(root, &|path| files.contains_key(path))? {
-        files.insert(path, text.into_bytes());
-    }
-    files.insert("Cargo.lock".into(), read(root, "Cargo.lock")?);
+    let manifest = manifests::of_workspace(&text(root, "Cargo.toml")?, &files)?;
+    files.insert("Cargo.toml".into(), manifest.into_bytes());
     files.insert("README.md".into(), readme(&text(root, "README.md")?)?.into_bytes());
     Ok(files)
 }
 
-/// The files with these endings in a folder, and those below it if `deep`.
-fn gather(
-    root: &Path,
-    folder: &str,
-    endings: &[&str],
-    deep: bool,
-    files: &mut BTreeMap<String, Vec<u8>>,
-) -> Result<()> {
+/// The files with these endings in a folder and below it.
+fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<String, Vec<u8>>) -> Result<()> {
     for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
         let entry = entry?;
         let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
         let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
         if entry.file_type()?.is_dir() {
-            if deep {
-                gather(root, &path, endings, deep, files)?;
+            if !KEPT_BACK.contains(&path.as_str()) && entry.file_name() != "target" {
+                gather(root, &path, endings, files)?;
             }
         } else if endings.iter().any(is) {
             files.insert(path.clone(), read(root, &path)?);
@@ -132,12 +122,19 @@ fn gather(
     Ok(())
 }
 
-/// The files in a folder whose names begin so.
+/// The texts and pictures in a folder, not below it, whose names begin so.
 fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)>> {
-    let mut all = BTreeMap::new();
-    gather(root, folder, &["rs", "snap", "png"], false, &mut all)?;
-    let start = format!("{folder}/{start}");
-    Ok(all.into_iter().filter(|(path, _)| path.starts_with(&start)).collect())
+    let mut found = Vec::new();
+    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let is_wanted = ["rs", "snap", "png"].iter().any(|ending| name.ends_with(&format!(".{ending}")));
+        if name.starts_with(start) && is_wanted && entry.file_type()?.is_file() {
+            let path = format!("{folder}/{name}");
+            found.push((path.clone(), read(root, &path)?));
+        }
+    }
+    Ok(found)
 }
 
 /// What the kit's README says to everybody and to students, with what a student's own repository needs besides.

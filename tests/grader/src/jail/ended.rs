@@ -1,6 +1,6 @@
 //! How a command ended.
 
-use crate::worker::Jailed;
+use crate::worker::Death;
 use std::process::ExitStatus;
 use std::time::Duration;
 
@@ -34,17 +34,20 @@ pub enum How {
     TooManyProcesses,
 }
 
-/// What a signal means for a process that was jailed; `None` if that was not the jail.
+/// What a signal means for a process that was given so much memory; `None` if that was not the jail.
 #[cfg(target_os = "linux")]
-pub fn how_it_died(status: ExitStatus, stderr: &str) -> Option<Jailed> {
+pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Option<Death> {
     use nix::libc;
     use std::os::unix::process::ExitStatusExt;
+    let crashed = |how: &str| Death::Crashed(how.to_owned());
     Some(match status.signal()? {
-        libc::SIGXCPU => Jailed::Time,
-        libc::SIGABRT if stderr.contains("memory allocation of") => Jailed::Memory,
-        libc::SIGSYS => Jailed::Other("it asked the kernel for what no exercise needs"),
+        libc::SIGXCPU => Death::TimedOut,
+        libc::SIGABRT if stderr.contains("memory allocation of") => {
+            Death::Crashed(format!("it took more memory than the {} it was given", size(memory)))
+        }
+        libc::SIGSYS => crashed("it asked the kernel for what no exercise needs"),
         // There is no list of its memory in a jail, by which Rust tells one from the other.
-        libc::SIGSEGV => Jailed::Other(
+        libc::SIGSEGV => crashed(
             "the stack overflowed, or memory was touched that is not its own: a recursion that never ends?",
         ),
         _ => return None,
@@ -53,6 +56,15 @@ pub fn how_it_died(status: ExitStatus, stderr: &str) -> Option<Jailed> {
 
 /// Nothing was jailed.
 #[cfg(not(target_os = "linux"))]
-pub fn how_it_died(_: ExitStatus, _: &str) -> Option<Jailed> {
+pub(super) fn how_it_died(_: ExitStatus, _: &str, _: u64) -> Option<Death> {
     None
+}
+
+#[cfg(target_os = "linux")]
+fn size(bytes: u64) -> String {
+    if bytes.is_multiple_of(1 << 30) {
+        format!("{} GiB", bytes >> 30)
+    } else {
+        format!("{} MiB", bytes >> 20)
+    }
 }

@@ -22,14 +22,18 @@ mod run;
 #[path = "elsewhere.rs"]
 mod run;
 
-pub use ended::{Ended, How, how_it_died};
+use ended::how_it_died;
+pub use ended::{Ended, How};
 pub use probes::{Level, got_through, self_test};
 pub use run::{run, spawn_guarded};
 
+use crate::worker::{Death, Launcher, last_words};
 use std::ffi::OsString;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, ExitStatus};
 use std::sync::OnceLock;
+use std::time::Duration;
 
 /// The first argument of a launcher.
 const LAUNCH: &str = "--in-a-jail";
@@ -199,6 +203,35 @@ impl Jail {
     }
 }
 
+impl Launcher for Jail {
+    fn command(&self, program: &Path) -> Command {
+        Jail::command(self, program)
+    }
+
+    fn spawn(&self, command: Command) -> io::Result<Child> {
+        spawn_guarded(command)
+    }
+
+    fn death(&self, status: ExitStatus, stderr: &str) -> Option<Death> {
+        if status.code() == Some(NOT_LAUNCHED) && stderr.starts_with(NOT_LAUNCHED_BECAUSE) {
+            let why = last_words(stderr).unwrap_or_default();
+            return Some(Death::Crashed(format!("it cannot be started: {why}")));
+        }
+        how_it_died(status, stderr, self.limits.memory_bytes)
+    }
+
+    #[cfg(target_os = "linux")]
+    fn cpu_time(&self, process: u32) -> Duration {
+        processes::cpu_time(process).unwrap_or_default()
+    }
+
+    /// Unknown: then all time counts.
+    #[cfg(not(target_os = "linux"))]
+    fn cpu_time(&self, _: u32) -> Duration {
+        Duration::MAX
+    }
+}
+
 /// The program starts elsewhere than the command is made.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
@@ -216,7 +249,7 @@ fn launcher() -> PathBuf {
         let here = std::env::current_exe().unwrap_or_default();
         let folder = here.parent().unwrap_or(Path::new("/"));
         let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
-        folder.join(format!("raykata{}", std::env::consts::EXE_SUFFIX))
+        folder.join(format!("grader{}", std::env::consts::EXE_SUFFIX))
     })
 }
 

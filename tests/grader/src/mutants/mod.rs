@@ -1,4 +1,4 @@
-//! `raykata mutants`: small changes of the solutions that nobody chose by hand, each of which the checks must notice.
+//! `grader mutants`: small changes of the solutions that nobody chose by hand, each of which the checks must notice.
 //!
 //! The tool cargo-mutants lists the changes; each is built in a workshop of the corpus and asked every check, and for
 //! the pictures of all scenes. What survives is either a gap in the checks or a change that
@@ -13,7 +13,7 @@ pub mod reviewed;
 use crate::corpus::entry;
 use crate::corpus::workshop::{Built, Workshop};
 use crate::gaps::{self, Gap};
-use crate::kits::Source;
+use crate::kits::{Need, Source, Which};
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
 use crate::report::bar_of_steps;
@@ -104,11 +104,12 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
 }
 
 fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) -> Result<()> {
-    let workshops = Workshop::open_all(root, jobs)?;
-    let scenes = Scenes::read(root)?;
-    let expected = scenes.shown_by(&*Source::Solutions.fresh());
+    let workshops = Workshop::open_all(root, jobs, Need::Frames)?;
+    let reference = Source::prepare(root, Which::Solutions, Need::Frames)?.fresh();
+    let scenes = Scenes::read(root, &*reference)?;
+    let expected = scenes.shown_by(&*reference);
     let of_gaps = scenes.of_gaps();
-    let of_gaps = (of_gaps.shown_by(&*Source::Solutions.fresh()), of_gaps);
+    let of_gaps = (of_gaps.shown_by(&*reference), of_gaps);
     let bar = bar_of_steps(mutants.len());
     bar.set_message("what gaps show");
     let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
@@ -146,7 +147,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
 /// stage calls, pictures.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
-    let source = Source::Worker(worker.to_owned());
+    let source = Source { which: Which::Solutions, program: worker.to_owned() };
     let by_checks = |wanted: &dyn Fn(u8) -> bool| {
         let mut checks =
             STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());

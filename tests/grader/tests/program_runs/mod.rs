@@ -7,8 +7,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-pub fn raykata(arguments: &[&str]) -> Output {
-    let program = Command::new(env!("CARGO_BIN_EXE_raykata")).current_dir(root()).args(arguments).output();
+pub fn grader(arguments: &[&str]) -> Output {
+    let program = Command::new(env!("CARGO_BIN_EXE_grader")).current_dir(root()).args(arguments).output();
     program.expect("the program starts")
 }
 

@@ -4,6 +4,7 @@
 //! ask something else one day.
 
 use super::source::{self, Function};
+use crate::kits::{Need, Source, Which, root};
 use all_checks::STAGES;
 use anyhow::{Result, bail, ensure};
 use raykata::frame::Watch;
@@ -115,7 +116,8 @@ fn digest(words: &[u32]) -> u32 {
 /// All that the checks of stage 1 ask this function with the inputs that students have, answered by the reference.
 fn known(name: &str) -> Result<Known> {
     let heard = Arc::new(Heard { name: name.to_owned(), known: Mutex::default() });
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener(heard.clone())));
+    let reference = Source::prepare(&root()?, Which::Solutions, Need::Checks)?.fresh();
+    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Listener { reference, heard: heard.clone() }));
     for check in STAGES.iter().filter(|(stage, _)| *stage == 1).flat_map(|(_, checks)| *checks) {
         match checks::examine(check, &kit, 0) {
             Ok(Ok(())) => {}
@@ -131,12 +133,16 @@ struct Heard {
     known: Mutex<Known>,
 }
 
-struct Listener(Arc<Heard>);
+/// The reference, with somebody who writes down what it answers.
+struct Listener {
+    reference: Arc<dyn Kit + Send + Sync>,
+    heard: Arc<Heard>,
+}
 
 impl Transport for Listener {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        let answer = request.answer(&raykata::kit::Linked(solutions::Kit), watch);
-        let heard = match (self.0.name.as_str(), &request, &answer) {
+        let answer = request.answer(&*self.reference, watch);
+        let heard = match (self.heard.name.as_str(), &request, &answer) {
             ("nearest_root", Request::NearestRoot(asked), Answer::NearestRoot(given)) => {
                 pairs(asked, given, |q| vec![q.roots.to_vec(), ray(&q.ray)], |found| option(*found))
             }
@@ -167,7 +173,7 @@ impl Transport for Listener {
             }
             _ => Vec::new(),
         };
-        self.0.known.lock().unwrap_or_else(PoisonError::into_inner).extend(heard);
+        self.heard.known.lock().unwrap_or_else(PoisonError::into_inner).extend(heard);
         answer
     }
 }

@@ -1,0 +1,463 @@
+//! The command line: which commands and options there are, their help, and what was given. Written by hand, because a
+//! general parser of command lines takes longer to build than everything else that this program does.
+
+use std::ffi::{OsStr, OsString};
+use std::fmt::{self, Display, Write};
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Help is written for terminals of this many columns.
+const WIDTH: usize = 80;
+
+/// The column at which the explanation of an option begins.
+const HELP_COLUMN: usize = 26;
+
+/// A command.
+#[derive(Debug)]
+pub struct Spec {
+    /// The words that start it, such as `raykata render`.
+    pub name: &'static str,
+    /// What it does, in one sentence.
+    pub about: &'static str,
+    /// What is given without a name, in this order.
+    pub arguments: &'static [Argument],
+    /// What is given by name; commands share some of these lists.
+    pub options: &'static [&'static [Opt]],
+}
+
+/// A value without a name.
+#[derive(Debug)]
+pub struct Argument {
+    /// What the help calls it.
+    pub name: &'static str,
+    /// Whether the command needs it.
+    pub required: bool,
+    /// What it is.
+    pub help: &'static str,
+}
+
+/// An option: a flag, or a name with a value.
+#[derive(Debug)]
+pub struct Opt {
+    long: &'static str,
+    short: Option<&'static str>,
+    value: Option<&'static str>,
+    choices: &'static [&'static str],
+    many: bool,
+    help: &'static str,
+}
+
+impl Argument {
+    /// A value that must be given.
+    pub const fn required(name: &'static str, help: &'static str) -> Argument {
+        Argument { name, required: true, help }
+    }
+
+    /// A value that may be given.
+    pub const fn optional(name: &'static str, help: &'static str) -> Argument {
+        Argument { name, required: false, help }
+    }
+}
+
+impl Opt {
+    /// An option without a value; `long` begins with two dashes.
+    pub const fn flag(long: &'static str, help: &'static str) -> Opt {
+        Opt { long, short: None, value: None, choices: &[], many: false, help }
+    }
+
+    /// An option with a value, which the help calls `value`.
+    pub const fn value(long: &'static str, value: &'static str, help: &'static str) -> Opt {
+        Opt { value: Some(value), ..Opt::flag(long, help) }
+    }
+
+    /// The same with a short name, such as `-o`.
+    pub const fn short(self, short: &'static str) -> Opt {
+        Opt { short: Some(short), ..self }
+    }
+
+    /// The same with the only values that it can have.
+    pub const fn choices(self, choices: &'static [&'static str]) -> Opt {
+        Opt { choices, ..self }
+    }
+
+    /// The same with several values, separated by commas.
+    pub const fn many(self) -> Opt {
+        Opt { many: true, ..self }
+    }
+
+    fn is(&self, name: &str) -> bool {
+        self.long == name || self.short == Some(name)
+    }
+}
+
+/// A command line that was not understood: the program says why and ends with code 2.
+#[derive(Debug)]
+pub struct Misuse(String);
+
+impl Misuse {
+    /// With these words.
+    pub fn new(message: impl Into<String>) -> Misuse {
+        Misuse(message.into())
+    }
+}
+
+impl Display for Misuse {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Misuse {}
+
+/// What a command line comes to.
+#[derive(Debug)]
+pub enum Read {
+    /// Somebody wants to know what the command does.
+    Help(String),
+    /// Values.
+    Given(Given),
+}
+
+/// The values of a command line.
+#[derive(Debug)]
+pub struct Given {
+    spec: &'static Spec,
+    arguments: Vec<OsString>,
+    options: Vec<(&'static Opt, OsString)>,
+}
+
+impl Spec {
+    fn all_options(&self) -> impl Iterator<Item = &'static Opt> {
+        self.options.iter().flat_map(|options| options.iter())
+    }
+
+    /// Sorts the words of a command line into arguments and options.
+    pub fn read(&'static self, words: impl IntoIterator<Item = OsString>) -> Result<Read, Misuse> {
+        let mut given = Given { spec: self, arguments: Vec::new(), options: Vec::new() };
+        let mut words = words.into_iter();
+        let mut only_arguments = false;
+        while let Some(word) = words.next() {
+            let text = word.to_string_lossy().into_owned();
+            if only_arguments || !text.starts_with('-') || text == "-" {
+                if given.arguments.len() == self.arguments.len() {
+                    return Err(self.misuse(format!("unexpected argument `{text}`")));
+                }
+                given.arguments.push(word);
+                continue;
+            }
+            if text == "--" {
+                only_arguments = true;
+                continue;
+            }
+            if text == "--help" || text == "-h" {
+                return Ok(Read::Help(self.help()));
+            }
+            let (name, joined) = match text.split_once('=') {
+                Some((name, value)) => (name, Some(OsString::from(value))),
+                None => (text.as_str(), None),
+            };
+            let Some(option) = self.all_options().find(|option| option.is(name)) else {
+                return Err(self.unknown(name));
+            };
+            let name = option.long;
+            if !option.many && given.options.iter().any(|(known, _)| known.long == name) {
+                return Err(self.misuse(format!("`{name}` is given twice")));
+            }
+            let value = match (option.value, joined) {
+                (None, None) => OsString::new(),
+                (None, Some(_)) => return Err(self.misuse(format!("`{name}` takes no value"))),
+                (Some(_), Some(value)) => value,
+                (Some(what), None) => match words.next() {
+                    Some(value) if !value.to_string_lossy().starts_with("--") => value,
+                    _ => return Err(self.misuse(format!("`{name}` needs a value: {name} {what}"))),
+                },
+            };
+            given.options.push((option, value));
+        }
+        Ok(Read::Given(given))
+    }
+
+    fn unknown(&self, name: &str) -> Misuse {
+        let known: Vec<&str> = self.all_options().map(|option| option.long).collect();
+        self.misuse(format!("unexpected option `{name}`{}", did_you_mean(name, &known)))
+    }
+
+    fn misuse(&self, message: String) -> Misuse {
+        Misuse(format!("{message}\n\n{}\n\nFor more information, try `{} --help`.", self.usage(), self.name))
+    }
+
+    fn usage(&self) -> String {
+        let mut usage = format!("Usage: {}", self.name);
+        if self.all_options().next().is_some() {
+            usage += " [OPTIONS]";
+        }
+        for argument in self.arguments {
+            let name = argument.name;
+            usage += &if argument.required { format!(" {name}") } else { format!(" [{name}]") };
+        }
+        usage
+    }
+
+    /// All that can be given, with explanations.
+    pub fn help(&self) -> String {
+        let mut help = format!("{}\n\n{}\n", wrapped(self.about, 0), self.usage());
+        if !self.arguments.is_empty() {
+            help += "\nArguments:\n";
+            for argument in self.arguments {
+                help += &entry(argument.name, argument.help);
+            }
+        }
+        help += "\nOptions:\n";
+        for option in self.all_options() {
+            let short = option.short.map_or(String::new(), |short| format!("{short}, "));
+            let value = option.value.map_or(String::new(), |value| format!(" {value}"));
+            let mut words = option.help.to_owned();
+            if !option.choices.is_empty() {
+                let _ = write!(words, " [one of: {}]", option.choices.join(", "));
+            }
+            help += &entry(&format!("{short}{}{value}", option.long), &words);
+        }
+        help + &entry("-h, --help", "Print this help.")
+    }
+}
+
+/// One line, or more, of a list: what can be given, and what it does.
+pub fn entry(head: &str, words: &str) -> String {
+    let head = format!("  {head}");
+    let words = wrapped(words, HELP_COLUMN);
+    if head.chars().count() + 2 > HELP_COLUMN {
+        format!("{head}\n{:HELP_COLUMN$}{words}\n", "")
+    } else {
+        format!("{head:<HELP_COLUMN$}{words}\n")
+    }
+}
+
+/// The words in lines that end before column [`WIDTH`]; all but the first begin at `column`.
+fn wrapped(words: &str, column: usize) -> String {
+    let mut text = String::new();
+    let mut at = column;
+    for word in words.split(' ') {
+        let length = word.chars().count();
+        if at > column && at + 1 + length > WIDTH {
+            let _ = write!(text, "\n{:column$}", "");
+            at = column;
+        } else if at > column {
+            text.push(' ');
+            at += 1;
+        }
+        text += word;
+        at += length;
+    }
+    text
+}
+
+/// `; did you mean …?`, if a known name is close.
+pub fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let close = |known: &&&str| strsim::jaro_winkler(known, name) > 0.8;
+    let by = |known: &&str| strsim::jaro_winkler(known, name);
+    let best = known.iter().filter(close).max_by(|a, b| by(a).total_cmp(&by(b)));
+    best.map_or(String::new(), |best| format!("; did you mean `{best}`?"))
+}
+
+impl Given {
+    /// Whether a flag was given, or an option with a value.
+    pub fn has(&self, long: &str) -> bool {
+        self.values(long).next().is_some()
+    }
+
+    fn values(&self, long: &str) -> impl Iterator<Item = &OsStr> {
+        debug_assert!(self.spec.all_options().any(|option| option.long == long), "no option {long}");
+        self.options.iter().filter(move |(option, _)| option.long == long).map(|(_, value)| value.as_os_str())
+    }
+
+    /// The value of an option that names a file or a folder.
+    pub fn path(&self, long: &str) -> Option<PathBuf> {
+        self.values(long).next().map(PathBuf::from)
+    }
+
+    /// The value of an option, as `parse` understands it.
+    pub fn parsed<T>(
+        &self,
+        long: &str,
+        parse: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, Misuse> {
+        self.values(long).next().map(|value| self.one(long, &value.to_string_lossy(), parse)).transpose()
+    }
+
+    /// The values of an option that can have several.
+    pub fn list<T>(&self, long: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Misuse> {
+        let texts: Vec<String> =
+            self.values(long).map(|value| value.to_string_lossy().into_owned()).collect();
+        let parts = texts.iter().flat_map(|text| text.split(','));
+        parts.map(|part| self.one(long, part, &parse)).collect()
+    }
+
+    fn one<T>(&self, long: &str, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, Misuse> {
+        parse(text).map_err(|why| self.spec.misuse(format!("`{long} {text}`: {why}")))
+    }
+
+    /// A whole number within a range.
+    pub fn number<T: FromStr + PartialOrd + Display>(
+        &self,
+        long: &str,
+        range: RangeInclusive<T>,
+    ) -> Result<Option<T>, Misuse> {
+        self.parsed(long, |text| whole_number(text, &range))
+    }
+
+    /// One of the names that the option can have, by `named`, which lists them with what they mean.
+    pub fn choice<T: Copy>(&self, long: &str, named: &[(&str, T)]) -> Result<Option<T>, Misuse> {
+        self.parsed(long, |text| chosen(text, named))
+    }
+
+    /// The same for an option that can have several.
+    pub fn choices<T: Copy>(&self, long: &str, named: &[(&str, T)]) -> Result<Vec<T>, Misuse> {
+        self.list(long, |text| chosen(text, named))
+    }
+
+    /// The argument at this place, counted from 0.
+    pub fn argument(&self, place: usize) -> Option<&OsStr> {
+        self.arguments.get(place).map(OsString::as_os_str)
+    }
+
+    /// The argument at this place, which must be there.
+    pub fn required(&self, place: usize) -> Result<&OsStr, Misuse> {
+        self.argument(place).ok_or_else(|| {
+            let name = self.spec.arguments.get(place).map_or("", |argument| argument.name);
+            self.spec.misuse(format!("{name} is missing"))
+        })
+    }
+
+    /// The argument at this place, as `parse` understands it.
+    pub fn parsed_argument<T>(
+        &self,
+        place: usize,
+        parse: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, Misuse> {
+        let parse = |text: &OsStr| {
+            let text = text.to_string_lossy();
+            parse(&text).map_err(|why| self.misuse(format!("`{text}`: {why}")))
+        };
+        self.argument(place).map(parse).transpose()
+    }
+
+    /// An error for options that exclude each other.
+    pub fn exclude(&self, one: &str, other: &str) -> Result<(), Misuse> {
+        match self.has(one) && self.has(other) {
+            true => Err(self.misuse(format!("`{one}` cannot be used with `{other}`"))),
+            false => Ok(()),
+        }
+    }
+
+    /// An error about this command.
+    pub fn misuse(&self, message: impl Into<String>) -> Misuse {
+        self.spec.misuse(message.into())
+    }
+}
+
+/// A whole number within a range.
+pub fn whole_number<T: FromStr + PartialOrd + Display>(
+    text: &str,
+    range: &RangeInclusive<T>,
+) -> Result<T, String> {
+    let number = text.parse().ok().filter(|number| range.contains(number));
+    number.ok_or_else(|| format!("a whole number from {} to {} is wanted", range.start(), range.end()))
+}
+
+/// What this name means.
+pub fn chosen<T: Copy>(text: &str, named: &[(&str, T)]) -> Result<T, String> {
+    let found = named.iter().find(|(name, _)| *name == text);
+    found.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let names: Vec<&str> = named.iter().map(|(name, _)| *name).collect();
+        format!("known are {}{}", names.join(", "), did_you_mean(text, &names))
+    })
+}
+
+/// The names of a list of choices.
+pub const fn names<T, const N: usize>(named: &[(&'static str, T); N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut at = 0;
+    while at < N {
+        names[at] = named[at].0;
+        at += 1;
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLOURS: [(&str, u8); 2] = [("red", 1), ("green", 2)];
+
+    static SPEC: Spec = Spec {
+        name: "tool paint",
+        about: "Paint something.",
+        arguments: &[Argument::required("WALL", "What to paint."), Argument::optional("COAT", "How thick.")],
+        options: &[
+            &[
+                Opt::flag("--twice", "Paint it twice."),
+                Opt::value("--out", "FILE", "Where it goes.").short("-o"),
+            ],
+            &[
+                Opt::value("--colour", "NAME", "The colours.").choices(&names(&COLOURS)).many(),
+                Opt::value(
+                    "--width",
+                    "N",
+                    "How wide it is, from here to there and back, which takes a while to say.",
+                ),
+            ],
+        ],
+    };
+
+    fn read(words: &[&str]) -> Result<Given, Misuse> {
+        match SPEC.read(words.iter().map(OsString::from))? {
+            Read::Given(given) => Ok(given),
+            Read::Help(help) => Err(Misuse(help)),
+        }
+    }
+
+    #[test]
+    fn words_become_values() {
+        let given = read(&["wall", "--colour", "red,green", "-o", "a b", "--twice", "--width=7"]).unwrap();
+        assert_eq!(given.required(0).unwrap(), "wall");
+        assert_eq!(given.argument(1), None);
+        assert_eq!(given.choices("--colour", &COLOURS).unwrap(), [1, 2]);
+        assert_eq!(given.path("--out"), Some("a b".into()));
+        assert_eq!(given.number("--width", 1..=9u32).unwrap(), Some(7));
+        assert!(given.has("--twice") && given.exclude("--twice", "--out").is_err());
+        let given = read(&["--", "--twice"]).unwrap();
+        assert!(given.required(0).unwrap() == "--twice" && !given.has("--twice"));
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_with_what_would_be_right() {
+        let why = |words: &[&str]| read(words).map(|_| ()).unwrap_err().to_string();
+        assert!(why(&["--color", "red"]).contains("unexpected option `--color`; did you mean `--colour`?"));
+        assert!(why(&["a", "b", "c"]).contains("unexpected argument `c`"));
+        assert!(why(&["--out"]).contains("`--out` needs a value: --out FILE"));
+        assert!(why(&["--out", "--twice"]).contains("needs a value"));
+        assert!(why(&["--twice=1"]).contains("takes no value"));
+        assert!(why(&["--twice", "--twice"]).contains("twice"));
+        assert!(why(&["-x"]).ends_with("For more information, try `tool paint --help`."));
+        let given = read(&["--colour", "gren", "--width", "0"]).unwrap();
+        let colour = given.choices("--colour", &COLOURS).unwrap_err().to_string();
+        assert!(
+            colour.starts_with("`--colour gren`: known are red, green; did you mean `green`?"),
+            "{colour}"
+        );
+        assert!(given.number("--width", 1..=9u32).unwrap_err().to_string().contains("from 1 to 9"));
+        assert!(given.required(0).unwrap_err().to_string().starts_with("WALL is missing"));
+    }
+
+    #[test]
+    fn help_fits_a_terminal() {
+        let help = read(&["--help"]).map(|_| ()).unwrap_err().to_string();
+        assert!(help.lines().all(|line| line.chars().count() <= WIDTH), "{help}");
+        for line in ["Usage: tool paint [OPTIONS] WALL [COAT]", "  -o, --out FILE          Where it goes."] {
+            assert!(help.lines().any(|one| one == line), "no `{line}` in\n{help}");
+        }
+        assert!(help.contains("[one of: red, green]"), "{help}");
+    }
+}

@@ -1,0 +1,120 @@
+//! `raykata compare`: the structures of stages 3, 8 and 9 side by side on one scene: what each costs to build, in memory,
+//! in questions a ray and in time; and pictures of where it divides space and of where rays are dear.
+//!
+//! `rows` (what is compared) · `measure` (how) · `table` and `plot` (how it is told) · `drawing` (pictures)
+
+mod drawing;
+mod measure;
+mod plot;
+mod rows;
+mod table;
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
+use crate::kits::{Choice, Need, Source, root};
+use crate::knobs::{ACCELERATORS, Knobs, Threads};
+use crate::report::{load_scene, make_folder};
+use anyhow::{Context, Result};
+use measure::Bench;
+use raykata::scene::Accelerator;
+use rows::Of;
+use std::path::{Path, PathBuf};
+
+/// `raykata compare`.
+pub static SPEC: Spec = Spec {
+    name: "raykata compare",
+    about: "Compare the structures that find what rays meet, side by side on one scene.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[
+            Opt::value(
+                "--of",
+                "WHAT",
+                "What is compared: all accelerators; what the search of a scene graph saves; the kd-tree without each \
+                 of its heuristics; grids of growing resolution; or instances and copies [default: structures].",
+            )
+            .choices(&names(&Of::NAMES)),
+            Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
+                .choices(&names(&ACCELERATORS))
+                .many(),
+            Opt::value(
+                "--rounds",
+                "N",
+                "How often each picture is timed, by turns; the median counts [default: 3].",
+            ),
+            Opt::value(
+                "--level",
+                "N",
+                "How deep the boxes and cells lie that are drawn, the root being at level 0 [default: 6].",
+            ),
+            Opt::value(
+                "--out",
+                "FOLDER",
+                "The folder for pictures, plot and numbers [default: out/NAME-compare].",
+            )
+            .short("-o"),
+            Opt::flag("--table", "Only the table: no pictures, no plot."),
+        ],
+        Choice::OPTIONS,
+        Threads::OPTIONS,
+        Knobs::OPTIONS,
+    ],
+};
+
+/// Which scene, what of it, and how long.
+pub struct Options {
+    scene: PathBuf,
+    of: Of,
+    only: Vec<Accelerator>,
+    kit: Choice,
+    rounds: u32,
+    threads: Threads,
+    level: u32,
+    knobs: Knobs,
+    out: Option<PathBuf>,
+    table: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--only", "--of")?;
+        Ok(Options {
+            scene: given.required(0)?.into(),
+            of: given.choice("--of", &Of::NAMES)?.unwrap_or(Of::Structures),
+            only: given.choices("--only", &ACCELERATORS)?,
+            kit: Choice::read(given)?,
+            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(3),
+            threads: Threads::read(given)?,
+            level: given.number("--level", 0..=64)?.unwrap_or(6),
+            knobs: Knobs::read(given)?,
+            out: given.path("--out"),
+            table: given.has("--table"),
+        })
+    }
+}
+
+/// Measures, prints the table and writes the rest. Whether all rows make the same picture; copies and instances need not,
+/// for a ray that is carried into another space is rounded.
+pub fn run(options: &Options) -> Result<bool> {
+    let mut scene = load_scene(&options.scene)?;
+    options.knobs.apply(&mut scene);
+    let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
+    let root = root()?;
+    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let kit = &*source.fresh();
+
+    let rows = rows::rows(options.of, &options.only, &scene);
+    let bench = Bench { kit, rounds: options.rounds, threads: options.threads.count() };
+    let measured = bench.measure(&scene, &rows)?;
+    let title = format!("{name}.toml, {} × {} pixels", scene.film.width, scene.film.height);
+    table::print(&title, &measured);
+    if !options.table {
+        make_folder(&out)?;
+        drawing::write(&out, kit, &scene, &measured, options.level)?;
+        plot::write(&out.join("compare.svg"), &title, &measured)?;
+        table::write_json(&out.join("compare.json"), &measured)?;
+        println!("\npictures, plot and numbers are in {}", out.display());
+    }
+    Ok(options.of == Of::Instances || measured.iter().all(|row| row.different_pixels == 0))
+}

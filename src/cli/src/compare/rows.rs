@@ -1,0 +1,119 @@
+//! What can be compared: settings that differ in one thing.
+
+use raykata::graph::Savings;
+use raykata::partition::KdHeuristics;
+use raykata::scene::{Accelerator, Quality, Scene, Split};
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    /// Every accelerator, the hierarchy with each of its splits.
+    Structures,
+    /// What the search of a scene graph saves: volumes, skipping, sorting, the last hit.
+    Savings,
+    /// The kd-tree without each of its five heuristics.
+    Heuristics,
+    /// The grid at growing resolutions, and the formula's.
+    Grids,
+    /// Meshes that stand in several places, kept once or copied.
+    Instances,
+}
+
+impl Of {
+    /// All of them by name.
+    pub const NAMES: [(&str, Of); 5] = [
+        ("structures", Of::Structures),
+        ("savings", Of::Savings),
+        ("heuristics", Of::Heuristics),
+        ("grids", Of::Grids),
+        ("instances", Of::Instances),
+    ];
+}
+
+/// One line of the table.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// For people, and for names of files.
+    pub name: String,
+    /// The settings.
+    pub quality: Quality,
+}
+
+/// The lines. `only` names accelerators, or is empty.
+pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
+    let with = |name: &str, change: &dyn Fn(&mut Quality)| {
+        let mut quality = scene.quality;
+        change(&mut quality);
+        Row { name: name.replace('_', " "), quality }
+    };
+    match of {
+        Of::Structures => {
+            let all: &[Accelerator] = if only.is_empty() { &Accelerator::ALL } else { only };
+            let rows = |&accelerator: &Accelerator| match accelerator {
+                Accelerator::Bvh => Split::ALL
+                    .map(|split| {
+                        let name = match split {
+                            Split::ObjectMedian => "bvh, object median",
+                            Split::SpatialMedian => "bvh, spatial median",
+                            Split::SurfaceArea => "bvh, surface area",
+                        };
+                        with(name, &|quality| {
+                            (quality.accelerator, quality.split) = (Accelerator::Bvh, split);
+                        })
+                    })
+                    .to_vec(),
+                other => vec![with(other.name(), &|quality| quality.accelerator = other)],
+            };
+            all.iter().flat_map(rows).collect()
+        }
+        Of::Savings => {
+            let graph = |name: &str, accelerator, savings| {
+                with(name, &|quality| (quality.accelerator, quality.savings) = (accelerator, savings))
+            };
+            let none = Savings { volumes: false, skip: false, sort: false };
+            let boxes = Accelerator::BoundingBoxes;
+            let balls = Accelerator::BoundingSpheres;
+            vec![
+                graph("graph, nothing saved", boxes, none),
+                graph("graph, boxes first", boxes, Savings { volumes: true, ..none }),
+                graph("graph, boxes, skip", boxes, Savings { sort: false, ..Savings::default() }),
+                graph("graph, boxes, sort", boxes, Savings { skip: false, ..Savings::default() }),
+                graph("graph, boxes, skip and sort", boxes, Savings::default()),
+                graph("graph, balls, skip and sort", balls, Savings::default()),
+                with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
+                with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),
+                with("bvh, packets of 8", &|quality| quality.accelerator = Accelerator::PacketBvh),
+            ]
+        }
+        Of::Heuristics => {
+            let all = KdHeuristics::default();
+            let tree = |name: &str, heuristics: KdHeuristics| {
+                with(name, &|quality| {
+                    (quality.accelerator, quality.kd_heuristics) = (Accelerator::KdTree, heuristics);
+                })
+            };
+            vec![
+                tree("kd-tree, all five", all),
+                tree("without longest axis", KdHeuristics { longest_axis: false, ..all }),
+                tree("without balanced counts", KdHeuristics { balanced_counts: false, ..all }),
+                tree("without few straddlers", KdHeuristics { few_straddlers: false, ..all }),
+                tree("without empty space cut off", KdHeuristics { cut_off_empty_space: false, ..all }),
+                tree("without stop at 60 %", KdHeuristics { stop_at_overlap: false, ..all }),
+                tree("none of them", KdHeuristics::NONE),
+            ]
+        }
+        Of::Grids => {
+            let grid = |name: &str, n: u32| {
+                with(name, &|quality| {
+                    (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, n);
+                })
+            };
+            let ladder = [1, 4, 8, 16, 32, 64, 128, 256].map(|n| grid(&format!("grid, {n} along"), n));
+            [ladder.to_vec(), vec![grid("grid, by the formula", 0)]].concat()
+        }
+        Of::Instances => vec![
+            with("one mesh, many places", &|quality| quality.copies = false),
+            with("copies", &|quality| quality.copies = true),
+        ],
+    }
+}

@@ -1,0 +1,210 @@
+//! The way up: from the cheapest value of every knob, always by the step that lowers the error most for its time.
+
+use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
+use super::ladder::Knob;
+use super::measure::{Bench, Measured, Point, Series};
+use super::reference::Reference;
+use super::setting::Setting;
+use crate::progress::ProgressBar;
+use crate::report::bar_of_steps;
+use anyhow::Result;
+use raykata::scene::Scene;
+
+/// How much of a budget is spent on purpose: frames differ by some percent from one to the next.
+const SHARE: f64 = 0.95;
+
+/// More samples a pixel than this are not proposed.
+const MOST_SAMPLES: u32 = 65_536;
+
+/// How often a budget is met anew, each time with a twentieth fewer samples at least: times wobble by some percent.
+const ATTEMPTS: u32 = 4;
+
+/// Settings that have been measured, each once, however often it is asked for.
+pub struct Tried<'a> {
+    pub bench: &'a Bench<'a>,
+    pub scene: &'a Scene,
+    pub right: &'a Reference,
+    pub known: Vec<Point>,
+}
+
+impl Tried<'_> {
+    /// `None` if it takes too long, or nobody wants it any more.
+    pub fn point(&mut self, setting: &Setting) -> Result<Option<Point>> {
+        if let Some(point) = self.known.iter().find(|point| point.setting == *setting) {
+            return Ok(Some(point.clone()));
+        }
+        let point = self.bench.point(self.scene, setting, self.right, false)?;
+        self.known.extend(point.clone());
+        Ok(point)
+    }
+}
+
+/// A climb, as far as it has come.
+pub struct Climb<'a, 't> {
+    tried: &'a mut Tried<'t>,
+    measured: &'a Measured,
+    ladders: Vec<&'a Series>,
+    /// The rung of each ladder.
+    at: Vec<usize>,
+    goal: Goal,
+    full: f64,
+    pub now: Point,
+    pub steps: Vec<Step>,
+    bar: ProgressBar,
+}
+
+/// A step that could be taken.
+struct Candidate {
+    /// Which ladder, and to which rung.
+    ladder: usize,
+    rung: usize,
+    point: Point,
+    /// How much error it saves for its time.
+    worth: f64,
+}
+
+impl<'a, 't> Climb<'a, 't> {
+    /// At the foot of all ladders, everything else as in `start`. `None` if even that takes too long.
+    pub fn new(
+        tried: &'a mut Tried<'t>,
+        measured: &'a Measured,
+        ladders: Vec<&'a Series>,
+        start: Setting,
+        goal: Goal,
+        full: f64,
+    ) -> Result<Option<Climb<'a, 't>>> {
+        let foot = ladders.iter().fold(start, |setting, series| {
+            setting.turned(series.knob, &measured.points[series.rungs[0].1].setting)
+        });
+        let bar = bar_of_steps(ladders.iter().map(|series| series.rungs.len()).sum());
+        bar.set_message("looking for the best settings");
+        let Some(now) = tried.point(&foot)? else { return Ok(None) };
+        let at = vec![0; ladders.len()];
+        Ok(Some(Climb { tried, measured, ladders, at, goal, full, now, steps: Vec::new(), bar }))
+    }
+
+    /// Goes on until the goal is reached or no step helps. `false` if nobody wants it any more.
+    pub fn go_up(&mut self) -> Result<bool> {
+        while !self.has_arrived() {
+            let best = self.best_step()?;
+            if self.tried.bench.stopped() {
+                return Ok(false);
+            }
+            let Some(Candidate { ladder, rung, point, .. }) = best else { break };
+            self.at[ladder] = rung;
+            let (name, _) = &self.ladders[ladder].rungs[rung];
+            self.go_to(point, self.ladders[ladder].knob, name.clone());
+            self.bar.inc(1);
+        }
+        self.bar.finish_and_clear();
+        Ok(true)
+    }
+
+    fn has_arrived(&self) -> bool {
+        matches!(self.goal, Goal::Error(target) if self.now.error() <= target)
+    }
+
+    fn fits(&self, point: &Point) -> bool {
+        match self.goal {
+            Goal::Seconds(budget) => seconds_in_full(point, self.full) <= SHARE * budget,
+            Goal::Error(_) => true,
+        }
+    }
+
+    fn go_to(&mut self, point: Point, knob: Knob, to: String) {
+        let seconds = seconds_in_full(&point, self.full);
+        self.steps.push(Step { knob, to, error: point.error(), seconds });
+        self.now = point;
+    }
+
+    /// Where the next rung of a ladder leads.
+    fn turned_to(&self, ladder: usize, rung: usize) -> Setting {
+        let series = self.ladders[ladder];
+        let to = &self.measured.points[series.rungs[rung].1].setting;
+        self.now.setting.turned(series.knob, to)
+    }
+
+    fn best_step(&mut self) -> Result<Option<Candidate>> {
+        let mut best: Option<Candidate> = None;
+        for ladder in 0..self.ladders.len() {
+            // The next rung and the one after it: some knobs help only when they are turned far enough.
+            for rung in (self.at[ladder] + 1..self.ladders[ladder].rungs.len()).take(2) {
+                let Some(point) = self.tried.point(&self.turned_to(ladder, rung))? else { continue };
+                let gain = (self.now.error() / point.error().max(1e-12)).ln();
+                // A step that takes no time that can be measured would be worth anything.
+                let time = (point.seconds - self.now.seconds).max(0.01 * self.now.seconds);
+                let worth = gain / time;
+                let helps = self.fits(&point) && point.error() * AS_GOOD < self.now.error();
+                if helps && best.as_ref().is_none_or(|best| worth > best.worth) {
+                    best = Some(Candidate { ladder, rung, point, worth });
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// Rungs are a factor of two apart; what is left of a budget goes to as many samples as it pays for.
+    pub fn spend_the_rest(&mut self) -> Result<()> {
+        let Goal::Seconds(budget) = self.goal else { return Ok(()) };
+        if !self.ladders.iter().any(|series| series.knob == Knob::Samples) {
+            return Ok(());
+        }
+        let samples = |point: &Point| point.setting.quality.samples_per_pixel;
+        let (mut priced, mut most) = (self.now.clone(), MOST_SAMPLES);
+        for _ in 0..ATTEMPTS {
+            // As many as the budget pays for at the price that was measured last.
+            let price = priced.seconds * self.full / f64::from(samples(&priced));
+            let pays_for = ((SHARE * budget - priced.build_seconds) / price.max(1e-9)) as u32;
+            if pays_for.min(most) <= samples(&self.now) {
+                break;
+            }
+            let mut more = self.now.setting.clone();
+            more.quality.samples_per_pixel = pays_for.min(most);
+            let Some(point) = self.tried.point(&more)? else { break };
+            if self.fits(&point) {
+                if point.error() < self.now.error() {
+                    self.go_to(point, Knob::Samples, pays_for.min(most).to_string());
+                }
+                break;
+            }
+            most = samples(&point) - samples(&point) / 20;
+            priced = point;
+        }
+        Ok(())
+    }
+
+    /// What one more step of each knob would do.
+    pub fn one_step_more(&mut self) -> Result<Vec<Left>> {
+        let mut left = Vec::new();
+        for ladder in 0..self.ladders.len() {
+            let (series, at) = (self.ladders[ladder], self.at[ladder]);
+            if at + 1 == series.rungs.len() {
+                continue;
+            }
+            let more = self.turned_to(ladder, at + 1);
+            let here = &self.now.setting;
+            // Samples may have been turned to between two rungs, or to the next.
+            if more.quality.samples_per_pixel < here.quality.samples_per_pixel || more == *here {
+                continue;
+            }
+            if let Some(more) = self.tried.point(&more)? {
+                left.push(Left {
+                    knob: series.knob,
+                    at: series.rungs[at].0.clone(),
+                    time_factor: more.seconds / self.now.seconds.max(1e-9),
+                    error_factor: more.error() / self.now.error().max(1e-12),
+                });
+            }
+        }
+        Ok(left)
+    }
+
+    /// Where each knob stands.
+    pub fn values(&self) -> Vec<(Knob, String)> {
+        let value = |(series, &rung): (&&Series, &usize)| match series.knob {
+            Knob::Samples => (series.knob, self.now.setting.quality.samples_per_pixel.to_string()),
+            knob => (knob, series.rungs[rung].0.clone()),
+        };
+        self.ladders.iter().zip(&self.at).map(value).collect()
+    }
+}

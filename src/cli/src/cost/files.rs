@@ -1,0 +1,162 @@
+//! What machines and slides read: JSON, a table with commas, plots.
+
+use super::hits::Verdicts;
+use super::ladder::Knob;
+use super::measure::Series;
+use super::plot::{Line, Plot, svg};
+use super::slope::theory;
+use super::{Summary, Told};
+use crate::html::csv_line;
+use anyhow::{Context, Result};
+use raykata::film::write_atomically;
+use std::io::Write;
+use std::path::Path;
+
+/// Writes `cost.json`, `cost.csv` and the plots into a folder.
+pub fn write(out: &Path, told: &Told<'_>) -> Result<()> {
+    write_whole(&out.join("cost.json"), &serde_json::to_vec_pretty(told)?)?;
+    write_whole(&out.join("cost.csv"), table(told).as_bytes())?;
+    for (name, plot) in plots(told) {
+        write_whole(&out.join(name), plot.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// All points, one per line.
+fn table(told: &Told<'_>) -> String {
+    const HEADS: [&str; 15] = [
+        "knob",
+        "ladder",
+        "value",
+        "rmse",
+        "relative_mse",
+        "similarity",
+        "seconds",
+        "spread",
+        "rays",
+        "box_tests",
+        "primitive_tests",
+        "rays_judged",
+        "wrong_hits",
+        "leaks",
+        "unbeaten",
+    ];
+    let mut table = csv_line(&HEADS.map(str::to_owned));
+    for series in &told.measured.series {
+        for (value, index) in &series.rungs {
+            let point = &told.measured.points[*index];
+            let judged = |number: fn(&Verdicts) -> u64| {
+                point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
+            };
+            table += &csv_line(&[
+                series.knob.name().into(),
+                series.name.clone(),
+                value.clone(),
+                point.error().to_string(),
+                point.errors.relative_mse.to_string(),
+                point.errors.similarity.to_string(),
+                point.seconds.to_string(),
+                point.spread.to_string(),
+                point.counts.rays().to_string(),
+                point.counts.box_tests.to_string(),
+                point.counts.primitive_tests.to_string(),
+                judged(|hits| hits.rays),
+                judged(|hits| hits.wrong),
+                judged(|hits| hits.leaks),
+                told.front.contains(index).to_string(),
+            ]);
+        }
+    }
+    table
+}
+
+fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically(file, |out| out.write_all(bytes))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
+
+/// File names and pictures: all knobs, and the samplers if they were compared.
+pub fn plots(told: &Told<'_>) -> Vec<(&'static str, String)> {
+    let series = &told.measured.series;
+    let knobs: Vec<&Series> =
+        series.iter().filter(|one| one.knob != Knob::Sampler && !one.knob.is_geometric()).collect();
+    let samplers: Vec<&Series> = series.iter().filter(|one| one.knob == Knob::Sampler).collect();
+    let mut plots = Vec::new();
+    if !knobs.is_empty() {
+        let title = format!("{}: error over time, one knob turned at a time", told.scene);
+        plots.push(("cost.svg", draw(told, &title, &knobs, Vec::new())));
+    }
+    if !samplers.is_empty() {
+        let title = format!("{}: samplers, 1 to {} samples a pixel", told.scene, most(&samplers));
+        let guides =
+            [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
+        plots.push(("samplers.svg", draw(told, &title, &samplers, guides.to_vec())));
+    }
+    if !told.numerics.is_empty() {
+        plots.push(("numerics.svg", numerics(&told.numerics)));
+    }
+    plots
+}
+
+fn most(samplers: &[&Series]) -> String {
+    samplers.first().and_then(|series| series.rungs.last()).map_or(String::new(), |(name, _)| name.clone())
+}
+
+fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
+    let points = &told.measured.points;
+    let line = |one: &&Series| {
+        let slope = told.slopes.iter().find(|(name, _)| *name == one.name);
+        let name = match slope {
+            Some((name, slope)) => format!("{name} ({:.2} ± {:.2})", slope.mean, slope.half_interval),
+            None => one.name.clone(),
+        };
+        let place = |(_, index): &(String, usize)| {
+            let point = &points[*index];
+            let least = point.rmse.iter().copied().fold(f64::INFINITY, f64::min);
+            let greatest = point.rmse.iter().copied().fold(0.0, f64::max);
+            [point.seconds, point.error(), least, greatest]
+        };
+        Line { name, points: one.rungs.iter().map(place).collect() }
+    };
+    let samplers_only = series.iter().all(|one| one.knob == Knob::Sampler);
+    let front = told.front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    svg(&Plot {
+        title,
+        x_axis: "seconds a picture, logarithmic",
+        y_axis: "root mean square error in linear light, logarithmic",
+        lines: series.iter().map(line).collect(),
+        guides,
+        front: if samplers_only { Vec::new() } else { front.collect() },
+        // Below that it is the reference that is off.
+        floor: told.reference_error.max(1e-9),
+    })
+}
+
+/// Nanoseconds against wrong verdicts: each method in single and in double precision, and the functions of the kit.
+fn numerics(all: &[Summary]) -> String {
+    let mut lines: Vec<Line> = Vec::new();
+    for one in all {
+        let place = [one.nanoseconds, one.wrong_per_million, one.wrong_per_million, one.wrong_per_million];
+        match lines.last_mut() {
+            // Under its method.
+            Some(line) if one.name.trim() == "in double" => line.points.push(place),
+            _ if one.name.starts_with(' ') => {}
+            _ => lines.push(Line { name: one.name.clone(), points: vec![place] }),
+        }
+    }
+    svg(&Plot {
+        title: "ray/triangle tests: from single to double precision",
+        x_axis: "nanoseconds a test, logarithmic",
+        y_axis: "wrong in a million hard inputs, logarithmic",
+        lines,
+        guides: Vec::new(),
+        front: Vec::new(),
+        // None at all is drawn as one.
+        floor: 1.0,
+    })
+}
+
+/// What theory says of a ladder of samples.
+pub fn expected_slope(told: &Told<'_>, name: &str) -> Option<f64> {
+    theory(if name == Knob::Samples.name() { told.own_sampler } else { name })
+}

@@ -1,0 +1,302 @@
+//! The knobs that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
+
+use super::called::Called;
+use super::setting::Setting;
+use crate::report::Thousands;
+use raykata::effects::Effect;
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
+use serde::Serialize;
+
+/// Something that can be turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Knob {
+    /// Samples a pixel; lens and time are sampled with them.
+    Samples,
+    /// Where those samples lie.
+    Sampler,
+    /// Places on an area light that a hit asks about.
+    LightSamples,
+    /// Rays that go on from a rough surface.
+    GlossSamples,
+    /// How often a ray may be mirrored or refracted.
+    Depth,
+    /// Rays of less weight are not traced.
+    MinContribution,
+    /// Normals interpolated over triangles, or not.
+    SmoothNormals,
+    /// The ray/triangle test.
+    Intersection,
+    /// Digits of ray/shape tests.
+    Precision,
+    /// What finds the closest hit.
+    Accelerator,
+    /// How a hierarchy is split.
+    Split,
+    /// Most primitives in a leaf.
+    LeafSize,
+    /// Cells of a grid along its longest side.
+    GridResolution,
+}
+
+/// Values of a knob, from cheap to dear.
+pub struct Ladder {
+    pub knob: Knob,
+    /// Which of several ladders of the knob.
+    pub name: String,
+    /// What each value is called, and the setting.
+    pub rungs: Vec<(String, Setting)>,
+    /// Values that would take too long, and why.
+    pub left_out: Vec<String>,
+}
+
+/// As many samples as ladders go up to, at least.
+const MOST_SAMPLES: u32 = 64;
+
+/// Asking every ray about more primitives than this takes minutes.
+const MOST_ASKED: u64 = 2_000;
+
+/// A BSP tree over more primitives takes ten seconds and more to build, and it is built for every picture.
+const MOST_IN_BSP: u64 = 500_000;
+
+/// How deep the reference follows paths, and the ladder of depths goes at least.
+pub const LEAST_DEPTH: u32 = 8;
+
+impl Knob {
+    /// All of them, by the names that the command line has for them.
+    pub const NAMES: [(&str, Knob); 13] = [
+        ("samples", Knob::Samples),
+        ("sampler", Knob::Sampler),
+        ("light-samples", Knob::LightSamples),
+        ("gloss-samples", Knob::GlossSamples),
+        ("depth", Knob::Depth),
+        ("min-contribution", Knob::MinContribution),
+        ("smooth-normals", Knob::SmoothNormals),
+        ("intersection", Knob::Intersection),
+        ("precision", Knob::Precision),
+        ("accelerator", Knob::Accelerator),
+        ("split", Knob::Split),
+        ("leaf-size", Knob::LeafSize),
+        ("grid-resolution", Knob::GridResolution),
+    ];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Knob::Samples => "samples a pixel",
+            Knob::Sampler => "sampler",
+            Knob::LightSamples => "light samples",
+            Knob::GlossSamples => "gloss samples",
+            Knob::Depth => "depth",
+            Knob::MinContribution => "minimum contribution",
+            Knob::SmoothNormals => "smooth normals",
+            Knob::Intersection => "intersection",
+            Knob::Precision => "precision",
+            Knob::Accelerator => "accelerator",
+            Knob::Split => "split",
+            Knob::LeafSize => "leaf size",
+            Knob::GridResolution => "grid resolution",
+        }
+    }
+
+    /// Whether it decides only how rays find what they hit: all values make the same picture, if all tests are right.
+    pub fn is_geometric(self) -> bool {
+        !matches!(
+            self,
+            Knob::Samples
+                | Knob::Sampler
+                | Knob::LightSamples
+                | Knob::GlossSamples
+                | Knob::Depth
+                | Knob::MinContribution
+                | Knob::SmoothNormals
+        )
+    }
+
+    /// Its ladders on this scene, or why it buys nothing there.
+    pub fn ladders(self, called: &Called<'_>) -> Result<Vec<Ladder>, String> {
+        let Called { scene, effects, primitives } = called;
+        let quality = scene.quality;
+        let mirrors = effects.calls_for(Effect::Mirrors) || effects.calls_for(Effect::Transmission);
+        let hierarchy =
+            matches!(quality.accelerator, Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh);
+        let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
+        let ladder = |rungs: Vec<(String, Quality)>| {
+            let rungs = rungs.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
+            Ladder { knob: self, name: self.name().into(), rungs: rungs.collect(), left_out: Vec::new() }
+        };
+        let numbers = |values: Vec<u32>, set: fn(&mut Quality, u32)| {
+            let with = |value: u32| {
+                let mut quality = quality;
+                set(&mut quality, value);
+                (value.to_string(), quality)
+            };
+            vec![ladder(values.into_iter().map(with).collect())]
+        };
+        let ladders = match self {
+            Knob::Samples => {
+                numbers(doubling(quality.samples_per_pixel, MOST_SAMPLES), |q, n| q.samples_per_pixel = n)
+            }
+            Knob::Sampler => {
+                let of = |(sampler, name): (Sampler, &str)| {
+                    let with = |samples_per_pixel: u32| {
+                        (samples_per_pixel.to_string(), Quality { sampler, samples_per_pixel, ..quality })
+                    };
+                    let counts = doubling(quality.samples_per_pixel, MOST_SAMPLES);
+                    Ladder { name: name.into(), ..ladder(counts.into_iter().map(with).collect()) }
+                };
+                SAMPLERS.into_iter().map(of).collect()
+            }
+            Knob::LightSamples => {
+                needs(effects.lights.iter().any(|light| light.area), "no lamp has an area")?;
+                numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
+            }
+            Knob::GlossSamples => {
+                needs(effects.calls_for(Effect::Gloss), "nothing is rough and mirrors")?;
+                numbers(doubling(quality.gloss_samples, 16), |q, n| q.gloss_samples = n)
+            }
+            Knob::Depth => {
+                needs(mirrors, "nothing mirrors or lets light through")?;
+                let mut depths = vec![0, 1, 2, 3, 5, LEAST_DEPTH];
+                depths.push(quality.max_depth);
+                depths.sort_unstable();
+                depths.dedup();
+                numbers(depths, |q, n| q.max_depth = n)
+            }
+            Knob::MinContribution => {
+                needs(mirrors, "nothing mirrors or lets light through")?;
+                let mut least = vec![0.1, 0.03, 0.01, 0.003, 0.001, 0.0003];
+                least.push(quality.min_contribution);
+                least.sort_by(|a, b| b.total_cmp(a));
+                least.dedup();
+                let with = |min_contribution: f32| {
+                    (min_contribution.to_string(), Quality { min_contribution, ..quality })
+                };
+                vec![ladder(least.into_iter().map(with).collect())]
+            }
+            Knob::SmoothNormals => {
+                needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
+                let rungs = [("flat", false), ("smooth", true)]
+                    .map(|(name, smooth)| (name.to_owned(), Setting { quality, smooth }));
+                vec![Ladder { rungs: rungs.to_vec(), ..ladder(Vec::new()) }]
+            }
+            Knob::Intersection => {
+                needs(called.shows_triangles(), "there are no triangles")?;
+                let all = [
+                    ("gram", TriangleMethod::Gram),
+                    ("cramer", TriangleMethod::Cramer),
+                    ("watertight", TriangleMethod::Watertight),
+                ];
+                let with = |(name, triangle_method): (&str, _)| {
+                    (name.to_owned(), Quality { triangle_method, ..quality })
+                };
+                vec![ladder(all.into_iter().map(with).collect())]
+            }
+            Knob::Precision => {
+                needs(
+                    called.shows_triangles() || called.shows_spheres(),
+                    "there are no triangles and no spheres, and other shapes have one test each",
+                )?;
+                let all = [("single", Precision::Single), ("double", Precision::Double)];
+                let with = |(name, precision): (&str, _)| (name.to_owned(), Quality { precision, ..quality });
+                vec![ladder(all.into_iter().map(with).collect())]
+            }
+            Knob::Accelerator => {
+                let most = |one: Accelerator| match one {
+                    Accelerator::BruteForce | Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
+                        MOST_ASKED
+                    }
+                    Accelerator::Bsp => MOST_IN_BSP,
+                    _ => u64::MAX,
+                };
+                let name = |one: Accelerator| one.name().replace('_', " ");
+                let (offered, dear): (Vec<_>, Vec<_>) =
+                    Accelerator::ALL.into_iter().partition(|&one| *primitives <= most(one));
+                let with = |accelerator| (name(accelerator), Quality { accelerator, ..quality });
+                let why = |one: Accelerator| {
+                    let (name, most) = (name(one), Thousands(most(one)));
+                    format!(
+                        "accelerator {name}: for scenes of {most} primitives or fewer; `raykata compare` shows it"
+                    )
+                };
+                let left_out = dear.into_iter().map(why).collect();
+                vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }]
+            }
+            Knob::Split => {
+                needs(hierarchy, "what finds hits is no hierarchy")?;
+                let all = [
+                    ("object median", Split::ObjectMedian),
+                    ("spatial median", Split::SpatialMedian),
+                    ("surface area", Split::SurfaceArea),
+                ];
+                let with = |(name, split): (&str, _)| (name.to_owned(), Quality { split, ..quality });
+                vec![ladder(all.into_iter().map(with).collect())]
+            }
+            Knob::LeafSize => {
+                needs(hierarchy, "what finds hits is no hierarchy")?;
+                numbers(doubling(quality.leaf_size, 16), |q, n| q.leaf_size = n)
+            }
+            Knob::GridResolution => {
+                needs(
+                    quality.accelerator == Accelerator::Grid,
+                    "what finds hits is no grid (--accelerator grid makes it one)",
+                )?;
+                numbers(vec![8, 16, 32, 64, 128], |q, n| q.grid_resolution = n)
+            }
+        };
+        Ok(ladders)
+    }
+}
+
+/// Those that spread their samples. Gaussian samples reach into the neighbours, so what they converge to is softer.
+const SAMPLERS: [(Sampler, &str); 4] = [
+    (Sampler::Random, "random"),
+    (Sampler::Jittered, "jittered"),
+    (Sampler::Gaussian, "gaussian"),
+    (Sampler::LowDiscrepancy, "low discrepancy"),
+];
+
+/// As scene files call it, in words.
+pub fn sampler_name(sampler: Sampler) -> &'static str {
+    SAMPLERS.iter().find(|(one, _)| *one == sampler).map_or("center", |(_, name)| name)
+}
+
+/// 1, 2, 4 … to `most`, and beyond if the scene's own value is; with that value.
+fn doubling(own: u32, most: u32) -> Vec<u32> {
+    let last = most.max(own.next_power_of_two());
+    let mut values: Vec<u32> = (0..32).map(|power| 1 << power).take_while(|value| *value <= last).collect();
+    values.push(own.max(1));
+    values.sort_unstable();
+    values.dedup();
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use raykata::effects::Effects;
+
+    #[test]
+    fn the_scenes_own_value_is_a_rung() {
+        assert_eq!(doubling(1, 16), [1, 2, 4, 8, 16]);
+        assert_eq!(doubling(6, 16), [1, 2, 4, 6, 8, 16]);
+        assert_eq!(doubling(100, 16), [1, 2, 4, 8, 16, 32, 64, 100, 128]);
+        assert_eq!(doubling(0, 4), [1, 2, 4]);
+    }
+
+    #[test]
+    fn a_knob_that_buys_nothing_says_why() {
+        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let effects = Effects::default();
+        let called = Called { scene: &scene, effects: &effects, primitives: 1 };
+        let offered = |knob: Knob| knob.ladders(&called).is_ok();
+        for knob in [Knob::Samples, Knob::Sampler, Knob::Precision, Knob::Accelerator, Knob::Split] {
+            assert!(offered(knob), "{knob:?}");
+        }
+        for knob in
+            [Knob::LightSamples, Knob::GlossSamples, Knob::Depth, Knob::Intersection, Knob::GridResolution]
+        {
+            assert!(!offered(knob), "{knob:?}");
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
+//!
+//! `options` (what can be asked) · `called`, `ladder` and `setting` (which knobs, which values) · `reference` (what is right) ·
+//! `error` (how far off) · `hits` (judged exactly) · `measure` (counts, times) · `slope` (how fast error falls) · `advice`
+//! and `climb` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told) · `headline` and `landscape`
+//! (brute force against a hierarchy)
+
+mod advice;
+mod called;
+mod climb;
+mod error;
+mod files;
+mod headline;
+mod hits;
+mod ladder;
+mod landscape;
+mod measure;
+mod options;
+mod page;
+mod plot;
+mod reference;
+mod setting;
+mod slope;
+mod table;
+
+use crate::kits::{Need, Source, root};
+use crate::knobs::arguments;
+use crate::report::{FrameBar, load_scene, make_folder};
+use advice::{Advice, Goal};
+use anyhow::{Context, Result, bail};
+use called::Called;
+pub use hits::Verdicts;
+use ladder::{Knob, Ladder};
+use measure::{Bench, Measured, front};
+pub use options::{Options, SPEC};
+use raykata::effects::Effects;
+use raykata::kit::{Kit, Mishap, mishap};
+use raykata::scene::{Quality, Scene};
+use reference::Reference;
+use serde::Serialize;
+use setting::Setting;
+use slope::Slope;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Pictures that are measured have at most so many pixels, unless a size was given: some hundred of them are made.
+const MOST_PIXELS: f64 = 10_000.0;
+
+/// Everything that is told.
+#[derive(Serialize)]
+pub struct Told<'a> {
+    scene: String,
+    /// How to make this again.
+    command: String,
+    kit: &'static str,
+    width: u32,
+    height: u32,
+    full_width: u32,
+    full_height: u32,
+    own_sampler: &'static str,
+    reference_samples: u32,
+    reference_error: f64,
+    #[serde(flatten)]
+    measured: &'a Measured,
+    /// Places of the points that no other beats, from the fastest on.
+    front: Vec<usize>,
+    /// The place of the scene's own settings.
+    own: Option<usize>,
+    /// Slopes of error over samples, by the name of the ladder.
+    slopes: Vec<(String, Slope)>,
+    /// Knobs that buy nothing here, and why.
+    not_offered: NotOffered,
+    advice: Option<Advice>,
+    numerics: Vec<Summary>,
+    /// Whether it was stopped before its end.
+    partial: bool,
+    /// Seconds that all this took.
+    took: f64,
+    #[serde(skip)]
+    right: &'a Reference,
+}
+
+/// Knobs, and why they buy nothing.
+type NotOffered = Vec<(Knob, String)>;
+
+/// Judges the ray/triangle tests of a kit, beside others.
+pub type Numerics<'a> = dyn Fn(&dyn Kit) -> Vec<Summary> + 'a;
+
+/// A ray/triangle test in three numbers.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// What it is called.
+    pub name: String,
+    /// Of one call, with the answer stored.
+    pub nanoseconds: f64,
+    /// Verdicts that are not the exact one, mean over all distributions.
+    pub wrong_per_million: f64,
+    /// Rays from inside closed meshes, at edges and vertices, that meet nothing.
+    pub leaks_per_million: f64,
+}
+
+/// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report has a chapter
+/// about ray/triangle tests; `program` is how cargo starts this program.
+pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
+    let began = Instant::now();
+    let root = root()?;
+    let which = options.kit.or_reference(&root);
+    let source = Source::prepare(&root, which, Need::Frames)?;
+    let kit = &*source.fresh();
+    let stop = stopped_by_ctrl_c()?;
+    let bench = Bench {
+        kit,
+        rounds: options.rounds,
+        threads: options.threads.count(),
+        seed: options.seed,
+        stop: &stop,
+    };
+
+    let Some(file) = &options.scene else {
+        let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
+        return headline::run(&bench, options.most, &out);
+    };
+    let mut full = load_scene(file)?;
+    let as_written = full.quality;
+    options.knobs.apply(&mut full);
+    let small = if options.knobs.names_a_size() { full.clone() } else { shrunk(&full) };
+    let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
+    let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
+
+    let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
+    for (knob, why) in &not_offered {
+        println!("{}: not offered, for {why}", knob.name());
+    }
+    println!(
+        "the reference: {} samples a pixel, {} × {} pixels",
+        options.reference, small.film.width, small.film.height
+    );
+    let code = fingerprint(&source)?;
+    let cache = Path::new("out").join("references");
+    let Some(right) = reference::reference(&bench, &small, options.reference, &cache, &code)? else {
+        println!("stopped; the reference goes on from here next time");
+        return Ok(false);
+    };
+    println!("its own error: {:.1e}\n", right.own_error);
+
+    let mut measured = bench.measure(&small, ladders, &right)?;
+    hits::judge(&root, &bench, &small, &mut measured)?;
+    let goal = options.budget.map(Goal::Seconds).or(options.error.map(Goal::Error));
+    let advice = match goal {
+        Some(goal) if !bench.stopped() => advised(&bench, &small, &full, &measured, &right, goal)?,
+        _ => None,
+    };
+    let advice = advice.map(|advice| {
+        let size = options.knobs.names_a_size().then_some((full.film.width, full.film.height));
+        Advice { command: command_for(file, &as_written, &advice, size), ..advice }
+    });
+    let about_tests = measured.series.iter().any(|series| series.knob == Knob::Intersection);
+    let numerics = match numerics {
+        Some(numerics) if about_tests && !bench.stopped() => numerics(kit),
+        _ => Vec::new(),
+    };
+    let told = Told {
+        scene: name,
+        command: command(program),
+        kit: which.package(),
+        width: small.film.width,
+        height: small.film.height,
+        full_width: full.film.width,
+        full_height: full.film.height,
+        own_sampler: ladder::sampler_name(full.quality.sampler),
+        reference_samples: right.samples,
+        reference_error: right.own_error,
+        measured: &measured,
+        front: front(&measured.points),
+        own: measured.points.iter().position(|point| point.setting == Setting::of(&small)),
+        slopes: slopes(&measured),
+        not_offered,
+        advice,
+        numerics,
+        partial: bench.stopped(),
+        took: began.elapsed().as_secs_f64(),
+        right: &right,
+    };
+    table::print(&told);
+    make_folder(&out)?;
+    files::write(&out, &told)?;
+    page::write(&out.join("index.html"), &told)?;
+    println!("\nthe report: {} ({:.0} s)", out.join("index.html").display(), told.took);
+    Ok(!told.partial)
+}
+
+/// The ladders of all knobs that are to be turned, and those that buy nothing. It is an error to ask for one of those.
+fn ladders(
+    kit: &dyn Kit,
+    bench: &Bench<'_>,
+    scene: &Scene,
+    turned: &[Knob],
+) -> Result<(Vec<Ladder>, NotOffered)> {
+    let effects = match mishap::catch(|| kit.effects(std::slice::from_ref(scene))) {
+        Ok(mut effects) => effects.remove(0),
+        Err(Mishap::NotWritten { place, .. }) => {
+            println!("what a scene calls for is not written yet ({place}), so every knob is offered");
+            Effects::everything(scene)
+        }
+        Err(mishap) => return Err(mishap.into()),
+    };
+    let mut pixel = scene.clone();
+    (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);
+    let bar = FrameBar::new("looking at the scene");
+    let frame = bench.render(&bench.job(&pixel, 0, true), None, Some(&bar))?;
+    bar.finish();
+    let primitives = frame.map_or(0, |frame| frame.primitives);
+    let called = Called { scene, effects: &effects, primitives };
+    let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
+    for (_, knob) in Knob::NAMES {
+        match knob.ladders(&called) {
+            Ok(these) if turned.is_empty() || turned.contains(&knob) => ladders.extend(these),
+            Ok(_) => {}
+            Err(why) if turned.contains(&knob) => bail!("{} buys nothing here: {why}", knob.name()),
+            Err(why) => not_offered.push((knob, why)),
+        }
+    }
+    Ok((ladders, not_offered))
+}
+
+fn advised(
+    bench: &Bench<'_>,
+    small: &Scene,
+    full: &Scene,
+    measured: &Measured,
+    right: &Reference,
+    goal: Goal,
+) -> Result<Option<Advice>> {
+    let pixels = |scene: &Scene| f64::from(scene.film.width) * f64::from(scene.film.height);
+    let times = pixels(full) / pixels(small);
+    let Some(mut advice) = advice::advise(bench, small, measured, right, goal, times)? else {
+        return Ok(None);
+    };
+    advice::verify(bench, small, full, right, &mut advice)?;
+    Ok(Some(advice))
+}
+
+/// How to render what is proposed.
+fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<(u32, u32)>) -> String {
+    let flat = if advice.setting.smooth { "" } else { "  # and `smooth = false` for its meshes" };
+    let size = size.map_or(String::new(), |(width, height)| format!(" --size {width}x{height}"));
+    let turned = arguments(as_written, &advice.setting.quality);
+    format!("cargo run --release -- render {}{size}{turned}{flat}", file.display())
+}
+
+/// Of all ladders of samples.
+fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
+    let of_series = |series: &measure::Series| {
+        let samples: Vec<f64> = series.rungs.iter().filter_map(|(name, _)| name.parse().ok()).collect();
+        let round = |round: usize| {
+            let error = |(_, index): &(String, usize)| measured.points[*index].rmse.get(round).copied();
+            series.rungs.iter().map(error).collect::<Option<Vec<f64>>>()
+        };
+        let rounds: Vec<Vec<f64>> = (0..measured.rounds as usize).filter_map(round).collect();
+        Some((series.name.clone(), slope::slope(&samples, &rounds)?))
+    };
+    let of_samples = |series: &&measure::Series| matches!(series.knob, Knob::Samples | Knob::Sampler);
+    measured.series.iter().filter(of_samples).filter_map(of_series).collect()
+}
+
+/// The same scene with fewer pixels.
+fn shrunk(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
+    let share = (MOST_PIXELS / (width * height)).sqrt().min(1.0);
+    scene.film.width = ((width * share) as u32).max(1);
+    scene.film.height = ((height * share) as u32).max(1);
+    scene
+}
+
+/// Names the code that renders: another code has another reference.
+fn fingerprint(source: &Source) -> Result<String> {
+    let program = &source.program;
+    let bytes = std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))?;
+    Ok(reference::fingerprint([&bytes[..]]))
+}
+
+/// As it was started, for whoever wants to see it again.
+fn command(program: &str) -> String {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    format!("{program} {}", arguments.join(" "))
+}
+
+/// Set once somebody has pressed Ctrl-C; the second time ends the program.
+fn stopped_by_ctrl_c() -> Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let pressed = stop.clone();
+    ctrlc::set_handler(move || {
+        if pressed.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("\nstopping: the report of what has been measured comes next; once more ends at once");
+    })
+    .context("Ctrl-C cannot be listened to")?;
+    Ok(stop)
+}

@@ -1,0 +1,139 @@
+//! What can be asked of `raykata cost`.
+
+use super::ladder::Knob;
+use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
+use crate::kits::Choice;
+use crate::knobs::{Knobs, Threads};
+use std::path::PathBuf;
+
+/// `raykata cost`.
+pub static SPEC: Spec = Spec {
+    name: "raykata cost",
+    about: "Show which knob buys how much accuracy for how much time, and propose the best settings for a time or an \
+            error.",
+    arguments: &[Argument::optional("SCENE", "The scene, a TOML file; not with `--headline`.")],
+    options: &[
+        &[
+            Opt::flag(
+                "--headline",
+                "Instead of a scene: brute force against the hierarchy on a landscape of more and more triangles, on \
+                 3840 × 2160 pixels.",
+            ),
+            Opt::value("--most", "N", "How many triangles the largest landscape has [default: 12000000]."),
+            Opt::value("--knob", "LIST", "The knobs to turn [default: all that the scene calls for].")
+                .choices(&names(&Knob::NAMES))
+                .many(),
+            Opt::value(
+                "--budget",
+                "TIME",
+                "Propose the settings with the least error for so much time, such as 60s or 1500ms, in the scene's own \
+                 size.",
+            ),
+            Opt::value(
+                "--error",
+                "X",
+                "Propose the fastest settings with no more root mean square error than this.",
+            ),
+            Opt::value(
+                "--reference",
+                "N",
+                "Samples per pixel of the reference; more make its own error smaller [default: 1024].",
+            ),
+            Opt::value(
+                "--rounds",
+                "N",
+                "How often each picture is made, by turns and with other random numbers; medians and means count \
+                 [default: 5].",
+            ),
+            Opt::value("--seed", "N", "Picks the random numbers [default: 0]."),
+            Opt::value(
+                "--out",
+                "FOLDER",
+                "The folder for the report, plots and tables [default: out/NAME-cost].",
+            )
+            .short("-o"),
+        ],
+        Choice::OPTIONS,
+        Threads::OPTIONS,
+        Knobs::OPTIONS,
+    ],
+};
+
+/// Which scene, which knobs, and how long.
+pub struct Options {
+    /// None for the headline.
+    pub(super) scene: Option<PathBuf>,
+    pub(super) most: u64,
+    pub(super) turned: Vec<Knob>,
+    pub(super) kit: Choice,
+    pub(super) budget: Option<f64>,
+    pub(super) error: Option<f64>,
+    pub(super) reference: u32,
+    pub(super) rounds: u32,
+    pub(super) threads: Threads,
+    pub(super) seed: u64,
+    pub(super) knobs: Knobs,
+    pub(super) out: Option<PathBuf>,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        let (scene, headline) = (given.argument(0).map(PathBuf::from), given.has("--headline"));
+        match (&scene, headline) {
+            (Some(_), true) => return Err(given.misuse("`--headline` takes no SCENE")),
+            (None, false) => return Err(given.misuse("SCENE is missing")),
+            _ => {}
+        }
+        if given.has("--most") && !headline {
+            return Err(given.misuse("`--most` goes with `--headline`"));
+        }
+        given.exclude("--budget", "--error")?;
+        Ok(Options {
+            scene,
+            most: given.number("--most", 2..=16_000_000)?.unwrap_or(12_000_000),
+            turned: given.choices("--knob", &Knob::NAMES)?,
+            kit: Choice::read(given)?,
+            budget: given.parsed("--budget", parse_seconds)?,
+            error: given.parsed("--error", parse_error)?,
+            reference: given.number("--reference", 128..=1_048_576)?.unwrap_or(1024),
+            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
+            threads: Threads::read(given)?,
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
+            knobs: Knobs::read(given)?,
+            out: given.path("--out"),
+        })
+    }
+}
+
+/// `60s`, `1500ms`, `2m` or a number of seconds.
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let units = [("ms", 0.001), ("s", 1.0), ("m", 60.0), ("", 1.0)];
+    let number =
+        |(unit, scale): (&str, f64)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * scale);
+    match units.into_iter().find_map(number) {
+        Some(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("a time is a number above 0 with s, ms or m behind it, such as 60s".into()),
+    }
+}
+
+fn parse_error(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(error) if error > 0.0 && error.is_finite() => Ok(error),
+        _ => Err("an error is a number above 0, such as 0.01".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_read_as_people_write_them() {
+        let read = ["60s", "1500ms", "2m", "7", "0.5 s"].map(parse_seconds);
+        assert_eq!(read, [60.0, 1.5, 120.0, 7.0, 0.5].map(Ok));
+        for wrong in ["", "s", "-1s", "0", "inf", "soon"] {
+            assert!(parse_seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! The report: one HTML file that needs nothing else, for screens, phones and paper.
+
+use super::Told;
+use super::advice::Advice;
+use super::error::{heat, shown};
+use super::files::{expected_slope, plots};
+use super::ladder::Knob;
+use super::measure::Series;
+use super::table::{about_hits, about_kit_times, goal, named, verdict, waste};
+use crate::html::{around, base64, element, escape};
+use anyhow::{Context, Result};
+use image::RgbImage;
+use raykata::film::write_atomically;
+use std::io::Write;
+use std::path::Path;
+
+/// Writes the page.
+pub fn write(file: &Path, told: &Told<'_>) -> Result<()> {
+    let page = page(told)?;
+    write_atomically(file, |out| out.write_all(page.as_bytes()))
+        .with_context(|| format!("cannot write {}", file.display()))
+}
+
+fn page(told: &Told<'_>) -> Result<String> {
+    let title = format!("What accuracy costs: {}", told.scene);
+    let mut body = element("h1", &title);
+    let about = format!(
+        "{} × {} pixels by {}, {} rounds by turns, each with other random numbers. Errors are root mean squares in linear \
+         light, against {} samples a pixel, which are off by {:.1e} themselves. Times are medians. Made by {} in {:.0} s.",
+        told.width,
+        told.height,
+        told.kit,
+        told.measured.rounds,
+        told.reference_samples,
+        told.reference_error,
+        element("code", &told.command),
+        told.took
+    );
+    body += &around("p", "class=\"about\"", &about);
+    if told.partial {
+        let words = "Stopped before the end: this is what had been measured by then.";
+        body += &around("p", "class=\"warning\"", words);
+    }
+    if let Some(advice) = &told.advice {
+        body += &proposal(told, advice);
+    }
+    for (_, plot) in plots(told) {
+        body += &around("figure", "class=\"plot\"", &plot);
+    }
+    if !told.front.is_empty() {
+        let words = "The broad yellow line is the front: no setting that was measured is both faster and more accurate. \
+                     What leaks is left out of it.";
+        body += &around("p", "class=\"about\"", words);
+    }
+    for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+        body += &ladder(told, series)?;
+    }
+    body += &numerics(told);
+    body += &element("h2", "Not measured");
+    let mut left_out = String::new();
+    for (knob, why) in &told.not_offered {
+        left_out += &element("li", format!("{}: {why}", knob.name()));
+    }
+    for words in &told.measured.left_out {
+        left_out += &element("li", words);
+    }
+    for lacking in &told.measured.lacking {
+        left_out += &element("li", format!("Lacking: {lacking}"));
+    }
+    left_out += &element(
+        "li",
+        "Lens and time have no samples of their own: each sample of a pixel has its own place on the lens and its own moment.",
+    );
+    body += &around("ul", "", &left_out);
+    Ok(format!(
+        "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">{}<style>{}</style></head>\
+         <body>{body}</body></html>",
+        element("title", &title),
+        include_str!("style.css")
+    ))
+}
+
+/// A row of a table from cells of HTML, the first of which may be a head.
+fn row(cells: impl IntoIterator<Item = String>) -> String {
+    around("tr", "", &cells.into_iter().collect::<String>())
+}
+
+fn heads(heads: &[&str]) -> String {
+    row(heads.iter().map(|head| element("th", head)))
+}
+
+fn head_of_row(words: &str) -> String {
+    around("th", "scope=\"row\"", &escape(words))
+}
+
+fn proposal(told: &Told<'_>, advice: &Advice) -> String {
+    let values = advice.values.iter();
+    let values: String =
+        values.map(|(knob, value)| row([head_of_row(knob.name()), element("td", value)])).collect();
+    let mut text = element("h2", goal(told, advice)) + &around("table", "class=\"values\"", &values);
+    text.extend(verdict(advice).iter().map(|line| element("p", line)));
+    if !advice.steps.is_empty() {
+        let mut steps = heads(&["turn", "to", "error", "seconds in full size"]);
+        for step in &advice.steps {
+            steps += &row([
+                element("td", step.knob.name()),
+                element("td", &step.to),
+                element("td", format!("{:.4}", step.error)),
+                element("td", format!("{:.2}", step.seconds)),
+            ]);
+        }
+        let summary =
+            element("summary", "the way there: always the step that lowers the error most for its time");
+        text += &around("details", "", &(summary + &around("table", "", &steps)));
+    }
+    around("section", "class=\"advice\"", &text)
+}
+
+fn ladder(told: &Told<'_>, series: &Series) -> Result<String> {
+    let geometric = series.knob.is_geometric();
+    let name =
+        if series.knob == Knob::Sampler { format!("sampler: {}", series.name) } else { series.name.clone() };
+    let mut text = element("h2", name);
+    if let Some((name, slope)) = told.slopes.iter().find(|(name, _)| *name == series.name) {
+        let theory = expected_slope(told, name)
+            .map_or(String::new(), |theory| format!(" (in theory {theory} where there are edges)"));
+        let slope = element("b", format!("{:.2} ± {:.2}", slope.mean, slope.half_interval));
+        text += &around("p", "", &format!("Error falls as samples to the power {slope}{theory}"));
+    }
+    let mut columns = vec!["", "RMSE"];
+    columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
+    columns.extend(["ms", "rays a pixel", "tests a ray"]);
+    columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
+    let rungs = series.rungs.iter().map(|(value, index)| rung(told, value, *index, geometric));
+    let table = heads(&columns) + &rungs.collect::<String>();
+    text += &around("div", "class=\"wide\"", &around("table", "", &table));
+    if let Some(waste) = waste(told, series) {
+        text += &around("p", "class=\"waste\"", &escape(waste));
+    }
+    if let (true, Some(hits)) = (geometric, about_hits(told)) {
+        text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks {hits}.")));
+    }
+    if !geometric && series.knob != Knob::Sampler {
+        text += &pictures(told, series)?;
+    }
+    Ok(around("section", "", &text))
+}
+
+fn rung(told: &Told<'_>, value: &str, index: usize, is_geometric: bool) -> String {
+    let point = &told.measured.points[index];
+    let rays = point.counts.rays();
+    let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
+    let unbeaten = told.front.contains(&index);
+    let mark = if unbeaten { " •" } else { "" };
+    let mut cells = vec![format!("{:.5}", point.error())];
+    if !is_geometric {
+        cells.push(format!("{:.2e}", point.errors.relative_mse));
+        cells.push(format!("{:.4}", point.errors.similarity));
+    }
+    cells.push(format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread));
+    cells.push(format!("{:.2}", rays as f64 / (f64::from(told.width) * f64::from(told.height))));
+    cells.push(format!("{tests:.1}"));
+    if is_geometric {
+        cells.push(point.hits.map_or(String::new(), |hits| hits.wrong.to_string()));
+        cells.push(point.hits.map_or(String::new(), |hits| hits.leaks.to_string()));
+    }
+    let head = head_of_row(&format!("{}{mark}", named(told, value, index)));
+    let cells: String = cells.iter().map(|cell| element("td", cell)).collect();
+    around("tr", if unbeaten { "class=\"front\"" } else { "" }, &(head + &cells))
+}
+
+/// The cheapest, the middle and the dearest, and where they are wrong, on one scale.
+fn pictures(told: &Told<'_>, series: &Series) -> Result<String> {
+    let last = series.rungs.len() - 1;
+    let mut shown_rungs = vec![0, last / 2, last];
+    shown_rungs.dedup();
+    let worst = &told.measured.points[series.rungs[0].1];
+    // A pixel that is off by three times the mean of the cheapest is white.
+    let most = 3.0 * worst.error();
+    let mut figures = String::new();
+    for rung in shown_rungs {
+        let (value, index) = &series.rungs[rung];
+        let film = &told.measured.points[*index].film;
+        let picture = embedded(&shown(film)?)?;
+        let heat = embedded(&heat(film, &told.right.film, most))?;
+        let about = escape(format!("the picture with {} {value}", series.name));
+        let images =
+            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"where it is wrong\">");
+        figures += &around("figure", "", &(images + &element("figcaption", value)));
+    }
+    Ok(around("div", "class=\"pictures\"", &figures))
+}
+
+fn embedded(picture: &RgbImage) -> Result<String> {
+    let mut bytes = Vec::new();
+    let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+    picture.write_with_encoder(encoder).context("a picture cannot be encoded")?;
+    Ok(format!("data:image/png;base64,{}", base64(&bytes)))
+}
+
+fn numerics(told: &Told<'_>) -> String {
+    if told.numerics.is_empty() {
+        return String::new();
+    }
+    let mut table = heads(&["", "ns a test", "wrong in a million", "leaks in a million"]);
+    for one in &told.numerics {
+        table += &row([
+            head_of_row(&one.name),
+            element("td", format!("{:.1}", one.nanoseconds)),
+            element("td", format!("{:.0}", one.wrong_per_million)),
+            element("td", format!("{:.0}", one.leaks_per_million)),
+        ]);
+    }
+    let words = "Ray/triangle tests on hard inputs, judged exactly: verdicts that are wrong, and rays from inside closed \
+                 meshes that get out.";
+    let mut text = element("h2", "what right digits cost") + &around("p", "class=\"about\"", words);
+    text += &around("div", "class=\"wide\"", &around("table", "", &table));
+    if let Some(warning) = about_kit_times(told) {
+        text += &around("p", "class=\"about\"", warning);
+    }
+    around("section", "", &text)
+}

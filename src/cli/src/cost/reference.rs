@@ -1,0 +1,172 @@
+//! What is right: the same scene with so many samples that its own error hardly counts, kept between runs.
+//!
+//! It is made of batches with seeds of their own, the even ones and the odd ones apart. Half of what those two differ by
+//! is what is left of its own error. Each batch is kept, so a run that was stopped goes on where it was.
+
+use super::ladder::LEAST_DEPTH;
+use super::measure::Bench;
+use crate::report::bar_of_steps;
+use anyhow::{Context, Result};
+use glam::{DVec3, Vec3};
+use raykata::film::{Film, write_atomically};
+use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Samples a pixel of a batch.
+const BATCH: u32 = 64;
+
+/// Apart from the seeds of what is measured.
+const FIRST_SEED: u64 = 1 << 40;
+
+/// The reference of a scene.
+pub struct Reference {
+    pub film: Film,
+    /// Samples a pixel that it is made of.
+    pub samples: u32,
+    /// The error that it has itself: root mean square over all channels, in linear light.
+    pub own_error: f64,
+}
+
+/// Sums over batches.
+struct Sums {
+    batches: u32,
+    /// Of the even batches and of the odd ones.
+    halves: [Vec<DVec3>; 2],
+}
+
+/// How a kept reference begins. The number of batches follows, then the sums of the even batches and of the odd ones, as
+/// numbers of 8 bytes, little end first.
+const KEPT: &[u8; 8] = b"raykata1";
+
+/// The scene with all that costs time and changes what is seen at its best.
+pub fn converged(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.quality = Quality {
+        samples_per_pixel: BATCH,
+        sampler: Sampler::LowDiscrepancy,
+        light_samples: scene.quality.light_samples.max(1),
+        max_depth: scene.quality.max_depth.max(LEAST_DEPTH),
+        min_contribution: scene.quality.min_contribution.min(0.0003),
+        accelerator: Accelerator::Bvh,
+        split: Split::SurfaceArea,
+        ..scene.quality
+    };
+    scene
+}
+
+/// Makes the reference of `scene`, or goes on with what lies in `cache`, until it has `samples` a pixel. `code` names the
+/// code that renders. `None` if nobody wants it any more; what has been done is kept.
+pub fn reference(
+    bench: &Bench<'_>,
+    scene: &Scene,
+    samples: u32,
+    cache: &Path,
+    code: &str,
+) -> Result<Option<Reference>> {
+    let scene = converged(scene);
+    let file = file_of(&scene, cache, code)?;
+    let pixels = scene.film.width as usize * scene.film.height as usize;
+    let mut sums = read(&file, pixels).unwrap_or_else(|| Sums {
+        batches: 0,
+        halves: [vec![DVec3::ZERO; pixels], vec![DVec3::ZERO; pixels]],
+    });
+    // Two at least, or nobody knows how good it is.
+    let wanted = samples.div_ceil(BATCH).max(2);
+    let bar = bar_of_steps(wanted.saturating_sub(sums.batches) as usize);
+    bar.set_message("reference");
+    // More than was asked for does no harm.
+    while sums.batches < wanted {
+        let Some(frame) = bench.frame(&scene, FIRST_SEED + u64::from(sums.batches), false)? else {
+            bar.finish_and_clear();
+            return Ok(None);
+        };
+        let half = &mut sums.halves[sums.batches as usize % 2];
+        half.iter_mut().zip(&frame.film.pixels).for_each(|(sum, pixel)| *sum += pixel.as_dvec3());
+        sums.batches += 1;
+        write(&file, &sums)?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(Some(sums.reference(scene.film.width, scene.film.height)))
+}
+
+impl Sums {
+    fn reference(&self, width: u32, height: u32) -> Reference {
+        let odd = f64::from(self.batches / 2);
+        let even = f64::from(self.batches) - odd;
+        let [evens, odds] = &self.halves;
+        let pairs = || evens.iter().zip(odds);
+        let mean = |(a, b): (&DVec3, &DVec3)| -> Vec3 { ((a + b) / (even + odd)).as_vec3() };
+        // The mean of all is off by half of what two halves are off from each other.
+        let square: f64 = pairs().map(|(a, b)| ((a / even - b / odd) / 2.0).length_squared()).sum();
+        Reference {
+            film: Film { width, height, pixels: pairs().map(mean).collect() },
+            samples: self.batches * BATCH,
+            own_error: (square / (3 * evens.len()).max(1) as f64).sqrt(),
+        }
+    }
+}
+
+/// By everything that decides what is in it.
+fn file_of(scene: &Scene, cache: &Path, code: &str) -> Result<PathBuf> {
+    let scene = serde_json::to_vec(scene).context("the scene cannot be written down")?;
+    let name = fingerprint([code.as_bytes(), &scene]);
+    Ok(cache.join(format!("{name}.sums")))
+}
+
+/// Nothing, if there is none or it cannot be read: then it is made anew.
+fn read(file: &Path, pixels: usize) -> Option<Sums> {
+    let bytes = std::fs::read(file).ok()?;
+    let (batches, numbers) = bytes.strip_prefix(KEPT)?.split_first_chunk::<4>()?;
+    let (words, rest) = numbers.as_chunks::<8>();
+    let numbers: Vec<f64> = words.iter().map(|word| f64::from_le_bytes(*word)).collect();
+    let whole = rest.is_empty() && numbers.len() == 2 * 3 * pixels;
+    let sums: Vec<DVec3> = numbers.chunks_exact(3).map(DVec3::from_slice).collect();
+    let (even, odd) = sums.split_at_checked(pixels)?;
+    whole.then(|| Sums { batches: u32::from_le_bytes(*batches), halves: [even.to_vec(), odd.to_vec()] })
+}
+
+fn write(file: &Path, sums: &Sums) -> Result<()> {
+    crate::report::make_folder_of(file)?;
+    let numbers = sums.halves.iter().flatten().flat_map(|sum| sum.to_array()).flat_map(f64::to_le_bytes);
+    let bytes: Vec<u8> = KEPT.iter().copied().chain(sums.batches.to_le_bytes()).chain(numbers).collect();
+    write_atomically(file, |out| out.write_all(&bytes))
+        .with_context(|| format!("cannot keep the reference in {}", file.display()))
+}
+
+/// A name for these bytes: FNV-1a with 128 bits. It tells files apart and proves nothing.
+pub fn fingerprint<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String {
+    let mut hash = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128;
+    for part in parts {
+        for byte in part.iter().chain(&part.len().to_le_bytes()) {
+            hash = (hash ^ u128::from(*byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+        }
+    }
+    format!("{hash:032x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_comes_back_to_the_last_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("deeper/one.sums");
+        let sum = DVec3::new(0.1, 1.0 / 3.0, -1e-300);
+        write(&file, &Sums { batches: 3, halves: [vec![sum; 2], vec![-sum; 2]] }).unwrap();
+        let back = read(&file, 2).unwrap();
+        assert_eq!((back.batches, back.halves), (3, [vec![sum; 2], vec![-sum; 2]]));
+        assert!(read(&file, 3).is_none(), "that is of another picture");
+        std::fs::write(&file, "half a fi").unwrap();
+        assert!(read(&file, 2).is_none());
+    }
+
+    #[test]
+    fn the_error_of_a_reference_is_that_of_its_mean() {
+        let sums = Sums { batches: 2, halves: [vec![DVec3::splat(1.0)], vec![DVec3::splat(3.0)]] };
+        let reference = sums.reference(1, 1);
+        assert_eq!((reference.film.pixels[0], reference.own_error), (Vec3::splat(2.0), 1.0));
+    }
+}

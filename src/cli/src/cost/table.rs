@@ -1,0 +1,222 @@
+//! The table in the terminal.
+
+use super::Told;
+use super::advice::{Advice, Goal};
+use super::files::expected_slope;
+use super::ladder::Knob;
+use super::measure::Series;
+use crate::report::Thousands;
+
+/// Prints it.
+pub fn print(told: &Told<'_>) {
+    println!(
+        "{}: {} × {} pixels, {} {}, times are medians ± half the distance of their quartiles\n",
+        told.scene,
+        told.width,
+        told.height,
+        told.measured.rounds,
+        if told.measured.rounds == 1 { "round" } else { "rounds" }
+    );
+    println!(
+        "{:<32}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
+        "",
+        "RMSE",
+        "rel. MSE",
+        "similarity",
+        "ms a picture",
+        "rays/pixel",
+        "tests/ray",
+        "wrong hits",
+        "leaks"
+    );
+    for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+        println!("{}{}", heading(series), slope(told, series));
+        for (name, index) in &series.rungs {
+            let point = &told.measured.points[*index];
+            let rays = point.counts.rays();
+            let tests = point.counts.box_tests + point.counts.primitive_tests;
+            let hits = point.hits.filter(|_| series.knob.is_geometric());
+            println!(
+                "  {:<28}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
+                named(told, name, *index),
+                if told.front.contains(index) { "•" } else { " " },
+                point.error(),
+                point.errors.relative_mse,
+                point.errors.similarity,
+                format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
+                rays as f64 / (f64::from(told.width) * f64::from(told.height)),
+                tests as f64 / rays.max(1) as f64,
+                hits.map_or(String::new(), |hits| hits.wrong.to_string()),
+                hits.map_or(String::new(), |hits| hits.leaks.to_string()),
+            );
+        }
+        if let Some(waste) = waste(told, series) {
+            println!("    {waste}");
+        }
+    }
+    println!("  • no other setting here is both faster and more accurate; what leaks is left out of it");
+    if let Some(hits) = about_hits(told) {
+        println!("  wrong hits and leaks: {hits}");
+    }
+    for left_out in &told.measured.left_out {
+        println!("  left out: {left_out}");
+    }
+    for lacking in &told.measured.lacking {
+        println!("  lacking: {lacking}");
+    }
+    numerics(told);
+    if let Some(advice) = &told.advice {
+        print_advice(told, advice);
+    }
+    if told.partial {
+        println!("\nstopped before the end: what is above is what had been measured by then");
+    }
+}
+
+/// What was judged, if anything was.
+pub fn about_hits(told: &Told<'_>) -> Option<String> {
+    let rays = told.measured.points.iter().find_map(|point| point.hits)?.rays;
+    Some(format!(
+        "of {} rays from the eye, through the picture and at edges and corners that are seen, against exact arithmetic; a \
+         leak goes through a closed surface, other wrong hits are neighbours that a rounding chose",
+        Thousands(rays)
+    ))
+}
+
+/// The scene's own value is marked.
+pub fn named(told: &Told<'_>, name: &str, index: usize) -> String {
+    if told.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
+}
+
+fn heading(series: &Series) -> String {
+    match series.knob {
+        Knob::Sampler => format!("sampler: {}, samples a pixel", series.name),
+        knob => knob.name().into(),
+    }
+}
+
+fn slope(told: &Told<'_>, series: &Series) -> String {
+    let Some((name, slope)) = told.slopes.iter().find(|(name, _)| *name == series.name) else {
+        return String::new();
+    };
+    let theory = expected_slope(told, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
+    format!(": error falls as samples to the power {:.2} ± {:.2}{theory}", slope.mean, slope.half_interval)
+}
+
+/// Errors that differ by less are the same to anybody.
+const SAME: f64 = 0.02;
+
+/// From where on a knob takes time and gives nothing.
+pub fn waste(told: &Told<'_>, series: &Series) -> Option<String> {
+    if series.knob.is_geometric() {
+        return None;
+    }
+    let point = |index: usize| &told.measured.points[series.rungs[index].1];
+    let last = series.rungs.len().checked_sub(1)?;
+    let end = point(last);
+    let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
+    let times = end.seconds / point(enough).seconds;
+    let takes = match times {
+        // A fiftieth is within what times wobble by.
+        times if times < 1.0 + SAME => "and takes no more time that could be measured".into(),
+        times => format!("and takes up to {times:.2} times as long"),
+    };
+    let (rung, same) = (&series.rungs[enough].0, 100.0 * SAME);
+    Some(format!("beyond {rung} it gives less than {same:.0} % more accuracy, {takes}"))
+}
+
+fn numerics(told: &Told<'_>) {
+    let numerics = &told.numerics;
+    if numerics.is_empty() {
+        return;
+    }
+    println!(
+        "\n{:<36}{:>10}{:>22}{:>22}",
+        "ray/triangle tests, judged exactly", "ns", "wrong in a million", "leaks in a million"
+    );
+    for one in numerics {
+        println!(
+            "  {:<34}{:>10.1}{:>22}{:>22}",
+            one.name,
+            one.nanoseconds,
+            Thousands(one.wrong_per_million.round() as u64).to_string(),
+            Thousands(one.leaks_per_million.round() as u64).to_string()
+        );
+    }
+    if let Some(warning) = about_kit_times(told) {
+        println!("  {warning}");
+    }
+}
+
+/// What the times of a kit in a process of its own say.
+pub fn about_kit_times(told: &Told<'_>) -> Option<&'static str> {
+    told.numerics.iter().any(|one| one.name.starts_with("kit")).then_some(
+        "kit: questions go to a process of their own and answers come back, and that counts in its ns; wrong hits and \
+         leaks do not change",
+    )
+}
+
+fn print_advice(told: &Told<'_>, advice: &Advice) {
+    println!("\n{}", goal(told, advice));
+    for (knob, value) in &advice.values {
+        println!("  {:<22}{value}", knob.name());
+    }
+    for line in verdict(advice) {
+        println!("  {line}");
+    }
+}
+
+/// What is proposed, in a sentence.
+pub fn goal(told: &Told<'_>, advice: &Advice) -> String {
+    let size = format!("{} × {} pixels", told.full_width, told.full_height);
+    match advice.goal {
+        Goal::Seconds(budget) => format!("the best for {budget:.1} s and {size}:"),
+        Goal::Error(error) => format!("the fastest with an error of at most {error}, at {size}:"),
+    }
+}
+
+/// What it comes to, and what it says about the scene's own settings.
+pub fn verdict(advice: &Advice) -> Vec<String> {
+    let mut lines = vec![format!(
+        "expected: error {:.4}, {:.2} s; the scene's own settings: error {:.4}, {:.2} s",
+        advice.expected_error, advice.expected_seconds, advice.own_error, advice.own_seconds
+    )];
+    if let (Some(error), Some(seconds)) = (advice.verified_error, advice.verified_seconds) {
+        lines.push(format!("rendered, with other random numbers: error {error:.4}, {seconds:.2} s"));
+    }
+    lines.push(format!("to render it: {}", advice.command));
+    match advice.goal {
+        Goal::Seconds(budget) if advice.verified_seconds.is_some_and(|seconds| seconds > budget) => {
+            lines.push(
+                "that is longer than asked for: times wobble by some percent from one picture to the next"
+                    .into(),
+            );
+        }
+        Goal::Error(target) if advice.expected_error > target => {
+            lines.push(format!("no rung of these ladders comes to {target}: this is the closest"));
+        }
+        _ => {}
+    }
+    let spent: Vec<&str> =
+        advice.steps.iter().map(|step| step.knob.name()).fold(Vec::new(), |mut names, name| {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+            names
+        });
+    if !spent.is_empty() {
+        lines.push(format!("time is spent on {}", spent.join(", ")));
+    }
+    lines.extend(advice.passed_over.iter().map(|sentence| format!("not by what leaks: {sentence}")));
+    let wasted = advice.left.iter().filter(|left| left.error_factor > 1.0 - SAME);
+    for left in wasted {
+        lines.push(format!(
+            "not on {} beyond {}: one step more takes {:.2} times as long for {:.2} times the error",
+            left.knob.name(),
+            left.at,
+            left.time_factor,
+            left.error_factor
+        ));
+    }
+    lines
+}

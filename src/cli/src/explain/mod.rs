@@ -1,0 +1,229 @@
+//! `raykata explain`: what a scene calls for, which part of it asked, what each effect costs, and what is left out.
+
+mod subsets;
+mod why;
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::kits::{Choice, Need, Source, root};
+use crate::knobs::Knobs;
+use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
+use anyhow::{Context, Result};
+use raykata::count::Counts;
+use raykata::effects::{Effect, Effects};
+use raykata::frame::Unwatched;
+use raykata::kit::{BoundQuery, Kit, RenderJob, View, mishap};
+use raykata::scene::Scene;
+use std::path::PathBuf;
+
+/// `raykata explain`.
+pub static SPEC: Spec = Spec {
+    name: "raykata explain",
+    about: "Say what a scene calls for, why, what it costs, and what is left out.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[
+            Opt::value(
+                "--rounds",
+                "N",
+                "How often each picture is made: once with everything and once without each effect, by turns \
+                 [default: 5].",
+            ),
+            Opt::flag(
+                "--subsets",
+                "Instead: what each set of the effects takes that the scene calls for, 2ⁿ lines for n effects.",
+            ),
+        ],
+        Choice::OPTIONS,
+        Knobs::OPTIONS,
+    ],
+};
+
+/// Which scene, and how long to measure.
+pub struct Options {
+    scene: PathBuf,
+    kit: Choice,
+    rounds: u32,
+    knobs: Knobs,
+    subsets: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            scene: given.required(0)?.into(),
+            kit: Choice::read(given)?,
+            rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
+            knobs: Knobs::read(given)?,
+            subsets: given.has("--subsets"),
+        })
+    }
+}
+
+/// A scene that was looked through.
+struct Explained<'a> {
+    scene: &'a Scene,
+    kit: &'a dyn Kit,
+    effects: Effects,
+}
+
+impl Explained<'_> {
+    fn called_for(&self) -> Vec<Effect> {
+        Effect::ALL.into_iter().filter(|&effect| self.effects.calls_for(effect)).collect()
+    }
+}
+
+/// Looks through the scene, measures, and prints.
+pub fn run(options: &Options) -> Result<()> {
+    let mut scene = load_scene(&options.scene)?;
+    options.knobs.apply(&mut scene);
+    let root = root()?;
+    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let kit = &*source.fresh();
+    let effects = mishap::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
+    let explained = Explained { scene: &scene, kit, effects };
+    let (film, samples) = (scene.film, scene.quality.samples_per_pixel);
+    println!(
+        "{}: {} × {} pixels, {samples} {} each\n",
+        options.scene.display(),
+        film.width,
+        film.height,
+        if samples == 1 { "sample" } else { "samples" }
+    );
+    if options.subsets {
+        return subsets::print(&explained);
+    }
+    asked(&explained);
+    cost(&explained, options.rounds)?;
+    bounds(&explained)
+}
+
+fn asked(explained: &Explained<'_>) {
+    let Explained { scene, effects, .. } = explained;
+    println!("called for        by");
+    for effect in Effect::ALL {
+        let asking = why::asked_by(effect, scene, effects);
+        if !asking.is_empty() {
+            println!("  {effect:<14}  {}", why::list(&asking));
+        }
+    }
+    println!("\nnot simulated     because");
+    for effect in Effect::ALL.into_iter().filter(|&effect| !effects.calls_for(effect)) {
+        println!("  {effect:<14}  {}", why::not_asked(effect, scene));
+    }
+    for (index, light) in effects.lights.iter().enumerate().filter(|(_, light)| light.samples == 0) {
+        println!("  lamp {:<9}  it gives no light", index + 1);
+        debug_assert!(!light.shadows);
+    }
+    let shown = scene.shown();
+    for (index, name) in scene.material_names.iter().enumerate().skip(1) {
+        if !shown.iter().any(|shape| shape.materials.contains(&index)) {
+            println!("  {:<14}  nothing is made of it", format!("`{name}`"));
+        }
+    }
+    println!();
+}
+
+/// A picture, measured.
+fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
+    let rendering = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+    Ok((rendering.counts, rendering.render_seconds))
+}
+
+/// Renders the scene with everything, and without each effect, by turns, and prints what the difference is.
+fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
+    let called = explained.called_for();
+    let scenes: Vec<Scene> = std::iter::once(explained.scene.clone())
+        .chain(called.iter().map(|effect| effect.removed_from(explained.scene)))
+        .collect();
+    let mut counts = vec![Counts::default(); scenes.len()];
+    let mut seconds = vec![Vec::new(); scenes.len()];
+    let bar = bar_of_steps(rounds as usize * scenes.len());
+    for _ in 0..rounds {
+        for (index, scene) in scenes.iter().enumerate() {
+            let (counted, took) = render(explained.kit, scene.clone())?;
+            counts[index] = counted;
+            seconds[index].push(took);
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+
+    let with = &seconds[0];
+    println!(
+        "{:<16}  {:>13}  {:>15}  {:>13}  {:>16}",
+        "costs", "its rays", "random numbers", "image reads", "share of time"
+    );
+    for (index, effect) in called.iter().enumerate() {
+        let without = &seconds[index + 1];
+        // Each round is a pair of pictures made within moments of each other.
+        let shares = with.iter().zip(without).map(|(with, without)| 100.0 * (1.0 - without / with)).collect();
+        let (share, spread) = median_and_spread(shares);
+        let [all, rest] = [&counts[0], &counts[index + 1]];
+        println!(
+            "  {effect:<14}  {:>13}  {:>15}  {:>13}  {:>16}",
+            signed(all.rays(), rest.rays()),
+            signed(all.random_numbers, rest.random_numbers),
+            signed(all.texture_reads, rest.texture_reads),
+            format!("{share:.0} % ± {spread:.0}")
+        );
+    }
+    let (whole, spread) = median_and_spread(with.clone());
+    println!(
+        "  {:<14}  {:>13}  {:>15}  {:>13}  {:>16}",
+        "everything",
+        Thousands(counts[0].rays()).to_string(),
+        Thousands(counts[0].random_numbers).to_string(),
+        Thousands(counts[0].texture_reads).to_string(),
+        format!("{whole:.3} s ± {spread:.3}")
+    );
+    println!(
+        "  Each line is what the picture costs less without that effect; they need not add up, for a mirror shows\n  \
+         shadows. Times are medians of {rounds} {} with their median deviation, all pictures by turns.\n",
+        if rounds == 1 { "round" } else { "rounds" }
+    );
+    Ok(())
+}
+
+/// The median, and the median of how far values are from it.
+fn median_and_spread(values: Vec<f64>) -> (f64, f64) {
+    let [_, middle, _] = quartiles(values.clone());
+    let [_, deviation, _] = quartiles(values.iter().map(|value| (value - middle).abs()).collect());
+    (middle, deviation)
+}
+
+/// `with - without`, with its sign.
+fn signed(with: u64, without: u64) -> String {
+    match with.checked_sub(without) {
+        Some(more) => Thousands(more).to_string(),
+        None => format!("-{}", Thousands(without - with)),
+    }
+}
+
+/// Rays as predicted and as counted.
+fn bounds(explained: &Explained<'_>) -> Result<()> {
+    let Explained { scene, kit, effects } = explained;
+    let query = BoundQuery { scene: (*scene).clone(), effects: effects.clone() };
+    let most = mishap::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
+    let (counted, _) = render(*kit, (*scene).clone())?;
+    println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
+    let lines = [
+        ("from the camera", most.primary, counted.primary),
+        ("to lamps", most.shadow, counted.shadow),
+        ("off mirrors", most.reflection, counted.reflection),
+        ("through surfaces", most.transmission, counted.transmission),
+    ];
+    for (what, most, counted) in lines {
+        let most = if most == u64::MAX { "beyond counting".to_owned() } else { Thousands(most).to_string() };
+        println!("  {what:<16}  {most:>18}  {:>13}", Thousands(counted).to_string());
+    }
+    let seen = counted.primary + counted.reflection + counted.transmission;
+    println!(
+        "  {} of the {} rays that look for a surface met one; only there are lamps asked about, and only those in \
+         front of it.",
+        Thousands(counted.hits),
+        Thousands(seen)
+    );
+    Ok(())
+}

@@ -1,0 +1,290 @@
+//! Whose code answers: the exercises or the solutions. Both are worker programs, which cargo builds when they are needed
+//! and which are reached through a pipe; this program links neither.
+
+use crate::args::{Given, Misuse, Opt, names};
+use crate::worker::{CALL_PATIENCE, Worker};
+use anyhow::{Context, Result, bail};
+use raykata::kit::{Door, Kit};
+use std::io::{BufRead, BufReader, IsTerminal};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+
+/// Whose code to use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Your code in exercises/.
+    Exercises,
+    /// The reference in solutions/.
+    Solutions,
+}
+
+impl Which {
+    /// The names of both.
+    pub const NAMES: [(&str, Which); 2] = [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
+
+    /// The name of the package.
+    pub fn package(self) -> &'static str {
+        match self {
+            Which::Exercises => "exercises",
+            Which::Solutions => "solutions",
+        }
+    }
+}
+
+/// Whose code a command uses, where there is a choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Choice(Option<Which>);
+
+impl Choice {
+    /// As an option.
+    pub const OPTIONS: &[Opt] = &[Opt::value(
+        "--kit",
+        "NAME",
+        "Whose code to use [default: solutions where there are any, else exercises; for `check`: exercises].",
+    )
+    .choices(&names(&Which::NAMES))];
+
+    /// As it was given.
+    pub fn read(given: &Given) -> Result<Choice, Misuse> {
+        Ok(Choice(given.choice("--kit", &Which::NAMES)?))
+    }
+
+    /// The solutions, if nothing else was said and there are any: a student's repository has none.
+    pub fn or_reference(self, root: &Path) -> Which {
+        let default = if has_solutions(root) { Which::Solutions } else { Which::Exercises };
+        self.0.unwrap_or(default)
+    }
+
+    /// The exercises, if nothing else was said.
+    pub fn or_exercises(self) -> Which {
+        self.0.unwrap_or(Which::Exercises)
+    }
+}
+
+fn has_solutions(root: &Path) -> bool {
+    root.join("solutions/Cargo.toml").is_file()
+}
+
+/// What must be added to a command so that it uses the exercises.
+pub fn with_exercises(root: &Path) -> &'static str {
+    if has_solutions(root) { " --kit exercises" } else { "" }
+}
+
+/// What a worker is needed for. Frames take a renderer, which takes a while to build.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Need {
+    /// Frames, and all functions that students write.
+    Frames,
+    /// The functions that students write.
+    Checks,
+}
+
+/// The cargo feature of `exercises` and `solutions` that builds the renderer.
+const FRAMES: &str = "frames";
+
+impl Need {
+    /// The feature that a worker must be built with.
+    pub fn feature(self) -> Option<&'static str> {
+        (self == Need::Frames).then_some(FRAMES)
+    }
+}
+
+/// A source of fresh kits.
+pub struct Source {
+    /// Whose code it is.
+    pub which: Which,
+    /// The program of the worker.
+    pub program: PathBuf,
+}
+
+impl Source {
+    /// Builds the worker if need be.
+    pub fn prepare(root: &Path, which: Which, need: Need) -> Result<Source> {
+        Ok(Source { which, program: build_worker(root, which, need)? })
+    }
+
+    /// A kit that no call has touched yet.
+    pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
+        Arc::new(Door(Worker::new(self.program.clone(), CALL_PATIENCE)))
+    }
+}
+
+/// A program of this workspace.
+#[derive(Clone, Copy, Debug)]
+pub struct Program {
+    /// The package that it is in.
+    pub package: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// A feature that it must be built with.
+    pub feature: Option<&'static str>,
+}
+
+impl Program {
+    /// The worker of a kit.
+    pub fn worker(which: Which, need: Need) -> Program {
+        let name = match which {
+            Which::Exercises => "exercises-worker",
+            Which::Solutions => "solutions-worker",
+        };
+        Program { package: which.package(), name, feature: need.feature() }
+    }
+
+    /// What tells students what their exercises are worth.
+    pub const JUDGE: Program = Program { package: "judge", name: "judge", feature: None };
+
+    fn file(&self) -> String {
+        format!("{}{}", self.name, std::env::consts::EXE_SUFFIX)
+    }
+}
+
+/// Builds the worker of a kit, in the profile of this program, and says where it is.
+pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
+    let what = match which {
+        Which::Exercises => "your exercises",
+        Which::Solutions => "the solutions",
+    };
+    let built = build(root, what, &[Program::worker(which, need)])?;
+    built.into_iter().next().context("nothing was built")
+}
+
+/// Builds programs of the workspace at `root`, in the profile of this program, and says where they are. When there is
+/// something to build, the output of cargo is shown behind a line that says what is built.
+pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
+    for program in programs {
+        if program.package == Which::Solutions.package() && !has_solutions(root) {
+            bail!("there are no solutions in {}: leave out `--kit solutions`", root.display());
+        }
+    }
+    let here = std::env::current_exe().context("this program cannot find itself")?;
+    let folder = here.parent().context("this program is in no folder")?;
+    let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root).arg("build");
+    for program in programs {
+        cargo.args(["--package", program.package, "--bin", program.name]);
+        if let Some(feature) = program.feature {
+            cargo.arg("--features").arg(format!("{}/{feature}", program.package));
+        }
+    }
+    match folder.file_name().and_then(|name| name.to_str()) {
+        None | Some("debug") => {}
+        Some(profile) => _ = cargo.args(["--profile", profile]),
+    }
+    if let Some(target) = folder.parent() {
+        cargo.arg("--target-dir").arg(target);
+    }
+    if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
+        cargo.env("CARGO_TERM_COLOR", "always");
+    }
+    let started = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
+    let mut running = started.context("cargo, which builds the exercises, cannot be started")?;
+    let mut shown = Shown { what, held_back: Vec::new(), building: false };
+    if let Some(stderr) = running.stderr.take() {
+        for line in BufReader::new(stderr).split(b'\n') {
+            shown.line(String::from_utf8_lossy(&line?).into_owned());
+        }
+    }
+    if !running.wait()?.success() {
+        shown.begin();
+        bail!("{what} cannot be built: the compiler says above what is wrong");
+    }
+    programs.iter().map(|program| placed(folder, program)).collect()
+}
+
+/// Where cargo has put a program. One that was built with a feature gets a name of its own: the same program without the
+/// feature would take its place.
+fn placed(folder: &Path, program: &Program) -> Result<PathBuf> {
+    let built = folder.join(program.file());
+    let Some(feature) = program.feature else { return Ok(built) };
+    let kept = folder.join(format!("{}-{feature}{}", program.name, std::env::consts::EXE_SUFFIX));
+    let time = |file: &Path| std::fs::metadata(file).and_then(|file| file.modified()).ok();
+    if time(&built).is_none() || time(&built) != time(&kept) {
+        let draft = folder.join(format!("{}-{feature}.{}", program.name, std::process::id()));
+        let copy = || {
+            std::fs::copy(&built, &draft)?;
+            if let Some(time) = time(&built) {
+                std::fs::File::options().append(true).open(&draft)?.set_modified(time)?;
+            }
+            std::fs::rename(&draft, &kept)
+        };
+        copy().with_context(|| format!("cannot write {}", kept.display()))?;
+    }
+    Ok(kept)
+}
+
+/// What is shown of the output of cargo: nothing, while everything is up to date.
+struct Shown<'a> {
+    what: &'a str,
+    /// Warnings of what was built before.
+    held_back: Vec<String>,
+    building: bool,
+}
+
+impl Shown<'_> {
+    fn line(&mut self, line: String) {
+        let plain = without_colours(&line);
+        let word = plain.split_whitespace().next().unwrap_or_default();
+        let begins =
+            ["Compiling", "Blocking", "Downloading", "Downloaded", "Updating", "Locking", "Building"];
+        if begins.contains(&word) {
+            self.begin();
+        }
+        match word {
+            "Finished" => {}
+            _ if self.building => eprintln!("{line}"),
+            _ => self.held_back.push(line),
+        }
+    }
+
+    /// From here on everything is shown.
+    fn begin(&mut self) {
+        if !self.building {
+            eprintln!("building {} …", self.what);
+            self.building = true;
+        }
+        self.held_back.drain(..).for_each(|line| eprintln!("{line}"));
+    }
+}
+
+fn without_colours(line: &str) -> String {
+    let mut plain = String::new();
+    let mut inside = false;
+    for letter in line.chars() {
+        match letter {
+            '\u{1b}' => inside = true,
+            'm' if inside => inside = false,
+            _ if inside => {}
+            _ => plain.push(letter),
+        }
+    }
+    plain
+}
+
+/// The folder of the kit: the one with `exercises/` at or above the current folder, or else above this program.
+pub fn root() -> Result<PathBuf> {
+    let here = std::env::current_dir().context("the current folder is gone")?;
+    let program = std::env::current_exe().unwrap_or_default();
+    let is_kit = |folder: &&Path| {
+        folder.join("exercises/Cargo.toml").is_file() && folder.join("tests/rubric.toml").is_file()
+    };
+    match here.ancestors().chain(program.ancestors()).find(is_kit) {
+        Some(root) => Ok(root.to_owned()),
+        None => bail!(
+            "no kit at or above {}: go to the folder that holds exercises/ and try again",
+            here.display()
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_colours;
+
+    #[test]
+    fn colours_are_no_words() {
+        assert_eq!(without_colours("\u{1b}[1m\u{1b}[92m   Compiling\u{1b}[0m glam"), "   Compiling glam");
+        assert_eq!(without_colours("memory"), "memory");
+    }
+}

@@ -1,0 +1,239 @@
+//! The knobs of a scene on the command line, the same for all commands that render.
+
+use crate::args::{Given, Misuse, Opt, names};
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
+
+/// How many threads render, the same for all commands.
+pub struct Threads(u16);
+
+impl Threads {
+    /// As an option.
+    pub const OPTIONS: &[Opt] =
+        &[Opt::value("--threads", "N", "Threads; 0 takes one per core [default: 0].")];
+
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Threads, Misuse> {
+        Ok(Threads(given.number("--threads", 0..=1024)?.unwrap_or(0)))
+    }
+
+    /// As a job takes it.
+    pub fn count(&self) -> usize {
+        usize::from(self.0)
+    }
+}
+
+/// Accuracy against time; what is not named stays as the scene says.
+#[derive(Default)]
+pub struct Knobs {
+    size: Option<(u32, u32)>,
+    spp: Option<u32>,
+    sampler: Option<Sampler>,
+    light_samples: Option<u32>,
+    gloss_samples: Option<u32>,
+    depth: Option<u32>,
+    split: Option<Split>,
+    leaf_size: Option<u32>,
+    accelerator: Option<Accelerator>,
+    grid_resolution: Option<u32>,
+    triangles: Option<TriangleMethod>,
+    precision: Option<Precision>,
+    min_contribution: Option<f32>,
+}
+
+/// Samplers by the names that scene files use, with `-` for `_`; so are the other lists here.
+pub(crate) const SAMPLERS: [(&str, Sampler); 5] = [
+    ("center", Sampler::Center),
+    ("random", Sampler::Random),
+    ("jittered", Sampler::Jittered),
+    ("gaussian", Sampler::Gaussian),
+    ("low-discrepancy", Sampler::LowDiscrepancy),
+];
+
+const SPLITS: [(&str, Split); 3] = [
+    ("object-median", Split::ObjectMedian),
+    ("spatial-median", Split::SpatialMedian),
+    ("surface-area", Split::SurfaceArea),
+];
+
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 11] = [
+    ("brute-force", Accelerator::BruteForce),
+    ("bounding-boxes", Accelerator::BoundingBoxes),
+    ("bounding-spheres", Accelerator::BoundingSpheres),
+    ("bvh", Accelerator::Bvh),
+    ("cached-bvh", Accelerator::CachedBvh),
+    ("packet-bvh", Accelerator::PacketBvh),
+    ("grid", Accelerator::Grid),
+    ("octree", Accelerator::Octree),
+    ("octree-by-cells", Accelerator::OctreeByCells),
+    ("kd-tree", Accelerator::KdTree),
+    ("bsp", Accelerator::Bsp),
+];
+
+const TRIANGLES: [(&str, TriangleMethod); 3] = [
+    ("cramer", TriangleMethod::Cramer),
+    ("gram", TriangleMethod::Gram),
+    ("watertight", TriangleMethod::Watertight),
+];
+
+const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
+
+impl Knobs {
+    /// As options.
+    pub const OPTIONS: &[Opt] = &[
+        Opt::value(
+            "--size",
+            "WxH",
+            "Size in pixels, such as 640x360 [default: the scene's, as for all below].",
+        ),
+        Opt::value("--spp", "N", "Samples per pixel."),
+        Opt::value("--sampler", "NAME", "Where the samples of a pixel lie.").choices(&names(&SAMPLERS)),
+        Opt::value("--light-samples", "N", "Places on an area light that a hit asks about."),
+        Opt::value("--gloss-samples", "N", "Rays that go on from a rough surface."),
+        Opt::value("--depth", "N", "How often a ray may be reflected or refracted."),
+        Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
+        Opt::value("--leaf-size", "N", "Most primitives in a leaf."),
+        Opt::value("--accelerator", "NAME", "What finds the closest hit.").choices(&names(&ACCELERATORS)),
+        Opt::value(
+            "--grid-resolution",
+            "N",
+            "Cells of a grid along its longest side; 0 takes the formula's number.",
+        ),
+        Opt::value("--triangles", "NAME", "Ray/triangle test.").choices(&names(&TRIANGLES)),
+        Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
+        Opt::value("--min-contribution", "X", "Rays of less weight are not traced, 0 to 1."),
+    ];
+
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Knobs, Misuse> {
+        Ok(Knobs {
+            size: given.parsed("--size", parse_size)?,
+            spp: given.number("--spp", 1..=65_536)?,
+            sampler: given.choice("--sampler", &SAMPLERS)?,
+            light_samples: given.number("--light-samples", 0..=65_536)?,
+            gloss_samples: given.number("--gloss-samples", 1..=65_536)?,
+            depth: given.number("--depth", 0..=1000)?,
+            split: given.choice("--split", &SPLITS)?,
+            leaf_size: given.number("--leaf-size", 1..=u32::MAX)?,
+            accelerator: given.choice("--accelerator", &ACCELERATORS)?,
+            grid_resolution: given.number("--grid-resolution", 0..=1024)?,
+            triangles: given.choice("--triangles", &TRIANGLES)?,
+            precision: given.choice("--precision", &PRECISIONS)?,
+            min_contribution: given.parsed("--min-contribution", parse_share)?,
+        })
+    }
+
+    /// Whether the picture has a size that somebody asked for.
+    pub fn names_a_size(&self) -> bool {
+        self.size.is_some()
+    }
+
+    /// Turns the knobs of the scene that were named.
+    pub fn apply(&self, scene: &mut Scene) {
+        if let Some((width, height)) = self.size {
+            (scene.film.width, scene.film.height) = (width, height);
+        }
+        let quality = &mut scene.quality;
+        quality.samples_per_pixel = self.spp.unwrap_or(quality.samples_per_pixel);
+        quality.sampler = self.sampler.unwrap_or(quality.sampler);
+        quality.light_samples = self.light_samples.unwrap_or(quality.light_samples);
+        quality.gloss_samples = self.gloss_samples.unwrap_or(quality.gloss_samples);
+        quality.max_depth = self.depth.unwrap_or(quality.max_depth);
+        quality.leaf_size = self.leaf_size.unwrap_or(quality.leaf_size);
+        quality.split = self.split.unwrap_or(quality.split);
+        quality.accelerator = self.accelerator.unwrap_or(quality.accelerator);
+        quality.grid_resolution = self.grid_resolution.unwrap_or(quality.grid_resolution);
+        quality.triangle_method = self.triangles.unwrap_or(quality.triangle_method);
+        quality.precision = self.precision.unwrap_or(quality.precision);
+        quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
+    }
+}
+
+/// The arguments that turn the knobs of `own` to where `wanted` has them, as far as they differ.
+pub fn arguments(own: &Quality, wanted: &Quality) -> String {
+    let values = |quality: &Quality| {
+        let named = |value: serde_json::Result<serde_json::Value>| {
+            let value = value.unwrap_or_default();
+            value.as_str().map_or_else(|| value.to_string(), |name| name.replace('_', "-"))
+        };
+        [
+            ("--spp", quality.samples_per_pixel.to_string()),
+            ("--sampler", named(serde_json::to_value(quality.sampler))),
+            ("--light-samples", quality.light_samples.to_string()),
+            ("--gloss-samples", quality.gloss_samples.to_string()),
+            ("--depth", quality.max_depth.to_string()),
+            ("--min-contribution", quality.min_contribution.to_string()),
+            ("--triangles", named(serde_json::to_value(quality.triangle_method))),
+            ("--precision", named(serde_json::to_value(quality.precision))),
+            ("--accelerator", named(serde_json::to_value(quality.accelerator))),
+            ("--split", named(serde_json::to_value(quality.split))),
+            ("--leaf-size", quality.leaf_size.to_string()),
+            ("--grid-resolution", quality.grid_resolution.to_string()),
+        ]
+    };
+    let differ = values(own).into_iter().zip(values(wanted)).filter(|(own, wanted)| own != wanted);
+    differ.map(|(_, (name, value))| format!(" {name} {value}")).collect()
+}
+
+fn parse_share(text: &str) -> Result<f32, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "a weight is a number from 0 to 1, such as 0.001".into())
+}
+
+/// As in scene files: 2²⁸, three gigabytes of film.
+const MOST_PIXELS: u64 = 1 << 28;
+
+pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let parsed: Option<(u32, u32)> =
+        text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match parsed {
+        Some((width, height)) if (1..=MOST_PIXELS).contains(&(u64::from(width) * u64::from(height))) => {
+            Ok((width, height))
+        }
+        _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Read, Spec};
+    use std::ffi::OsString;
+
+    static LINE: Spec = Spec { name: "render", about: "", arguments: &[], options: &[Knobs::OPTIONS] };
+
+    #[test]
+    fn every_accelerator_has_the_name_of_scene_files() {
+        let named = ACCELERATORS.map(|(name, accelerator)| (name.replace('-', "_"), accelerator));
+        assert_eq!(named, Accelerator::ALL.map(|accelerator| (accelerator.name().to_owned(), accelerator)));
+    }
+
+    #[test]
+    fn arguments_turn_every_knob() {
+        let mut scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let own = scene.quality;
+        let wanted = Quality {
+            samples_per_pixel: 343,
+            sampler: Sampler::Jittered,
+            light_samples: 7,
+            gloss_samples: 3,
+            max_depth: 9,
+            min_contribution: 0.03,
+            triangle_method: TriangleMethod::Gram,
+            precision: Precision::Double,
+            accelerator: Accelerator::OctreeByCells,
+            split: Split::SpatialMedian,
+            leaf_size: 8,
+            grid_resolution: 64,
+            ..own
+        };
+        let line = arguments(&own, &wanted);
+        assert!(line.starts_with(" --spp 343 --sampler jittered --light-samples 7"), "{line}");
+        let Read::Given(given) = LINE.read(line.split_whitespace().map(OsString::from)).unwrap() else {
+            panic!("help was asked for");
+        };
+        Knobs::read(&given).unwrap().apply(&mut scene);
+        assert_eq!(scene.quality, wanted);
+        assert_eq!(arguments(&own, &own), "");
+        assert!(parse_share("1.5").is_err() && parse_share("NaN").is_err() && parse_share("some").is_err());
+    }
+}

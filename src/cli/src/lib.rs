@@ -1,0 +1,24 @@
+//! The parts of the program `raykata`, so that tests and the programs of instructors can reach them.
+
+/// Prints a line as the macro of the standard library does, but ends in peace when nobody reads it any more.
+macro_rules! println {
+    () => { $crate::report::say(format_args!("\n")) };
+    ($($words:tt)*) => { $crate::report::say(format_args!("{}\n", format_args!($($words)*))) };
+}
+
+pub mod args;
+pub mod compare;
+pub mod cost;
+pub mod explain;
+pub mod html;
+pub mod judge;
+pub mod kits;
+pub mod knobs;
+pub mod list;
+pub mod progress;
+pub mod queue;
+pub mod render;
+pub mod report;
+pub mod strip;
+pub mod tree;
+pub mod worker;

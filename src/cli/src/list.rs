@@ -1,0 +1,145 @@
+//! `raykata list` and `raykata hint`: what the rubric says of the checks.
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use anyhow::{Result, bail};
+use raykata::rubric::{self, Entry};
+use std::fmt::Write;
+
+/// Lines have at most so many columns.
+const WIDTH: usize = 80;
+
+/// `raykata list`.
+pub static LIST: Spec = Spec {
+    name: "raykata list",
+    about: "List the checks with their points.",
+    arguments: &[Argument::optional("STAGE", "One stage only, such as 3 or stage3.")],
+    options: &[],
+};
+
+/// `raykata hint`.
+pub static HINT: Spec = Spec {
+    name: "raykata hint",
+    about: "Get a hint for a check.",
+    arguments: &[
+        Argument::required("CHECK", "Its name, as `raykata list` and failing tests print it."),
+        Argument::optional("LEVEL", "1 is a nudge, 3 nearly the answer [default: 1]."),
+    ],
+    options: &[],
+};
+
+/// What `raykata check` takes besides a kit.
+pub const STAGE: Argument = Argument::optional("STAGE", "One stage only, such as 3 or stage3.");
+
+/// `raykata check`.
+pub static CHECK: Spec = Spec {
+    name: "raykata check",
+    about: "Grade your exercises and print the scorecard.",
+    arguments: &[STAGE],
+    options: &[crate::kits::Choice::OPTIONS],
+};
+
+/// `raykata gauntlet`.
+pub static GAUNTLET: Spec = Spec {
+    name: "raykata gauntlet",
+    about: "Show how accurate your ray/triangle tests are: against hard inputs, judged exactly.",
+    arguments: &[],
+    options: &[
+        &[
+            Opt::value(
+                "--inputs",
+                "N",
+                "Inputs of each distribution, and rays at each closed mesh [default: 20000].",
+            ),
+            Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
+        ],
+        crate::kits::Choice::OPTIONS,
+    ],
+};
+
+/// The stage that was asked for, if any: `3` and `stage3` are the same. A stage that does not exist is an error.
+pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
+    let known: Vec<u8> = rubric::stages().into_iter().map(|(number, _)| number).collect();
+    given.parsed_argument(0, |text| {
+        let number = text.strip_prefix("stage").unwrap_or(text).parse().ok();
+        number.filter(|number| known.contains(number)).ok_or_else(|| {
+            let (first, last) = (known.first().unwrap_or(&0), known.last().unwrap_or(&0));
+            format!("there is no such stage; there are stages {first} to {last}")
+        })
+    })
+}
+
+/// The checks of a stage, or of all, with their points and laws.
+pub fn list(stage: Option<u8>) -> String {
+    let mut text = String::new();
+    for (number, about) in
+        rubric::stages().into_iter().filter(|(one, _)| stage.is_none_or(|stage| stage == *one))
+    {
+        let _ = writeln!(text, "stage {number} · {}", about.title);
+        let how = format!("work in {}, run `cargo test --test stage{number}`", about.file);
+        for line in lines(&how, WIDTH - 2) {
+            let _ = writeln!(text, "  {line}");
+        }
+        for (name, entry) in about.in_order() {
+            let _ = writeln!(text, "  {:>2}  {name}", entry.points);
+            for line in lines(&entry.title, WIDTH - 6) {
+                let _ = writeln!(text, "      {line}");
+            }
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The words in lines of at most so many letters.
+fn lines(words: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// One of the three hints of a check.
+pub fn hint(name: &str, level: usize) -> Result<String> {
+    let all: Vec<(&str, &Entry)> =
+        rubric::stages().into_iter().flat_map(|(_, stage)| stage.in_order()).collect();
+    let Some((_, entry)) = all.iter().find(|(check, _)| *check == name) else {
+        let names = || all.iter().map(|(check, _)| *check);
+        let mut near: Vec<&str> = names().filter(|other| other.contains(name)).collect();
+        if near.is_empty() {
+            near = names().filter(|other| strsim::jaro_winkler(other, name) > 0.85).collect();
+        }
+        near.truncate(5);
+        match near.is_empty() {
+            true => bail!("there is no check `{name}`; `raykata list` shows all"),
+            false => bail!("there is no check `{name}`; did you mean {}?", near.join(", ")),
+        }
+    };
+    let mut text = format!("{}\n  {}\n\n", entry.header(), entry.hints[level - 1]);
+    if level < entry.hints.len() {
+        let _ = writeln!(text, "  still stuck: cargo run -- hint {name} {}", level + 1);
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_fits_a_terminal_and_has_every_check() {
+        let all = list(None);
+        let long: Vec<&str> = all.lines().filter(|line| line.chars().count() > WIDTH).collect();
+        assert!(long.is_empty(), "{long:#?}");
+        for (number, stage) in rubric::stages() {
+            let one = list(Some(number));
+            assert!(all.contains(&one) && stage.checks.keys().all(|name| one.contains(name.as_str())));
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! How far a long work is, drawn on standard error. Nothing is drawn where nobody sees it: in a file or a pipe.
+
+use std::fmt::Write as _;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Time between two drawings.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Time between two drawings of a work that says nothing.
+const TICK: Duration = Duration::from_millis(500);
+
+/// Columns of the bar, and of the whole line.
+const BAR: usize = 30;
+const LINE: usize = 79;
+
+/// A line that shows how far a work is.
+#[derive(Clone)]
+pub struct ProgressBar(Arc<Shared>);
+
+struct Shared {
+    visible: bool,
+    over: AtomicBool,
+    state: Mutex<State>,
+}
+
+struct State {
+    done: u64,
+    /// 0 while nobody knows.
+    total: u64,
+    message: String,
+    began: Instant,
+    drawn: Option<Instant>,
+}
+
+impl ProgressBar {
+    /// For so many steps; 0 if nobody knows how many.
+    pub fn new(total: u64) -> ProgressBar {
+        let (message, began) = (String::new(), Instant::now());
+        let state = Mutex::new(State { done: 0, total, message, began, drawn: None });
+        let visible = std::io::stderr().is_terminal();
+        ProgressBar(Arc::new(Shared { visible, over: AtomicBool::new(false), state }))
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn change(&self, change: impl FnOnce(&mut State)) {
+        let mut state = self.state();
+        change(&mut state);
+        let waits = state.drawn.is_some_and(|drawn| drawn.elapsed() < PAUSE);
+        if self.0.visible && !waits {
+            state.draw();
+        }
+    }
+
+    /// So many steps more are done.
+    pub fn inc(&self, steps: u64) {
+        self.change(|state| state.done += steps);
+    }
+
+    /// So many steps are done, of this many.
+    pub fn set(&self, done: u64, total: u64) {
+        self.change(|state| (state.done, state.total) = (done, total));
+    }
+
+    /// There are this many steps.
+    pub fn set_length(&self, total: u64) {
+        self.change(|state| state.total = total);
+    }
+
+    /// What is done now.
+    pub fn set_message(&self, message: impl Into<String>) {
+        self.change(|state| state.message = message.into());
+    }
+
+    /// Begins anew: what comes goes at another pace.
+    pub fn begin(&self, message: impl Into<String>, total: u64) {
+        self.change(|state| {
+            (state.done, state.total, state.began) = (0, total, Instant::now());
+            state.message = message.into();
+        });
+    }
+
+    /// Draws now and then, so that whoever waits sees that time passes.
+    pub fn tick(&self) {
+        let bar = self.clone();
+        if !bar.0.visible {
+            return;
+        }
+        std::thread::spawn(move || {
+            while !bar.0.over.load(Ordering::Relaxed) && Arc::strong_count(&bar.0) > 1 {
+                bar.change(|_| ());
+                std::thread::sleep(TICK);
+            }
+        });
+    }
+
+    /// Takes the line away while something is printed.
+    pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
+        let mut state = self.state();
+        self.clear(&mut state);
+        print()
+    }
+
+    /// The work is done: takes the line away.
+    pub fn finish_and_clear(&self) {
+        self.0.over.store(true, Ordering::Relaxed);
+        let mut state = self.state();
+        self.clear(&mut state);
+    }
+
+    fn clear(&self, state: &mut State) {
+        if self.0.visible && state.drawn.take().is_some() {
+            let _ = write!(std::io::stderr(), "\r\u{1b}[K");
+        }
+    }
+}
+
+impl State {
+    fn draw(&mut self) {
+        self.drawn = Some(Instant::now());
+        let line = self.line(self.began.elapsed());
+        let _ = write!(std::io::stderr(), "\r{line}\u{1b}[K");
+    }
+
+    fn line(&self, gone: Duration) -> String {
+        let mut line = String::new();
+        if self.total == 0 {
+            let _ = write!(line, "{} gone  {}", clock(gone), self.message);
+        } else {
+            let share = (self.done as f64 / self.total as f64).min(1.0);
+            let full = (share * BAR as f64) as usize;
+            let _ = write!(line, "{}{} {:>3.0} %", "█".repeat(full), "░".repeat(BAR - full), 100.0 * share);
+            if self.done > 0 {
+                let left = gone.mul_f64((1.0 - share) / share.max(1e-9));
+                let _ = write!(line, "  {} gone, {} to go", clock(gone), clock(left));
+            }
+            let _ = write!(line, "  {}", self.message);
+        }
+        line.chars().take(LINE).collect()
+    }
+}
+
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{}:{:02} min", seconds / 60, seconds % 60),
+        _ => format!("{}:{:02} h", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_says_how_far_it_is_and_how_long_it_takes() {
+        let mut state =
+            State { done: 0, total: 0, message: "a frame".into(), began: Instant::now(), drawn: None };
+        assert_eq!(state.line(Duration::from_secs(7)), "7 s gone  a frame");
+        (state.done, state.total) = (1, 4);
+        let line = state.line(Duration::from_secs(40));
+        assert!(line.ends_with(" 25 %  40 s gone, 2:00 min to go  a frame"), "{line}");
+        state.message = "x".repeat(200);
+        assert_eq!(state.line(Duration::from_secs(40)).chars().count(), LINE);
+    }
+
+    #[test]
+    fn what_nobody_sees_is_counted_and_not_drawn() {
+        let bar = ProgressBar::new(3);
+        bar.tick();
+        bar.inc(2);
+        bar.set_message("two");
+        assert_eq!(bar.suspend(|| 7), 7);
+        assert_eq!((bar.state().done, bar.state().message.as_str()), (2, "two"));
+        bar.begin("anew", 5);
+        assert_eq!((bar.state().done, bar.state().total), (0, 5));
+        bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,212 @@
+//! `raykata render`: a scene becomes a picture.
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec};
+use crate::kits::{Choice, Need, Source, root};
+use crate::knobs::{Knobs, Threads};
+use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
+use anyhow::{Context, Result, bail};
+use raykata::film::{Film, encode_srgb};
+use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
+use raykata::scene::{Accelerator, Encoding};
+use std::path::{Path, PathBuf};
+
+/// `raykata render`.
+pub static SPEC: Spec = Spec {
+    name: "raykata render",
+    about: "Render a scene to a picture.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[Opt::value("--out", "FILE", "Where the picture goes: .png, .hdr or .exr [default: out/NAME.png].")
+            .short("-o")],
+        Choice::OPTIONS,
+        Threads::OPTIONS,
+        &[
+            Opt::value("--seed", "N", "Picks the random numbers [default: 0]."),
+            Opt::flag("--normals", "Show normals instead of light."),
+            Opt::flag("--no-counts", "Do not count work: a little faster."),
+        ],
+        Knobs::OPTIONS,
+    ],
+};
+
+/// What to render and how.
+pub struct Options {
+    scene: PathBuf,
+    out: Option<PathBuf>,
+    kit: Choice,
+    threads: Threads,
+    seed: u64,
+    knobs: Knobs,
+    normals: bool,
+    no_counts: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            scene: given.required(0)?.into(),
+            out: given.path("--out"),
+            kit: Choice::read(given)?,
+            threads: Threads::read(given)?,
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
+            knobs: Knobs::read(given)?,
+            normals: given.has("--normals"),
+            no_counts: given.has("--no-counts"),
+        })
+    }
+}
+
+/// Which kind of file a picture becomes.
+#[derive(Clone, Copy)]
+enum Format {
+    Png,
+    Hdr,
+    Exr,
+}
+
+fn format_of(file: &Path) -> Result<Format> {
+    let extension = file.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    match extension.to_ascii_lowercase().as_str() {
+        "png" => Ok(Format::Png),
+        "hdr" => Ok(Format::Hdr),
+        "exr" if cfg!(feature = "exr") => Ok(Format::Exr),
+        "exr" => bail!(
+            "this program was built without OpenEXR; `cargo run --features exr -- render …` builds it with OpenEXR"
+        ),
+        _ => bail!(
+            "cannot tell what kind of picture {} is to be: let it end in .png, .hdr or .exr",
+            file.display()
+        ),
+    }
+}
+
+/// Renders and tells what it took.
+pub fn run(options: &Options) -> Result<()> {
+    let mut scene = load_scene(&options.scene)?;
+    options.knobs.apply(&mut scene);
+    let out = match &options.out {
+        Some(out) => out.clone(),
+        None => Path::new("out")
+            .join(options.scene.file_stem().context("the scene has no name")?)
+            .with_extension("png"),
+    };
+    let format = format_of(&out)?;
+    make_folder_of(&out)?;
+
+    let root = root()?;
+    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let kit = source.fresh();
+    let view = if options.normals { View::Normals } else { View::Shaded };
+    let job = RenderJob {
+        scene,
+        view,
+        seed: options.seed,
+        threads: options.threads.count(),
+        count: !options.no_counts,
+    };
+    let bar = FrameBar::new("");
+    let rendering = mishap::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
+    bar.finish();
+
+    let write = match format {
+        Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
+        Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),
+        Format::Exr => write_exr(&rendering.film, &out),
+    };
+    write.with_context(|| format!("cannot write {}", out.display()))?;
+    tell(&out, &job, &rendering);
+    Ok(())
+}
+
+/// Gamma 2 is an exercise, so the kit that made the picture encodes it.
+pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
+    match encoding {
+        Encoding::Srgb => film.write_png(out, encode_srgb)?,
+        Encoding::Gamma2 => {
+            let components: Vec<f32> = film.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+            let bytes = mishap::catch(|| kit.encode_gamma(&components))?;
+            film.write_png_bytes(out, &bytes)?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(not(feature = "exr"))]
+fn write_exr(_: &Film, _: &Path) -> Result<()> {
+    bail!("this program was built without OpenEXR")
+}
+
+#[cfg(feature = "exr")]
+fn write_exr(film: &Film, out: &Path) -> Result<()> {
+    use exr::prelude::{SpecificChannels, WritableImage};
+    let channels = SpecificChannels::rgb(|at: exr::math::Vec2<usize>| {
+        let pixel = film.at(at.x() as u32, at.y() as u32);
+        (pixel.x, pixel.y, pixel.z)
+    });
+    let picture = exr::prelude::Image::from_channels((film.width as usize, film.height as usize), channels);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write().to_buffered(&mut bytes)?;
+    raykata::film::write_atomically(out, |file| std::io::Write::write_all(file, bytes.get_ref()))?;
+    Ok(())
+}
+
+fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
+    let Rendering { film, counts, .. } = rendering;
+    let quality = &job.scene.quality;
+    let samples = match quality.samples_per_pixel {
+        1 => "1 sample a pixel".to_owned(),
+        n => format!("{n} samples a pixel"),
+    };
+    println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
+    println!("  primitives       {}", Thousands(rendering.primitives));
+    if let Some(size) = rendering.structure {
+        let how = match quality.accelerator {
+            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => {
+                format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
+            }
+            _ => format!(", {} references", Thousands(size.references)),
+        };
+        println!(
+            "  {:<16} {} nodes, {} levels{how}, {}",
+            quality.accelerator.name().replace('_', " "),
+            Thousands(size.nodes),
+            size.levels,
+            Bytes(size.bytes)
+        );
+    }
+    if rendering.bytes_of_parts > 0 {
+        println!("  inside instances {}", Bytes(rendering.bytes_of_parts));
+    }
+    println!("  build            {:.3} s", rendering.build_seconds);
+    println!("  render           {:.3} s", rendering.render_seconds);
+    if job.count {
+        println!("  primary rays     {}", Thousands(counts.primary));
+        println!("  shadow rays      {}", Thousands(counts.shadow));
+        println!("  reflected rays   {}", Thousands(counts.reflection));
+        println!("  refracted rays   {}", Thousands(counts.transmission));
+        println!("  surfaces met     {}", Thousands(counts.hits));
+        println!("  random numbers   {}", Thousands(counts.random_numbers));
+        println!("  image reads      {}", Thousands(counts.texture_reads));
+        println!("  node visits      {}", Thousands(counts.node_visits));
+        println!("  box tests        {}", Thousands(counts.box_tests));
+        println!("  primitive tests  {}", Thousands(counts.primitive_tests));
+        let rays = counts.rays().max(1) as f64;
+        println!(
+            "  a ray            {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
+            counts.box_tests as f64 / rays,
+            counts.primitive_tests as f64 / rays,
+            1e9 * rendering.render_seconds / rays
+        );
+    }
+    for note in &rendering.notes {
+        println!("  not simulated    {note}");
+    }
+    match film.not_a_number() {
+        0 => {}
+        n => println!(
+            "  warning          {} pixels are not numbers (NaN); they are magenta",
+            Thousands(n as u64)
+        ),
+    }
+}

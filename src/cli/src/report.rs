@@ -1,0 +1,170 @@
+//! How things are told: numbers that can be read, errors in files with the line drawn, and how far a long work is.
+
+use crate::progress::ProgressBar;
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use anyhow::{Context, Result, anyhow};
+use raykata::frame::Watch;
+use raykata::scene::error::LoadError;
+use raykata::scene::{Scene, load};
+use std::fmt;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// Prints. A reader that has gone away, such as `head`, is no error: what is printed after that is lost, and files are
+/// still written.
+pub fn say(words: fmt::Arguments<'_>) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_fmt(words).and_then(|()| out.flush());
+}
+
+/// A number with a comma between thousands.
+pub struct Thousands(pub u64);
+
+impl fmt::Display for Thousands {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let digits = self.0.to_string();
+        let mut grouped = String::new();
+        for (i, digit) in digits.chars().enumerate() {
+            if i > 0 && (digits.len() - i).is_multiple_of(3) {
+                grouped.push(',');
+            }
+            grouped.push(digit);
+        }
+        f.pad(&grouped)
+    }
+}
+
+/// A size in bytes, in the unit that leaves a number of people's size.
+pub struct Bytes(pub u64);
+
+impl fmt::Display for Bytes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let bytes = self.0 as f64;
+        let text = match self.0 {
+            0..10_000 => format!("{bytes} B"),
+            10_000..1_000_000 => format!("{:.0} kB", bytes / 1e3),
+            1_000_000..1_000_000_000 => format!("{:.1} MB", bytes / 1e6),
+            _ => format!("{:.1} GB", bytes / 1e9),
+        };
+        f.pad(&text)
+    }
+}
+
+/// Reads a scene; an error shows the line that is to blame.
+pub fn load_scene(file: &Path) -> Result<Scene> {
+    load::load(file).map_err(|error| anyhow!(draw(&error)))
+}
+
+/// The error with the line that is to blame, as the compiler would draw it.
+pub fn draw(error: &LoadError) -> String {
+    let text = std::fs::read_to_string(&error.file).unwrap_or_default();
+    if error.place.is_none() || error.span.end > text.len() || error.span.is_empty() {
+        return error.to_string();
+    }
+    let path = error.file.display().to_string();
+    let snippet =
+        Snippet::source(&text).path(&path).annotation(AnnotationKind::Primary.span(error.span.clone()));
+    let mut group = Level::ERROR.primary_title(&error.message).element(snippet);
+    if let Some(help) = &error.help {
+        group = group.element(Level::HELP.message(help));
+    }
+    let coloured = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
+    let drawn = renderer.render(&[group]);
+    // The caller says "error: " itself.
+    drawn.strip_prefix("error: ").map_or_else(|| drawn.clone(), str::to_owned)
+}
+
+/// Makes a folder, and those above it.
+pub fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))
+}
+
+/// Makes the folder in which `file` is to be written.
+pub fn make_folder_of(file: &Path) -> Result<()> {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).map_or(Ok(()), make_folder)
+}
+
+/// A bar for so many steps, each of which can be named; draws nothing when nobody sees it.
+pub fn bar_of_steps(n: usize) -> ProgressBar {
+    ProgressBar::new(n as u64)
+}
+
+/// How far a frame is: what is built first, then its pixels. Draws nothing when nobody sees it.
+pub struct FrameBar {
+    bar: ProgressBar,
+    /// What is being made, and what is counted of it.
+    now: Mutex<(String, &'static str)>,
+}
+
+impl FrameBar {
+    /// `what` is being made; it may be said later.
+    pub fn new(what: &str) -> Self {
+        let bar = FrameBar { bar: ProgressBar::new(0), now: Mutex::default() };
+        bar.begin(what.to_owned());
+        bar.bar.tick();
+        bar
+    }
+
+    /// Something else begins.
+    pub fn begin(&self, what: String) {
+        self.bar.begin(what.as_str(), 0);
+        *self.now.lock().unwrap_or_else(PoisonError::into_inner) = (what, "nothing");
+    }
+
+    fn tell(&self, counted: &'static str, done: u64, total: u64) {
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        if now.1 != counted {
+            // Pixels go at another pace than primitives.
+            now.1 = counted;
+            self.bar.begin(format!("{} {counted}", now.0), total);
+        }
+        self.bar.set(done, total);
+    }
+
+    /// Nothing more to show.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watch for FrameBar {
+    fn building(&self, placed: u64, total: u64) {
+        // Nobody knows how long it takes before anything has found its place.
+        if placed > 0 {
+            self.tell("(building)", placed, total);
+        }
+    }
+
+    fn progress(&self, done: u64, total: u64) {
+        self.tell("", done, total);
+    }
+}
+
+/// The lower quartile, the median and the upper quartile; of an even number the median is the lower of the middle two.
+pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let last = values.len().saturating_sub(1);
+    [last / 4, last / 2, last - last / 4].map(|index| values.get(index).copied().unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thousands_are_set_apart() {
+        assert_eq!(Thousands(0).to_string(), "0");
+        assert_eq!(Thousands(999).to_string(), "999");
+        assert_eq!(Thousands(1_000).to_string(), "1,000");
+        assert_eq!(Thousands(99_532_800_000_000).to_string(), "99,532,800,000,000");
+    }
+    #[test]
+    fn quartiles_are_measured_values() {
+        assert_eq!(quartiles(vec![]), [0.0; 3]);
+        assert_eq!(quartiles(vec![7.0]), [7.0; 3]);
+        assert_eq!(quartiles(vec![4.0, 1.0, 3.0, 2.0]), [1.0, 2.0, 4.0]);
+        assert_eq!(quartiles(vec![5.0, 4.0, 3.0, 2.0, 1.0]), [2.0, 3.0, 4.0]);
+    }
+}

@@ -1,0 +1,149 @@
+//! `raykata tree`: the rays behind the first sample of one pixel, as text, JSON or a graph.
+
+use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
+use crate::kits::{Choice, Need, Source, root};
+use crate::report::{load_scene, say};
+use anyhow::{Result, bail};
+use raykata::kit::{RayKind, RenderJob, TracedRay, View, mishap};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+const FORMATS: [(&str, Format); 3] = [("text", Format::Text), ("json", Format::Json), ("dot", Format::Dot)];
+
+/// `raykata tree`.
+pub static SPEC: Spec = Spec {
+    name: "raykata tree",
+    about: "Show the rays behind one pixel, for the first of its samples.",
+    arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
+    options: &[
+        &[
+            Opt::value("--pixel", "X,Y", "Column and row, from the upper left, such as 320,200."),
+            Opt::value(
+                "--format",
+                "NAME",
+                "How to show the tree: indented lines, a list of rays in JSON, or a graph for Graphviz [default: text].",
+            )
+            .choices(&names(&FORMATS)),
+        ],
+        Choice::OPTIONS,
+    ],
+};
+
+/// Which pixel of which scene.
+pub struct Options {
+    scene: PathBuf,
+    pixel: (u32, u32),
+    kit: Choice,
+    format: Format,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        let pixel = given.parsed("--pixel", parse_pixel)?;
+        Ok(Options {
+            scene: given.required(0)?.into(),
+            pixel: pixel.ok_or_else(|| given.misuse("`--pixel X,Y` is missing"))?,
+            kit: Choice::read(given)?,
+            format: given.choice("--format", &FORMATS)?.unwrap_or(Format::Text),
+        })
+    }
+}
+
+/// How a tree is shown.
+#[derive(Clone, Copy)]
+pub enum Format {
+    /// Indented lines.
+    Text,
+    /// A list of rays, each with the index of its parent.
+    Json,
+    /// For Graphviz: `raykata tree … --format dot | dot -Tsvg`.
+    Dot,
+}
+
+fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
+    let parsed =
+        text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    parsed.ok_or_else(|| "a pixel is a column and a row with a comma between them, such as 320,200".into())
+}
+
+/// Traces the first sample of the pixel and prints its tree.
+pub fn run(options: &Options) -> Result<()> {
+    let scene = load_scene(&options.scene)?;
+    let ((x, y), film) = (options.pixel, scene.film);
+    if x >= film.width || y >= film.height {
+        bail!(
+            "there is no pixel {x},{y}: columns go from 0 to {}, rows from 0 to {}",
+            film.width - 1,
+            film.height - 1
+        );
+    }
+    let root = root()?;
+    let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
+    let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
+    let rays = mishap::catch(|| source.fresh().trace(&job, x, y))?;
+    say(format_args!("{}", show(&rays, options.format)?));
+    Ok(())
+}
+
+/// The tree in this format.
+pub fn show(rays: &[TracedRay], format: Format) -> Result<String> {
+    Ok(match format {
+        Format::Text => as_text(rays),
+        Format::Json => serde_json::to_string_pretty(rays)? + "\n",
+        Format::Dot => as_dot(rays),
+    })
+}
+
+fn as_text(rays: &[TracedRay]) -> String {
+    let mut text = String::new();
+    for (root, _) in rays.iter().enumerate().filter(|(_, ray)| ray.parent.is_none()) {
+        write_below(rays, root, &mut text);
+    }
+    text
+}
+
+fn write_below(rays: &[TracedRay], index: usize, text: &mut String) {
+    let ray = &rays[index];
+    let indent = "  ".repeat(levels_above(rays, index));
+    let _ = writeln!(text, "{indent}{}", label(ray));
+    for (child, _) in rays.iter().enumerate().filter(|(_, child)| child.parent == Some(index)) {
+        write_below(rays, child, text);
+    }
+}
+
+fn levels_above(rays: &[TracedRay], index: usize) -> usize {
+    std::iter::successors(rays[index].parent, |&parent| rays[parent].parent).count()
+}
+
+/// Kind, weight, depth and hit in one line.
+fn label(ray: &TracedRay) -> String {
+    let kind = match ray.kind {
+        RayKind::Primary => "primary",
+        RayKind::Reflection => "reflection",
+        RayKind::Transmission => "transmission",
+        RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "hidden" } else { "lit" }),
+    };
+    let weight = match ray.weight {
+        w if w.x == w.y && w.y == w.z => format!("{:.3}", w.x),
+        w => format!("({:.3} {:.3} {:.3})", w.x, w.y, w.z),
+    };
+    let hit = match &ray.hit {
+        Some((t, material)) => format!("meets {material} at t = {t:.3}"),
+        None => "meets nothing".into(),
+    };
+    format!("{kind}, depth {}, weight {weight}, {hit}", ray.depth)
+}
+
+fn as_dot(rays: &[TracedRay]) -> String {
+    let mut dot = String::from("digraph rays {\n  node [shape=box, fontname=\"sans-serif\"];\n");
+    for (index, ray) in rays.iter().enumerate() {
+        let text = label(ray).replace('\\', "\\\\").replace('"', "\\\"").replace(", ", "\\n");
+        let style = if ray.kind == RayKind::Shadow { ", style=dashed" } else { "" };
+        let _ = writeln!(dot, "  r{index} [label=\"{text}\"{style}];");
+        if let Some(parent) = ray.parent {
+            let _ = writeln!(dot, "  r{parent} -> r{index};");
+        }
+    }
+    dot + "}\n"
+}

@@ -1,0 +1,131 @@
+//! Ends a process that does not answer in time.
+
+use super::{Launcher, lock};
+use std::process::Child;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// How many times its patience a process gets in all when others keep it from computing. More would let one that sleeps
+/// hold up a class.
+const MOST_TIMES: u32 = 3;
+
+/// The processor time of a call is counted from this part of its patience on: most calls are over by then, so it costs
+/// them nothing.
+const COUNTED_AFTER: u32 = 20;
+
+/// One thread a process; it sleeps between calls.
+pub(super) struct Watchdog {
+    deadline: Mutex<Deadline>,
+    changed: Condvar,
+    barked: AtomicBool,
+    /// Knows how much processor time the process has used. With one, time counts only while the process computes.
+    launcher: Option<Arc<dyn Launcher>>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Deadline {
+    None,
+    At(Call, Instant),
+    Retired,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+struct Call {
+    asked: Instant,
+    patience: Duration,
+    /// What the process had used when counting began.
+    used_before: Option<Duration>,
+}
+
+impl Watchdog {
+    /// A watchdog for this process.
+    pub(super) fn guard(child: &Arc<Mutex<Child>>, launcher: Option<Arc<dyn Launcher>>) -> Arc<Watchdog> {
+        let watchdog = Arc::new(Watchdog {
+            deadline: Mutex::new(Deadline::None),
+            changed: Condvar::new(),
+            barked: AtomicBool::new(false),
+            launcher,
+        });
+        let (on_duty, child) = (watchdog.clone(), child.clone());
+        std::thread::spawn(move || on_duty.watch(&child));
+        watchdog
+    }
+
+    fn watch(&self, child: &Mutex<Child>) {
+        let process = lock(child).id();
+        let fair = self.launcher.is_some();
+        let used = || self.launcher.as_ref().map_or(Duration::MAX, |launcher| launcher.cpu_time(process));
+        let mut deadline = lock(&self.deadline);
+        loop {
+            deadline = match *deadline {
+                Deadline::Retired => return,
+                Deadline::None => self.changed.wait(deadline).unwrap_or_else(PoisonError::into_inner),
+                Deadline::At(call, end) => match end.checked_duration_since(Instant::now()) {
+                    Some(left) => {
+                        let early = call.patience / COUNTED_AFTER;
+                        let left = match call.used_before {
+                            None if fair => early.saturating_sub(call.asked.elapsed()).min(left),
+                            _ => left,
+                        };
+                        let (mut deadline, timed_out) =
+                            self.changed.wait_timeout(deadline, left).unwrap_or_else(PoisonError::into_inner);
+                        if let Deadline::At(call, _) = &mut *deadline
+                            && timed_out.timed_out()
+                            && fair
+                            && call.used_before.is_none()
+                            && call.asked.elapsed() >= early
+                        {
+                            call.used_before = Some(used());
+                        }
+                        deadline
+                    }
+                    None => match call.more_time(used()) {
+                        Some(later) => {
+                            *deadline = Deadline::At(call, later);
+                            deadline
+                        }
+                        None => {
+                            self.barked.store(true, Ordering::Relaxed);
+                            let _ = lock(child).kill();
+                            return;
+                        }
+                    },
+                },
+            };
+        }
+    }
+
+    pub(super) fn has_barked(&self) -> bool {
+        self.barked.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn bark_after(&self, patience: Duration) {
+        let asked = Instant::now();
+        self.set(Deadline::At(Call { asked, patience, used_before: None }, asked + patience));
+    }
+
+    pub(super) fn rest(&self) {
+        self.set(Deadline::None);
+    }
+
+    pub(super) fn retire(&self) {
+        self.set(Deadline::Retired);
+    }
+
+    fn set(&self, deadline: Deadline) {
+        *lock(&self.deadline) = deadline;
+        self.changed.notify_one();
+    }
+}
+
+impl Call {
+    /// When to look again, if the process, which has used so much processor time, has not had its time yet.
+    fn more_time(&self, used: Duration) -> Option<Instant> {
+        let used = used.saturating_sub(self.used_before.unwrap_or_default());
+        let last = self.asked + self.patience * MOST_TIMES;
+        let wanting = self.patience.checked_sub(used).filter(|wanting| !wanting.is_zero())?;
+        let now = Instant::now();
+        (now < last).then(|| (now + wanting).min(last))
+    }
+}

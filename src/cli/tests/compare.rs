@@ -1,0 +1,95 @@
+//! The command `compare` as its users run it.
+
+mod program_runs;
+
+use program_runs::{raykata, told};
+
+#[test]
+fn structures_are_compared_side_by_side() {
+    let out = tempfile::tempdir().expect("a folder");
+    let folder = out.path().to_string_lossy();
+    let output = raykata(&[
+        "compare",
+        "scenes/graph.toml",
+        "--size",
+        "32x20",
+        "--rounds",
+        "1",
+        "--level",
+        "2",
+        "--out",
+        &folder,
+    ]);
+    let (said, complained) = told(&output);
+    assert!(output.status.success(), "{said}{complained}");
+    let rows = [
+        "brute force",
+        "bounding boxes",
+        "bounding spheres",
+        "bvh, object median",
+        "bvh, spatial median",
+        "bvh, surface area",
+        "cached bvh",
+        "packet bvh",
+        "grid",
+        "octree",
+        "octree by cells",
+        "kd tree",
+        "bsp",
+    ];
+    for row in rows {
+        let line = said.lines().find(|line| line.starts_with(&format!("{row}  ")));
+        let line = line.unwrap_or_else(|| panic!("no line for {row}:\n{said}"));
+        assert!(line.trim_end().ends_with(" 0"), "pixels are off: {line}");
+        let picture = out.path().join(format!("tests-{}.png", row.replace(", ", "-").replace(' ', "-")));
+        assert!(
+            std::fs::read(&picture).is_ok_and(|png| png.starts_with(b"\x89PNG")),
+            "{}",
+            picture.display()
+        );
+    }
+    // Each column in which less is better has a winner.
+    assert!(said.matches('*').count() > 4, "{said}");
+    // What has cells or boxes is drawn; brute force has none.
+    let drawn = |row: &str| out.path().join(format!("cells-{row}.png")).exists();
+    assert!(
+        drawn("bsp")
+            && drawn("grid")
+            && drawn("kd-tree")
+            && drawn("bounding-spheres")
+            && !drawn("brute-force")
+    );
+
+    let numbers = std::fs::read_to_string(out.path().join("compare.json")).expect("numbers");
+    let numbers: serde_json::Value = serde_json::from_str(&numbers).expect("JSON");
+    assert_eq!(numbers.as_array().map(Vec::len), Some(rows.len()));
+    let asked = |row: usize| numbers[row]["counts"]["primitive_tests"].as_u64().expect("a count");
+    assert!(asked(0) > asked(5), "brute force asks more than a hierarchy");
+    let plot = std::fs::read_to_string(out.path().join("compare.svg")).expect("a plot");
+    assert!(rows.iter().all(|row| plot.contains(&format!(">{row}<"))), "{plot}");
+}
+
+#[test]
+fn savings_heuristics_grids_and_instances_have_tables() {
+    for (of, row) in [
+        ("savings", "graph, boxes, skip and sort"),
+        ("heuristics", "without stop at 60 %"),
+        ("grids", "grid, 256 along"),
+        ("instances", "copies"),
+    ] {
+        let output = raykata(&[
+            "compare",
+            "scenes/graph.toml",
+            "--size",
+            "16x10",
+            "--rounds",
+            "1",
+            "--of",
+            of,
+            "--table",
+        ]);
+        let (said, complained) = told(&output);
+        assert!(said.contains(row), "{of}: {said}{complained}");
+        assert!(output.status.success(), "{of}: {said}{complained}");
+    }
+}

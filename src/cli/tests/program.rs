@@ -1,0 +1,224 @@
+//! The program as its users run it.
+
+mod program_runs;
+
+use program_runs::{raykata, root, told};
+use raykata::scene::load;
+use std::path::PathBuf;
+
+fn scene_files() -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(root().join("scenes")).expect("the folder scenes/");
+    let files = folder.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")).collect()
+}
+
+#[test]
+fn every_scene_of_the_kit_renders() {
+    let files = scene_files();
+    assert!(files.len() >= 10);
+    let out = tempfile::tempdir().expect("a folder");
+    for file in files {
+        load::load(&file).unwrap_or_else(|error| panic!("{error}"));
+        let picture = out.path().join("picture.png");
+        let output = raykata(&[
+            "render",
+            &file.to_string_lossy(),
+            "--size",
+            "48x30",
+            "--out",
+            &picture.to_string_lossy(),
+        ]);
+        let (said, complained) = told(&output);
+        assert!(output.status.success(), "{}: {complained}", file.display());
+        assert!(said.contains("primary rays"), "{said}");
+        assert!(!said.contains("NaN"), "{said}");
+        std::fs::remove_file(picture).expect("a picture was written");
+    }
+}
+
+#[test]
+fn each_kind_of_picture_is_written_and_others_are_refused() {
+    let out = tempfile::tempdir().expect("a folder");
+    for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("a.hdr", b"#?RADIANCE")] {
+        let picture = out.path().join(name);
+        let output =
+            raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
+        assert!(output.status.success(), "{}", told(&output).1);
+        assert!(std::fs::read(&picture).expect("a picture").starts_with(magic), "{name}");
+    }
+    // OpenEXR takes longer to build than all other formats together, so it is built when somebody wants it.
+    let picture = out.path().join("a.exr");
+    let output =
+        raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
+    let complaint = told(&output).1;
+    match std::fs::read(&picture) {
+        Ok(bytes) => assert!(bytes.starts_with(b"\x76\x2f\x31\x01")),
+        Err(_) => assert!(complaint.contains("cargo run --features exr -- render"), "{complaint}"),
+    }
+    let output = raykata(&["render", "scenes/gamma.toml", "--out", "picture.jpg"]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = told(&output).1;
+    assert!(complaint.contains("let it end in .png, .hdr or .exr"), "{complaint}");
+}
+
+#[test]
+fn a_mistake_in_a_scene_is_drawn_and_nothing_is_written() {
+    let out = tempfile::tempdir().expect("a folder");
+    let file = out.path().join("typo.toml");
+    std::fs::write(&file, "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n\n[fil]\nwidth = 3\n")
+        .expect("written");
+    let output =
+        raykata(&["render", &file.to_string_lossy(), "--out", &out.path().join("a.png").to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(1));
+    let complaint = told(&output).1;
+    for part in ["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"] {
+        assert!(complaint.contains(part), "no `{part}` in\n{complaint}");
+    }
+    assert!(!out.path().join("a.png").exists());
+    let missing = raykata(&["render", "scenes/showcas.toml"]);
+    assert_eq!(missing.status.code(), Some(1));
+    assert!(told(&missing).1.contains("showcase.toml"), "{}", told(&missing).1);
+}
+
+#[test]
+fn the_reference_has_all_points() {
+    let output = raykata(&["check", "--kit", "solutions"]);
+    let said = told(&output).0;
+    assert!(output.status.success(), "{said}");
+    assert!(said.trim_end().ends_with("passed, 0 failed"), "{said}");
+}
+
+#[test]
+fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
+    let said = told(&raykata(&["check", "1", "--kit", "solutions"])).0;
+    assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
+    assert_eq!(said, told(&raykata(&["check", "stage1", "--kit", "solutions"])).0);
+    for wrong in ["77", "0", "stage11", "one"] {
+        for command in ["check", "list"] {
+            let output = raykata(&[command, wrong]);
+            assert_eq!(output.status.code(), Some(2));
+            let complaint = told(&output).1;
+            assert!(
+                complaint.contains("there are stages 1 to 10") && !complaint.contains("building"),
+                "{complaint}"
+            );
+        }
+    }
+}
+
+#[test]
+fn checks_are_listed_by_stage() {
+    let all = told(&raykata(&["list"])).0;
+    let one = told(&raykata(&["list", "3"])).0;
+    assert!(all.contains(&one) && one.contains("picture_of_depth") && !one.contains("nearest_root"), "{one}");
+    assert_eq!(one, told(&raykata(&["list", "stage3"])).0);
+}
+
+/// As `raykata list | head -1` does.
+#[test]
+fn a_reader_that_goes_away_is_no_panic() {
+    for arguments in [&["list"][..], &["hint", "picture_of_depth"], &["render", "--help"]] {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_raykata"));
+        let command = command.current_dir(root()).args(arguments).stderr(std::process::Stdio::piped());
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let output = command.stdout(writer).output().expect("the program starts");
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", told(&output).1);
+    }
+}
+
+#[test]
+fn a_worker_that_is_up_to_date_is_not_mentioned() {
+    let tree = || raykata(&["tree", "scenes/stage1.toml", "--pixel", "1,1"]);
+    assert!(tree().status.success());
+    // Other tests ask cargo at the same time, and whoever has to wait is told so.
+    let said: Vec<String> = (0..100).map(|_| told(&tree()).1).take_while(|said| !said.is_empty()).collect();
+    assert!(said.len() < 100, "{}", said.concat());
+}
+
+#[test]
+fn hints_come_in_three_steps_and_near_names_are_suggested() {
+    let name = "triangle_cramer_agrees_with_double_precision";
+    let hints: Vec<String> = ["1", "2", "3"].map(|level| told(&raykata(&["hint", name, level])).0).to_vec();
+    assert!(hints[0] != hints[1] && hints[1] != hints[2] && hints[0].contains("hint triangle_cramer"));
+    let output = raykata(&["hint", "triangle_cramer_agree"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told(&output).1.contains(name));
+}
+
+#[test]
+fn the_command_line_says_when_it_does_not_understand() {
+    assert_eq!(raykata(&["rendr"]).status.code(), Some(2));
+    assert_eq!(raykata(&["render", "scenes/gamma.toml", "--size", "0x9"]).status.code(), Some(2));
+    assert_eq!(raykata(&["hint", "anything", "4"]).status.code(), Some(2));
+    assert!(told(&raykata(&["--help"])).0.contains("Exit codes"));
+}
+
+#[test]
+fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
+    let tree = |format: &str| {
+        told(&raykata(&["tree", "scenes/stage5.toml", "--pixel", "430,240", "--format", format])).0
+    };
+    let text = tree("text");
+    checks::golden::compare("tree_of_a_pixel", "raykata tree scenes/stage5.toml --pixel 430,240", &text)
+        .unwrap_or_else(|broken| panic!("{broken:?}"));
+    let rays: serde_json::Value = serde_json::from_str(&tree("json")).expect("JSON");
+    let rays = rays.as_array().expect("a list");
+    assert_eq!(rays.len(), text.lines().count());
+    assert_eq!(rays.iter().filter(|ray| ray["parent"].is_null()).count(), 1);
+    let dot = tree("dot");
+    assert_eq!(dot.matches(" -> ").count(), rays.len() - 1);
+    let outside = raykata(&["tree", "scenes/stage5.toml", "--pixel", "640,0"]);
+    assert!(told(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
+}
+
+#[test]
+fn a_strip_shows_one_picture_a_depth() {
+    let out = tempfile::tempdir().expect("a folder");
+    let file = out.path().join("strip.png");
+    let output =
+        raykata(&["strip", "scenes/heckbert.toml", "--depths", "0,1,3", "--out", &file.to_string_lossy()]);
+    let said = told(&output).0;
+    assert!(output.status.success(), "{}", told(&output).1);
+    assert_eq!(said.lines().count(), 5, "{said}");
+    let picture = std::fs::read(&file).expect("a picture");
+    // Width and height follow the first 16 bytes of a PNG.
+    let number =
+        |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
+    assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32));
+}
+
+#[test]
+fn a_scene_is_explained_and_predictions_hold() {
+    let output =
+        raykata(&["explain", "scenes/effects.toml", "--size", "24x15", "--spp", "2", "--rounds", "1"]);
+    let (said, complained) = told(&output);
+    assert!(output.status.success(), "{complained}");
+    for line in [
+        "  shadows         lamp 1 (rectangle), lamp 2 (point)",
+        "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
+        "  gloss           `brushed` (brass ball)",
+        "  lens            camera: opening 0.12, sharp at 7",
+        "  motion          toy ball",
+        "  indirect light  [environment] does not ask for it",
+    ] {
+        assert!(said.contains(line), "no `{line}` in\n{said}");
+    }
+    // 24 × 15 pixels, 2 samples each: as predicted.
+    let primary =
+        said.lines().find(|line| line.contains("from the camera")).expect("a line about the camera");
+    assert_eq!(primary.split_whitespace().filter(|&word| word == "720").count(), 2, "{primary}");
+}
+
+#[test]
+fn every_set_of_effects_has_its_line() {
+    let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
+    let (said, complained) = told(&output);
+    assert!(output.status.success(), "{complained}");
+    // Shadows, mirrors and transmission: eight sets, each with its rays from the camera.
+    assert_eq!(
+        said.lines().filter(|line| line.split_whitespace().nth(1) == Some("360")).count(),
+        8,
+        "{said}"
+    );
+}

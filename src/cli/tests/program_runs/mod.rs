@@ -1,0 +1,17 @@
+//! Runs the program.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+pub fn raykata(arguments: &[&str]) -> Output {
+    let program = Command::new(env!("CARGO_BIN_EXE_raykata")).current_dir(root()).args(arguments).output();
+    program.expect("the program starts")
+}
+
+pub fn told(output: &Output) -> (String, String) {
+    (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
+}

@@ -1,0 +1,254 @@
+//! `grader corpus carry`: patches of the corpus follow the files that they change when these move, are split or change.
+//!
+//! Each patch is applied to its file as it was. What it changed there is then merged into the file as it is now, and the
+//! difference is written anew.
+
+use super::entry::apply;
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+use diffy::DiffOptions;
+use raykata::film::write_atomically;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Which patches, and what has happened to their files.
+#[derive(Args)]
+pub struct Options {
+    /// A git revision with the files to which the patches apply, or a folder that holds these files.
+    from: String,
+    /// A file that has moved, as OLD=NEW, from the root of the kit. A file that was split is named once for each part.
+    #[arg(long = "moved", value_name = "OLD=NEW", value_parser = pair)]
+    moved: Vec<(String, String)>,
+    /// A word that is spelled in another way now, as OLD=NEW.
+    #[arg(long = "word", value_name = "OLD=NEW", value_parser = pair)]
+    words: Vec<(String, String)>,
+    /// The folder of the patches; those in folders below it count.
+    #[arg(long, default_value = "tests/corpus")]
+    corpus: PathBuf,
+    /// Only say what would be done.
+    #[arg(long)]
+    check: bool,
+}
+
+fn pair(text: &str) -> Result<(String, String)> {
+    let (old, new) = text.split_once('=').with_context(|| format!("`{text}` is not OLD=NEW"))?;
+    ensure!(!old.is_empty() && !new.is_empty(), "`{text}` is not OLD=NEW");
+    Ok((old.into(), new.into()))
+}
+
+/// What becomes of a patch.
+#[derive(Debug, PartialEq)]
+enum Carried {
+    /// Its file is as it was.
+    Same,
+    /// The text of the patch now.
+    Anew(String),
+    /// It no longer applies; why.
+    Lost(String),
+}
+
+/// Carries all patches over; whether all could be.
+pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    let corpus = root.join(&options.corpus);
+    let mut files = BTreeMap::new();
+    let (mut same, mut anew, mut lost) = (0, 0, 0);
+    for file in patches(&corpus)? {
+        let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+        let shown = file.strip_prefix(&corpus).unwrap_or(&file).display();
+        let mut old = |path: &str| -> Result<String> {
+            if let Some(text) = files.get(path) {
+                return Ok(String::clone(text));
+            }
+            let text = as_it_was(root, &options.from, path)?;
+            files.insert(path.to_owned(), text.clone());
+            Ok(text)
+        };
+        let new = |path: &str| fs::read_to_string(root.join(path)).ok();
+        let carried = carry(&text, &options.moved, &options.words, &mut old, &new);
+        match carried.with_context(|| shown.to_string())? {
+            Carried::Same => same += 1,
+            Carried::Anew(text) => {
+                anew += 1;
+                if !options.check {
+                    write_atomically(&file, |out| out.write_all(text.as_bytes()))?;
+                }
+            }
+            Carried::Lost(why) => {
+                lost += 1;
+                println!("{shown}: {why}");
+            }
+        }
+    }
+    println!("{same} patches are as they were, {anew} are carried over, {lost} no longer apply");
+    Ok(lost == 0)
+}
+
+/// All files NAME.patch below a folder, sorted.
+fn patches(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut waiting = vec![folder.to_owned()];
+    while let Some(folder) = waiting.pop() {
+        for entry in fs::read_dir(&folder).with_context(|| folder.display().to_string())? {
+            let path = entry?.path();
+            if path.is_dir() {
+                waiting.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "patch") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// A file in a folder or in a revision.
+fn as_it_was(root: &Path, from: &str, path: &str) -> Result<String> {
+    if Path::new(from).is_dir() {
+        let file = Path::new(from).join(path);
+        return fs::read_to_string(&file).with_context(|| file.display().to_string());
+    }
+    let git = Command::new("git").current_dir(root).args(["show", &format!("{from}:{path}")]).output();
+    let output = git.context("git cannot be started")?;
+    if !output.status.success() {
+        bail!("git has no {path} in {from}: {}", String::from_utf8_lossy(&output.stderr).trim());
+    }
+    String::from_utf8(output.stdout).with_context(|| format!("{path} in {from}"))
+}
+
+/// Carries one patch over. `old` and `new` give files as they were and as they are.
+fn carry(
+    text: &str,
+    moved: &[(String, String)],
+    words: &[(String, String)],
+    old: &mut dyn FnMut(&str) -> Result<String>,
+    new: &dyn Fn(&str) -> Option<String>,
+) -> Result<Carried> {
+    let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
+    let (header, diff) = text.split_at(start.context("no difference (a line `--- a/…`)")?);
+    let named = diff.lines().find_map(|line| line.strip_prefix("+++ b/"));
+    let path = named.context("no line `+++ b/…`")?.trim();
+
+    let before = old(path)?;
+    let after = apply(path, diff, &before).context("it does not even fit the file as it was")?;
+    let mut places: Vec<&str> =
+        moved.iter().filter(|(old, _)| old == path).map(|(_, new)| new.as_str()).collect();
+    if places.is_empty() {
+        places.push(path);
+    }
+    if places == [path] && new(path).as_ref() == Some(&before) {
+        return Ok(Carried::Same);
+    }
+    let (before, after) = (spelled(&before, words), spelled(&after, words));
+    let mut why = Vec::new();
+    for place in places {
+        let Some(now) = new(place) else {
+            why.push(format!("there is no {place}"));
+            continue;
+        };
+        match diffy::merge(&before, &now, &after) {
+            Ok(changed) if changed != now => {
+                let mut options = DiffOptions::new();
+                options.set_original_filename(format!("a/{place}"));
+                options.set_modified_filename(format!("b/{place}"));
+                let patch = options.create_patch(&now, &changed).to_string();
+                // What is written must be what will be read.
+                ensure!(
+                    apply(place, &patch, &now)? == changed,
+                    "the new patch does not do what the old one did"
+                );
+                return Ok(Carried::Anew(format!("{header}{patch}")));
+            }
+            Ok(_) => why.push(format!("{place} has the change already")),
+            Err(_) => why.push(format!("{place} is different where it changes something")),
+        }
+    }
+    Ok(Carried::Lost(why.join("; ")))
+}
+
+/// The text with words replaced; a word is what Rust takes for a name.
+fn spelled(text: &str, words: &[(String, String)]) -> String {
+    if words.is_empty() {
+        return text.to_owned();
+    }
+    let in_word = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let mut spelled = String::new();
+    let mut rest = text;
+    while let Some(letter) = rest.chars().next() {
+        let end = rest.find(|next| in_word(next) != in_word(letter)).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        spelled += words.iter().find(|(old, _)| old == word).map_or(word, |(_, new)| new);
+        rest = after;
+    }
+    spelled
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OLD: &str = "one\ntwo\nthree\nfour\nfive\nsix\nseven\neight\nnine\nten\n";
+    const PATCH: &str = "mistake: it says drei\n\n--- a/src/a.rs\n+++ b/src/a.rs\n@@ -1,5 +1,5 @@\n one\n two\n-three\n\
+                         +drei\n four\n five\n";
+
+    fn carried(moved: &[(&str, &str)], words: &[(&str, &str)], now: &[(&str, &str)]) -> Carried {
+        let owned = |pairs: &[(&str, &str)]| -> Vec<(String, String)> {
+            pairs.iter().map(|(old, new)| ((*old).to_owned(), (*new).to_owned())).collect()
+        };
+        let new = |path: &str| now.iter().find(|(name, _)| *name == path).map(|(_, text)| (*text).to_owned());
+        let mut old = |path: &str| {
+            assert_eq!(path, "src/a.rs");
+            Ok(OLD.to_owned())
+        };
+        carry(PATCH, &owned(moved), &owned(words), &mut old, &new).unwrap()
+    }
+
+    fn applied(carried: Carried, path: &str, now: &str) -> String {
+        let Carried::Anew(text) = carried else { panic!("{carried:?}") };
+        let diff = text.strip_prefix("mistake: it says drei\n\n").expect("the header stays");
+        assert!(diff.starts_with(&format!("--- a/{path}\n+++ b/{path}\n")), "{diff}");
+        apply(path, diff, now).unwrap()
+    }
+
+    #[test]
+    fn a_patch_of_what_is_as_it_was_stays_as_it_is() {
+        assert_eq!(carried(&[], &[], &[("src/a.rs", OLD)]), Carried::Same);
+    }
+
+    #[test]
+    fn a_patch_follows_its_file_and_the_lines_around() {
+        let now = OLD.replace("nine", "NINE").replace("one\n", "zero\nhalf\none\n");
+        let there = [("src/b/c.rs", now.as_str())];
+        let text = applied(carried(&[("src/a.rs", "src/b/c.rs")], &[], &there), "src/b/c.rs", &now);
+        assert_eq!(text, now.replace("three", "drei"));
+    }
+
+    #[test]
+    fn of_a_file_that_was_split_it_finds_its_part() {
+        let (first, second) = OLD.split_at(OLD.find("six").unwrap());
+        let there = [("b.rs", second), ("c.rs", first)];
+        let moved = [("src/a.rs", "b.rs"), ("src/a.rs", "c.rs")];
+        assert_eq!(applied(carried(&moved, &[], &there), "c.rs", first), first.replace("three", "drei"));
+    }
+
+    #[test]
+    fn words_that_are_spelled_in_another_way_are_no_difference() {
+        let now = OLD.replace("two", "2").replace("four", "4");
+        let words = [("two", "2"), ("four", "4"), ("on", "off")];
+        let text = applied(carried(&[], &words, &[("src/a.rs", &now)]), "src/a.rs", &now);
+        assert_eq!(text, now.replace("three", "drei"));
+    }
+
+    #[test]
+    fn what_no_longer_applies_is_reported() {
+        let now = OLD.replace("three", "3");
+        let Carried::Lost(why) = carried(&[], &[], &[("src/a.rs", &now)]) else { panic!("it applies") };
+        assert_eq!(why, "src/a.rs is different where it changes something");
+        let gone = carried(&[("src/a.rs", "b.rs")], &[], &[]);
+        assert_eq!(gone, Carried::Lost("there is no b.rs".into()));
+        let done = carried(&[], &[], &[("src/a.rs", &OLD.replace("three", "drei"))]);
+        assert_eq!(done, Carried::Lost("src/a.rs has the change already".into()));
+    }
+}

@@ -1,0 +1,39 @@
+//! Exercises are made of solutions, and hold no line of an answer.
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// Answers are what is between the marks; no line of them may be left in an exercise.
+#[test]
+fn no_line_of_an_answer_is_in_an_exercise() {
+    for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
+        let solution = root().join("solutions/src").join(exercise.path.file_name().expect("a name"));
+        let text = std::fs::read_to_string(&solution).expect("a solution");
+        let mut inside = false;
+        for line in text.lines().map(str::trim) {
+            match line {
+                "// <solution>" => inside = true,
+                "// </solution>" => inside = false,
+                // Short lines are brackets and such, which are nobody's answer.
+                _ if inside && line.len() > 12 && !line.starts_with("// <stub>") => {
+                    let left = exercise.stub.lines().any(|stub| stub.trim() == line);
+                    assert!(!left, "{}: {line}", exercise.path.display());
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn sync_is_the_same_every_time() {
+    for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
+        assert!(!exercise.stub.contains("<solution>") && !exercise.stub.contains("<stub>"));
+        // A file without marks is its own stub: generating twice changes nothing.
+        let again = grader::sync::stub(&exercise.stub, &exercise.path).expect("no marks are left");
+        assert_eq!(again, exercise.stub);
+    }
+}

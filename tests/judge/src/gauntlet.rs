@@ -1,0 +1,156 @@
+//! Ray/triangle tests against distributions of hard inputs and against closed meshes, judged exactly.
+
+use crate::leak_table;
+use anyhow::Result;
+use glam::Vec3;
+use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
+use raykata::kit::{Kit, TriangleHit, TriangleQuery, mishap};
+use raykata::ray::Ray;
+use raykata::shape::Triangle;
+use raykata_cli::cost::Summary;
+use raykata_cli::report::bar_of_steps;
+use std::hint::black_box;
+
+/// A question to a method.
+pub type Input = (Ray, Triangle);
+/// The `t` of each hit.
+pub type Answers = Vec<Option<f32>>;
+/// Answers many questions.
+type Ask<'a> = Box<dyn Fn(&[Input]) -> Answers + Sync + 'a>;
+
+/// A method or a function of the kit.
+pub struct Row<'a> {
+    /// What it is called.
+    pub name: String,
+    /// How it answers all inputs.
+    pub answer: Ask<'a>,
+    /// The method itself, if it is cheap to ask: then nothing is asked that an earlier answer has settled.
+    pub method: Option<fn(&Ray, &Triangle) -> Option<f32>>,
+}
+
+/// The functions of the kit that are written.
+pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
+    let example = (Ray::new(Vec3::Z, Vec3::NEG_Z), Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y });
+    type Function = fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>;
+    let asked: [(&str, Function); 3] = [
+        ("kit: triangle_cramer", |kit, queries| kit.triangle_cramer(queries)),
+        ("kit: triangle_gram", |kit, queries| kit.triangle_gram(queries)),
+        ("kit: triangle_choice", |kit, queries| kit.triangle_choice(queries)),
+    ];
+    let mut rows = Vec::new();
+    for (name, ask) in asked {
+        let answer = move |inputs: &[Input]| {
+            let queries: Vec<TriangleQuery> =
+                inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
+            ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
+        };
+        // A function that is not written yet is left out, with a word about it.
+        match mishap::catch(|| answer(&[example])) {
+            Ok(_) => rows.push(Row { name: name.into(), answer: Box::new(answer), method: None }),
+            Err(mishap) => println!("{name} is left out: {mishap}"),
+        }
+    }
+    rows
+}
+
+/// Inputs of each distribution, and rays at the edges and at the vertices of each mesh, for a [`summary`].
+const INPUTS_OF_SUMMARY: usize = 10_000;
+
+/// All rows in short.
+pub fn summary(rows: Vec<Row<'_>>) -> Vec<Summary> {
+    const SEED: u64 = 1;
+    let bar = bar_of_steps(rows.len());
+    bar.set_message("ray/triangle tests");
+    let judged: Vec<Judged> =
+        DISTRIBUTIONS.iter().map(|distribution| judge(distribution, SEED, INPUTS_OF_SUMMARY)).collect();
+    let summaries = rows.into_iter().map(|row| {
+        let wrong = judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs)).wrong);
+        let summary = Summary {
+            nanoseconds: nanoseconds(&judged[0], |inputs| {
+                black_box((row.answer)(black_box(inputs)));
+            }),
+            wrong_per_million: 1e4 * wrong.sum::<f64>() / judged.len() as f64,
+            leaks_per_million: leak_table::per_million(&row, SEED, INPUTS_OF_SUMMARY as u64),
+            name: row.name,
+        };
+        bar.inc(1);
+        summary
+    });
+    let summaries = summaries.collect();
+    bar.finish_and_clear();
+    summaries
+}
+
+/// Prints how often each row is wrong on each distribution, by how much, and how often it leaks.
+pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<()> {
+    let bar = bar_of_steps(DISTRIBUTIONS.len() + rows.len());
+    let judged: Vec<Judged> = DISTRIBUTIONS
+        .iter()
+        .map(|distribution| {
+            bar.inc(1);
+            judge(distribution, seed, n_inputs as usize)
+        })
+        .collect();
+    let mut cells: Vec<Vec<Cell>> = Vec::new();
+    let mut times = Vec::new();
+    for row in &rows {
+        cells.push(judged.iter().map(|judged| compare(judged, &(row.answer)(&judged.inputs))).collect());
+        times.push(nanoseconds(&judged[0], |inputs| {
+            black_box((row.answer)(black_box(inputs)));
+        }));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+
+    let heads: Vec<&str> = DISTRIBUTIONS.iter().map(|distribution| distribution.name).collect();
+    print_table("wrong %", &rows, &heads, |row, column| percent(cells[row][column].wrong), Some(&times));
+    print_table("worst μ", &rows, &heads, |row, column| short(cells[row][column].margin), None);
+    print_table("t, ulps", &rows, &heads, |row, column| short(cells[row][column].ulps), None);
+    println!(
+        "wrong %: verdicts that are not the exact one; ns: of one call, with the answer stored (interior).\n\
+         worst μ: how many roundings the worst of them was from flipping; a stable method stays below 64.\n\
+         t, ulps: 99 of 100 hits have a t that is off by less.\n\n\
+         The distributions:"
+    );
+    for distribution in &DISTRIBUTIONS {
+        println!("  {:<9} {}", distribution.name, distribution.what);
+    }
+    println!();
+    leak_table::table(&rows, seed, n_inputs)
+}
+
+fn print_table(
+    title: &str,
+    rows: &[Row<'_>],
+    heads: &[&str],
+    cell: impl Fn(usize, usize) -> String,
+    times: Option<&[f64]>,
+) {
+    let columns: String = heads.iter().map(|head| format!("{head:>9}")).collect();
+    println!("{title:<36}{columns}{}", if times.is_some() { "       ns" } else { "" });
+    for (index, row) in rows.iter().enumerate() {
+        let cells: String = (0..heads.len()).map(|column| format!("{:>9}", cell(index, column))).collect();
+        let time = times.map_or(String::new(), |times| format!("{:>9.1}", times[index]));
+        println!("{:<36}{cells}{time}", row.name);
+    }
+    println!();
+}
+
+fn percent(share: f64) -> String {
+    match share {
+        0.0 => "0".into(),
+        share if share < 0.01 => "<0.01".into(),
+        share => format!("{share:.2}"),
+    }
+}
+
+/// Three digits, whatever the size.
+fn short(number: f64) -> String {
+    match number {
+        0.0 => "0".into(),
+        n if n < 0.01 => "<0.01".into(),
+        n if n < 1000.0 => format!("{n:.2}"),
+        n => format!("{n:.0e}"),
+    }
+}

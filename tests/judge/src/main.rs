@@ -1,0 +1,37 @@
+//! What `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge gauntlet ROOT WORKER
+//! INPUTS SEED`, and `judge hits`, which is asked through standard input.
+
+use anyhow::{Result, bail};
+use judge::{gauntlet, hits, scorecard};
+use raykata_cli::kits::{Source, Which};
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+/// Whether all went well.
+fn run() -> Result<bool> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let source = |worker: &str| Source { which: Which::Exercises, program: worker.into() };
+    match words[..] {
+        ["check", _, worker] => scorecard::scorecard(&source(worker), None),
+        ["check", _, worker, stage] => scorecard::scorecard(&source(worker), Some(stage.parse()?)),
+        ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),
+        ["gauntlet", _, worker, inputs, seed] => {
+            let kit = source(worker).fresh();
+            gauntlet::tables(gauntlet::rows_of_kit(&*kit), inputs.parse()?, seed.parse()?).map(|()| true)
+        }
+        ["hits"] => hits::serve(std::io::stdin().lock(), std::io::stdout().lock()).map(|()| true),
+        _ => bail!("this is the judge: `raykata check` starts it. It is not started by hand"),
+    }
+}

@@ -1,0 +1,139 @@
+//! `raykata check`, and `raykata` alone: where a student stands and what comes next.
+
+use all_checks::STAGES;
+use anyhow::Result;
+use checks::rubric::{self, RUBRIC};
+use checks::{Check, Verdict};
+use raykata_cli::kits::{Source, with_exercises};
+use raykata_cli::queue;
+use std::path::Path;
+
+/// A check and how it ended.
+pub struct Graded {
+    /// The check.
+    pub check: &'static Check,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What it is worth.
+    pub points: u32,
+}
+
+impl Graded {
+    fn passed(&self) -> bool {
+        self.verdict == Verdict::Passed
+    }
+}
+
+/// Runs all checks of the stages for which `wanted` holds, each with a kit of its own, on all cores.
+pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
+    run_checks_on(queue::cores(), source, wanted, 0)
+}
+
+/// The same on this many threads, with the inputs that `seed` picks.
+pub fn run_checks_on(
+    threads: usize,
+    source: &Source,
+    wanted: impl Fn(u8) -> bool,
+    seed: u64,
+) -> Result<Vec<Graded>> {
+    let checks: Vec<&'static Check> =
+        STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
+    let grade = |_: &(), &check: &&'static Check| {
+        let verdict = checks::run(check, &source.fresh(), seed);
+        Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
+    };
+    queue::run(&vec![(); threads], &checks, grade)
+}
+
+/// Prints the scorecard; `Ok(true)` if everything passed.
+pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
+    let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number))?;
+    for (number, _) in STAGES.iter().filter(|(number, _)| stage.is_none_or(|stage| stage == *number)) {
+        let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
+        println!("{}", stage_line(*number, &of_stage));
+        for one in &of_stage {
+            let word = match &one.verdict {
+                Verdict::Passed => "ok",
+                Verdict::NotWritten { .. } => "not written",
+                Verdict::Failed(_) => "FAILED",
+            };
+            let entry = rubric::entry(*number, one.check.name);
+            let earned = if one.passed() { one.points } else { 0 };
+            println!("  {word:<11}  {earned:>2}/{:<2}  {:<52}  {}", one.points, one.check.name, entry.title);
+        }
+        println!();
+    }
+    for one in &graded {
+        if let Verdict::Failed(message) = &one.verdict {
+            println!("{message}");
+        }
+    }
+    for (place, (task, waiting)) in gaps(&graded) {
+        println!("not written yet: {place}\n  {task} ({})", wait_for_it(waiting));
+    }
+    let passed = graded.iter().filter(|one| one.passed()).count();
+    let (earned, all) = points(graded.iter());
+    println!("\n{earned} of {all} points\n{passed} passed, {} failed", graded.len() - passed);
+    Ok(passed == graded.len())
+}
+
+fn wait_for_it(checks: usize) -> String {
+    if checks == 1 { "1 check waits for it".into() } else { format!("{checks} checks wait for it") }
+}
+
+/// `(place, (task, checks that wait for it))`, in the order of the lecture.
+fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
+    let mut gaps: Vec<(String, (String, usize))> = Vec::new();
+    for one in graded {
+        if let Verdict::NotWritten { task, place } = &one.verdict {
+            match gaps.iter_mut().find(|(known, _)| known == place) {
+                Some((_, (_, waiting))) => *waiting += 1,
+                None => gaps.push((place.clone(), (task.clone(), 1))),
+            }
+        }
+    }
+    gaps
+}
+
+fn points<'a>(graded: impl Iterator<Item = &'a Graded>) -> (u32, u32) {
+    graded.fold((0, 0), |(earned, all), one| {
+        (earned + if one.passed() { one.points } else { 0 }, all + one.points)
+    })
+}
+
+fn stage_line(number: u8, graded: &[&Graded]) -> String {
+    let title = RUBRIC.get(&format!("stage{number}")).map_or("", |stage| &stage.title);
+    let passed = graded.iter().filter(|one| one.passed()).count();
+    let (earned, all) = points(graded.iter().copied());
+    format!(
+        "stage {number:>2} · {title:<28} {passed:>2} of {:<2} checks   {earned:>3} of {all:<3} points",
+        graded.len()
+    )
+}
+
+/// Where the student stands, and the next step.
+pub fn status(root: &Path, source: &Source) -> Result<()> {
+    let graded = run_checks(source, |_| true)?;
+    for (number, _) in STAGES {
+        let of_stage: Vec<&Graded> = graded.iter().filter(|one| one.check.stage == *number).collect();
+        println!("{}", stage_line(*number, &of_stage));
+    }
+    println!();
+    match graded.iter().find(|one| !one.passed()) {
+        None => println!(
+            "Everything passes. `cargo run --release -- render scenes/showcase.toml{}` shows it.",
+            with_exercises(root)
+        ),
+        Some(next) => {
+            let (stage, name) = (next.check.stage, next.check.name);
+            match &next.verdict {
+                Verdict::NotWritten { task, place } => println!("Next: {place}\n  {task}\n"),
+                Verdict::Failed(message) => println!("Next, `{name}` fails:\n{message}"),
+                Verdict::Passed => {}
+            }
+            println!("  run it:  cargo test --test stage{stage} {name}");
+            println!("  a hint:  cargo run -- hint {name}");
+        }
+    }
+    Ok(())
+}

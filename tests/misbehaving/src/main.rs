@@ -1,0 +1,78 @@
+//! A worker that does everything wrong, for the tests beside it and for those of the grader. The radius of the first sphere says what, if it is
+//! below zero; other questions are answered as the reference would.
+
+use raykata::kit::{Answer, Request};
+use raykata::worker::{Reply, send};
+use std::hint::black_box;
+use std::io::Write;
+use std::time::Duration;
+
+fn recurse(depth: u64) -> u64 {
+    if black_box(depth) == u64::MAX { 0 } else { 1 + black_box(recurse(depth + 1)) }
+}
+
+/// Late for ever, but only once: the process that is asked next finds the mark that the one before left, and goes on.
+fn late_once(mark: u32) {
+    let mark = std::env::temp_dir().join(format!("raykata-late-{mark}"));
+    if std::fs::File::create_new(&mark).is_ok() {
+        loop {
+            std::thread::park();
+        }
+    }
+    let _ = std::fs::remove_file(mark);
+}
+
+/// The pipe to the judge, behind the back of the library.
+#[cfg(unix)]
+fn pipe() -> impl std::io::Write {
+    use std::os::fd::AsFd;
+    let stdin = std::io::stdin().as_fd().try_clone_to_owned().expect("a pipe");
+    std::os::unix::net::UnixStream::from(stdin)
+}
+
+#[cfg(not(unix))]
+fn pipe() -> impl std::io::Write {
+    std::io::stdout()
+}
+
+fn say(reply: &Reply) -> bool {
+    send(&mut pipe(), reply).is_ok()
+}
+
+fn main() {
+    raykata::worker::serve_with(&|request, watch| {
+        if let Request::SphereAlgebraic(queries) = request {
+            match queries[0].sphere.radius as i32 {
+                -1 => panic!("on purpose"),
+                -2 => std::process::exit(0),
+                -3 => std::process::abort(),
+                -4 => println!("{}", recurse(0)),
+                -5 => loop {
+                    std::hint::spin_loop();
+                },
+                -6 => println!("test result: ok. 24 passed; 0 failed"),
+                -7 => return Answer::SphereAlgebraic(vec![]),
+                -9 => late_once(queries[0].ray.t_max as u32),
+                -8 => return Answer::EncodeGamma(vec![1]),
+                -10 => drop(black_box(vec![1_u8; 3 << 30])),
+                -11 => std::thread::sleep(Duration::from_secs(3600)),
+                -14 => std::thread::sleep(Duration::from_secs(3)),
+                -12 => panic!("{:?}", std::fs::read("/etc/passwd").map_err(|error| error.kind())),
+                -13 => panic!(
+                    "{:?}",
+                    std::process::Command::new("/bin/sh").spawn().map_err(|error| error.kind())
+                ),
+                // No message.
+                -20 => drop(pipe().write_all(&[8, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255])),
+                // One that never ends.
+                -21 => drop(pipe().write_all(&[255; 4096])),
+                -22 => while say(&Reply::Progress { done: 0, total: 1 }) {},
+                -23 => drop(say(&Reply::Answer(Box::new(Answer::Render(None))))),
+                // Answers to all questions to come.
+                -24 => while say(&Reply::Answer(Box::new(Answer::SphereAlgebraic(vec![Some(1.0)])))) {},
+                _ => {}
+            }
+        }
+        request.answer(&raykata::kit::Linked(solutions::Kit), watch)
+    });
+}

@@ -1,0 +1,27 @@
+//! Questions to the misbehaving worker: the radius says what it is to do.
+
+use glam::Vec3;
+use raykata::kit::{Door, Mishap, Shapes, SphereQuery, mishap};
+use raykata::ray::Ray;
+use raykata::shape::Sphere;
+use raykata_cli::worker::Worker;
+
+pub type Asked = Result<Vec<Option<f32>>, Mishap>;
+
+pub fn query(radius: f32) -> SphereQuery {
+    SphereQuery {
+        ray: Ray::new(Vec3::new(-20.0, 0.0, 0.0), Vec3::X),
+        sphere: Sphere { center: Vec3::ZERO, radius },
+    }
+}
+
+pub fn ask(door: &Door<Worker>, radius: f32) -> Asked {
+    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
+}
+
+pub fn how_it_crashed(asked: Asked) -> String {
+    match asked {
+        Err(Mishap::Crashed { how }) => how,
+        other => panic!("not a crash: {other:?}"),
+    }
+}

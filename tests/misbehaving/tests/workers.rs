@@ -1,0 +1,133 @@
+//! Code in a worker may panic, loop, overflow its stack or end its process: that costs the call it was asked, with a
+//! message that says what happened, and the next call is answered as if nothing had been.
+
+mod asking;
+
+use asking::{ask, how_it_crashed, query};
+use raykata::frame::{Unwatched, Watch};
+use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, View, mishap};
+use raykata_cli::worker::Worker;
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+fn door() -> Door<Worker> {
+    Door(Worker::new(env!("CARGO_BIN_EXE_misbehaving-worker").into(), Duration::from_secs(2)))
+}
+
+#[test]
+fn an_honest_answer_crosses_the_pipe() {
+    assert_eq!(ask(&door(), 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn a_panic_keeps_its_place() {
+    let Err(Mishap::Panicked { message, place }) = ask(&door(), -1.0) else { panic!("no panic") };
+    assert_eq!(message, "on purpose");
+    assert!(place.contains("misbehaving/src/main.rs:"), "{place}");
+}
+
+#[test]
+fn each_way_to_die_is_told_and_the_next_call_is_answered() {
+    let door = door();
+    assert!(how_it_crashed(ask(&door, -2.0)).contains("exit status: 0"));
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+    how_it_crashed(ask(&door, -3.0));
+    assert_eq!(how_it_crashed(ask(&door, -4.0)), "the stack overflowed: a recursion that never ends?");
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn an_endless_loop_ends() {
+    let door = door();
+    let started = Instant::now();
+    assert_eq!(ask(&door, -5.0), Err(Mishap::TimedOut { seconds: 2 }));
+    // Not how fast it is, but that it ends at all: without the watchdog this test hangs.
+    assert!(started.elapsed() < Duration::from_secs(60));
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+}
+
+#[test]
+fn what_is_late_on_a_busy_machine_is_no_endless_loop() {
+    let program = || env!("CARGO_BIN_EXE_misbehaving-worker").into();
+    let patience = Duration::from_secs(2);
+    // Late the first time, however long anybody waits, and prompt the second time: how fast the machine is decides nothing.
+    // The range of the ray tells runs side by side apart.
+    let mut late = query(-9.0);
+    late.ray.t_max = std::process::id() as f32;
+    let ask_late = |door: &Door<Worker>| mishap::catch(|| door.sphere_algebraic(&[late]));
+
+    let hasty = Door(Worker::hasty(program(), patience));
+    assert_eq!(ask(&hasty, 10.0), Ok(vec![Some(10.0)]));
+    assert!(ask_late(&hasty).is_ok());
+    assert_eq!(ask_late(&Door(Worker::new(program(), patience))), Err(Mishap::TimedOut { seconds: 2 }));
+    // The process that was ended has left its mark; this takes it away.
+    assert!(ask_late(&hasty).is_ok());
+}
+
+#[test]
+fn what_student_code_prints_does_not_reach_the_pipe() {
+    assert_eq!(ask(&door(), -6.0), Ok(vec![None]));
+}
+
+#[test]
+fn an_answer_of_the_wrong_kind_or_length_is_refused() {
+    let door = door();
+    for radius in [-7.0, -8.0] {
+        assert!(matches!(ask(&door, radius), Err(Mishap::Nonsense { .. })));
+    }
+}
+
+#[test]
+fn a_program_that_is_not_there_is_told() {
+    let door = Door(Worker::new("no/such/worker".into(), Duration::from_secs(2)));
+    assert!(how_it_crashed(ask(&door, 10.0)).starts_with("it cannot be started"));
+}
+
+#[test]
+fn a_worker_passes_every_check_of_the_reference() {
+    for (_, checks) in all_checks::STAGES {
+        for check in *checks {
+            let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(door());
+            assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
+        }
+    }
+}
+
+#[test]
+fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
+    let mut scene = raykata::scene::load::load(file).expect("the scene");
+    (scene.film.width, scene.film.height) = (40, 25);
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
+
+    struct Seen(AtomicU64);
+    impl Watch for Seen {
+        fn progress(&self, done: u64, total: u64) {
+            assert_eq!(total, 1000);
+            self.0.fetch_max(done, Ordering::Relaxed);
+        }
+    }
+    let seen = Seen(AtomicU64::new(0));
+    let piped = door().render(&job, &seen).expect("nobody cancels");
+    let linked = raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels");
+    assert_eq!((piped.film, piped.counts, piped.notes), (linked.film, linked.counts, linked.notes));
+    assert_eq!(seen.0.load(Ordering::Relaxed), 1000);
+}
+
+#[test]
+fn a_frame_that_is_no_longer_wanted_ends() {
+    struct Unwanted;
+    impl Watch for Unwanted {
+        fn progress(&self, _: u64, _: u64) {}
+        fn cancelled(&self) -> bool {
+            true
+        }
+    }
+    let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage1.toml"));
+    let scene = raykata::scene::load::load(file).expect("the scene");
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: false };
+    let door = door();
+    assert_eq!(door.render(&job, &Unwanted), None);
+    assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
+}
