@@ -165,7 +165,9 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     for program in programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
-            cargo.arg("--features").arg(format!("{}/{feature}", program.package));
+            // Without the name of the package: the solutions depend on themselves in their tests, and cargo would take
+            // `solutions/frames` for a feature of that dependency.
+            cargo.args(["--features", feature]);
         }
     }
     match folder.file_name().and_then(|name| name.to_str()) {
