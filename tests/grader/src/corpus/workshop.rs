@@ -134,7 +134,7 @@ impl Workshop {
             .current_dir(&self.folder)
             .args(["build", "--quiet", "--package", "solutions", "--bin", "solutions-worker"])
             .args(["--message-format=json", "--target-dir", "target"])
-            .args(self.need.feature().map(|feature| format!("--features=solutions/{feature}")))
+            .args(self.need.feature().map(|feature| format!("--features={feature}")))
             .args(QUICK_BUILD)
             .stdin(Stdio::null())
             .output()
