@@ -70,7 +70,12 @@ fn find(name: &str) -> Result<&'static Command, Misuse> {
     const { &COMMANDS }.iter().find(|(spec, _)| word(spec) == name).ok_or_else(|| {
         let known: Vec<&str> = COMMANDS.iter().map(|(spec, _)| word(spec)).collect();
         let author = ["sync", "corpus", "gaps", "mutants", "generate", "handout", "export", "merge", "grade"];
-        let grader = if author.contains(&name) { "; that is `cargo run -p grader -- …`" } else { "" };
+        // A student's repository has no grader.
+        let has_grader = || root().is_ok_and(|root| root.join("tests/grader").is_dir());
+        let grader = match author.contains(&name) && has_grader() {
+            true => "; that is `cargo run -p grader -- …`",
+            false => "",
+        };
         Misuse::new(format!(
             "there is no command `{name}`{}{grader}\n\nUsage: raykata [COMMAND]\n\nFor more information, try \
              `raykata --help`.",
