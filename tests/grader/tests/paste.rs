@@ -11,7 +11,7 @@ mod collect;
 #[path = "paste/copy.rs"]
 mod copy;
 
-use collect::{Function, candidates, functions, functions_of, messages};
+use collect::{Function, bundles, candidates, functions, functions_of};
 use grader::sync;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -71,16 +71,21 @@ fn crates() -> Vec<(String, String)> {
 
 /// The functions of those crates, in the kit or in a copy of it.
 fn handed_out(root: &Path) -> Vec<Function> {
-    let messages = messages(root, "src/kit");
-    crates().iter().flat_map(|(folder, name)| functions(root, folder, name, &messages)).collect()
+    let bundles = bundles(root);
+    crates().iter().flat_map(|(folder, name)| functions(root, folder, name, &bundles)).collect()
 }
 
 /// The functions that students write.
 fn exercises(root: &Path) -> Vec<Function> {
     let texts = sync::pristine(root).expect("readable solutions");
-    let mut exercises = Vec::new();
+    let (mut exercises, bundles) = (Vec::new(), bundles(root));
     for (name, text) in texts.iter().filter(|(name, _)| name.starts_with("stage")) {
-        exercises.extend(functions_of(&format!("solutions/src/{name}"), name.trim_end_matches(".rs"), text));
+        exercises.extend(functions_of(
+            &format!("solutions/src/{name}"),
+            name.trim_end_matches(".rs"),
+            text,
+            &bundles,
+        ));
     }
     exercises.retain(|function| function.is_exercise);
     exercises
@@ -132,7 +137,7 @@ fn a_planted_answer_fits() {
     let exercises = exercises(&root());
     for (file, path, text, exercise) in PLANTED {
         let module = path.rsplit_once("::").expect("a module").0;
-        let planted = functions_of(file, module, text);
+        let planted = functions_of(file, module, text, &bundles(&root()));
         let found = candidates(&exercises, &planted);
         assert!(found.iter().any(|(found, one)| found.path == exercise && one.path == path), "{path}");
     }
@@ -149,12 +154,12 @@ fn no_function_that_students_receive_is_an_answer() {
     for (file, _, text, _) in PLANTED {
         copy::append(&folder.join(file), &text.replace("\nfn ", "\npub fn "));
     }
-    let (exercises, all) = (exercises(&root), handed_out(&folder));
+    let (exercises, all, bundles) = (exercises(&root), handed_out(&folder), bundles(&root));
     let mut pasted: Vec<(&Function, &Function)> = Vec::new();
     let mut arms: BTreeMap<(&str, &str), String> = BTreeMap::new();
     let mut answers = BTreeSet::new();
     for (exercise, function) in candidates(&exercises, &all) {
-        let calls = call::calls(exercise, function);
+        let calls = call::calls(exercise, function, &bundles);
         if calls.is_empty() {
             // Only a person can judge what nobody else can call.
             answers.insert(format!("{} in {}", function.path, exercise.path));

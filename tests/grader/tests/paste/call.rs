@@ -1,6 +1,6 @@
 //! Calls one function with the parameters of another, whatever their order and precision.
 
-use crate::collect::{Function, base, plain};
+use crate::collect::{Bundles, Function, base, bundle, plain};
 use syn::{FnArg, GenericArgument, Pat, PathArguments, ReturnType, Type};
 
 /// More orders than this of parameters that are alike are not tried.
@@ -8,35 +8,25 @@ const MOST_ORDERS: usize = 24;
 
 /// Expressions in the body of `exercise` that return what `function` makes of its parameters: one for each order of the
 /// parameters that are alike. None, if nobody else can call the function.
-pub fn calls(exercise: &Function, function: &Function) -> Vec<String> {
+pub fn calls(exercise: &Function, function: &Function, bundles: &Bundles) -> Vec<String> {
     if function.is_test || function.of_trait {
         return Vec::new();
     }
-    let given: Vec<(String, &Type, String)> = exercise
-        .signature
-        .inputs
-        .iter()
-        .filter_map(|input| match input {
-            FnArg::Typed(typed) => match &*typed.pat {
-                Pat::Ident(name) => Some((name.ident.to_string(), &*typed.ty, plain(exercise, &typed.ty))),
-                // A parameter that is taken apart at once gets a name in the copy.
-                _ => None,
-            },
-            FnArg::Receiver(_) => None,
-        })
-        .collect();
-    let mut wanted: Vec<(&Type, String)> = Vec::new();
-    for (index, input) in function.signature.inputs.iter().enumerate() {
-        match (input, &function.bundle) {
-            (_, Some(bundle)) if bundle.index == index => {
-                wanted.extend(bundle.fields.iter().map(|(_, ty)| (ty, plain(function, ty))));
-            }
-            (FnArg::Typed(typed), _) => wanted.push((&typed.ty, plain(function, &typed.ty))),
-            (FnArg::Receiver(_), _) => {
-                wanted.extend(function.self_type.as_ref().map(|ty| (ty, plain(function, ty))));
-            }
+    let mut given = Vec::new();
+    for input in &exercise.signature.inputs {
+        if let FnArg::Typed(typed) = input
+            && let Pat::Ident(name) = &*typed.pat
+        {
+            take_apart(name.ident.to_string(), &typed.ty, (exercise, bundles), &mut given);
         }
     }
+    let parameters = function.signature.inputs.iter().filter_map(|input| match input {
+        FnArg::Typed(typed) => Some(&*typed.ty),
+        FnArg::Receiver(_) => function.self_type.as_ref(),
+    });
+    let parameters: Vec<&Type> = parameters.collect();
+    let mut wanted = Vec::new();
+    parameters.iter().for_each(|ty| take_apart(String::new(), ty, (function, bundles), &mut wanted));
     let mut orders = Vec::new();
     assign(&given, &wanted, &mut Vec::new(), &mut orders);
     let result = |signature: &syn::Signature| match &signature.output {
@@ -44,19 +34,15 @@ pub fn calls(exercise: &Function, function: &Function) -> Vec<String> {
         ReturnType::Type(_, ty) => Some((**ty).clone()),
     };
     let call = |order: &Vec<usize>| {
-        let arguments = order.iter().zip(&wanted).map(|(&index, (to, _))| argument(&given[index], to));
-        let mut arguments: Vec<String> = arguments.collect();
-        if let Some(bundle) = &function.bundle {
-            let fields = bundle.index..bundle.index + bundle.fields.len();
-            let values = bundle.fields.iter().zip(&arguments[fields.clone()]);
-            let values: Vec<String> = values.map(|((name, _), value)| format!("{name}: {value}")).collect();
-            let message = format!("&raykata::kit::{} {{ {} }}", bundle.name, values.join(", "));
-            arguments.splice(fields, [message]);
-        }
+        let mut leaves = order.iter().map(|&index| &given[index]);
+        let arguments: Vec<String> =
+            parameters.iter().map(|ty| put_together(ty, bundles, &mut leaves)).collect();
         let is_method = function.signature.inputs.iter().any(|input| matches!(input, FnArg::Receiver(_)));
         let call = match (is_method, &arguments[..]) {
             // A method takes `self` as it needs it.
-            (true, [this, rest @ ..]) => format!("{this}.{}({})", function.signature.ident, rest.join(", ")),
+            (true, [this, rest @ ..]) => {
+                format!("({this}).{}({})", function.signature.ident, rest.join(", "))
+            }
             _ => format!("{}({})", function.path, arguments.join(", ")),
         };
         match (result(&function.signature), result(&exercise.signature)) {
@@ -67,14 +53,39 @@ pub fn calls(exercise: &Function, function: &Function) -> Vec<String> {
     orders.iter().map(call).collect()
 }
 
+/// A value: the expression, its type, and the type without precision and the like.
+type Leaf = (String, Type, String);
+
+/// The values that a parameter is made of.
+fn take_apart(value: String, ty: &Type, (of, bundles): (&Function, &Bundles), leaves: &mut Vec<Leaf>) {
+    match bundle(ty, bundles) {
+        Some((_, fields)) => {
+            for (name, ty) in fields {
+                take_apart(format!("{value}.{name}"), ty, (of, bundles), leaves);
+            }
+        }
+        None => leaves.push((value, ty.clone(), plain(of, ty))),
+    }
+}
+
+/// An argument of type `to`, of the next values.
+fn put_together<'a>(to: &Type, bundles: &Bundles, leaves: &mut impl Iterator<Item = &'a Leaf>) -> String {
+    match (bundle(to, bundles), to) {
+        (Some(_), Type::Reference(to)) => format!("&{}", put_together(&to.elem, bundles, leaves)),
+        (Some((place, fields)), _) => {
+            let fields = fields
+                .iter()
+                .map(|(name, ty)| format!("{name}: {}", put_together(ty, bundles, leaves)))
+                .collect::<Vec<_>>();
+            format!("{place}::{} {{ {} }}", base(to), fields.join(", "))
+        }
+        (None, _) => leaves.next().map_or_else(String::new, |leaf| argument(leaf, to)),
+    }
+}
+
 /// All ways to give each wanted parameter a given one of its type.
-fn assign(
-    given: &[(String, &Type, String)],
-    wanted: &[(&Type, String)],
-    order: &mut Vec<usize>,
-    orders: &mut Vec<Vec<usize>>,
-) {
-    let Some((_, key)) = wanted.get(order.len()) else {
+fn assign(given: &[Leaf], wanted: &[Leaf], order: &mut Vec<usize>, orders: &mut Vec<Vec<usize>>) {
+    let Some((.., key)) = wanted.get(order.len()) else {
         return orders.push(order.clone());
     };
     for index in 0..given.len() {
@@ -86,7 +97,7 @@ fn assign(
     }
 }
 
-fn argument((name, from, _): &(String, &Type, String), to: &Type) -> String {
+fn argument((name, from, _): &Leaf, to: &Type) -> String {
     if let (Type::Reference(from), Type::Reference(to)) = (from, to)
         && from.mutability.is_some()
         && to.mutability.is_some()

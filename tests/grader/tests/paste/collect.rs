@@ -26,54 +26,43 @@ pub struct Function {
     pub key: Key,
     /// Whether its body is `todo!(…)`.
     pub is_exercise: bool,
-    /// The parameter that is a message of the door, if there is one: it stands for its fields.
-    pub bundle: Option<Bundle>,
 }
 
-/// A message of the door as a parameter: `query: &SphereQuery` is a ray and a sphere.
-#[derive(Clone)]
-pub struct Bundle {
-    /// Which parameter.
-    pub index: usize,
-    /// The name of the message.
-    pub name: String,
-    /// Its fields.
-    pub fields: Vec<(String, Type)>,
-}
+/// Types that stand for their fields, by name: where they are declared, and the names and types of the fields. So
+/// `query: &SphereQuery` is a ray, a centre and a radius.
+pub type Bundles = BTreeMap<String, (&'static str, Vec<(String, Type)>)>;
 
-/// The fields of the messages of the door, by name.
-pub type Messages = BTreeMap<String, Vec<(String, Type)>>;
-
-/// The messages that are declared in `folder`.
-pub fn messages(root: &Path, folder: &str) -> Messages {
+/// The messages of the door, and the shapes that some exercises take and others take apart.
+pub fn bundles(root: &Path) -> Bundles {
     let mut files = Vec::new();
-    rust_files(&root.join(folder), &mut files);
-    let mut messages = Messages::new();
+    rust_files(&root.join("src/kit"), &mut files);
+    files.push(root.join("src/shape.rs"));
+    let mut bundles = Bundles::new();
     for file in files {
         let text = fs::read_to_string(&file).expect("a readable file");
         for item in parse(&file.display().to_string(), &text).items {
-            if let Item::Struct(one) = item
-                && one.generics.params.is_empty()
-            {
-                let fields = one
-                    .fields
-                    .iter()
-                    .filter_map(|field| Some((field.ident.as_ref()?.to_string(), field.ty.clone())));
-                let fields: Vec<(String, Type)> = fields.collect();
-                if one.ident.to_string().ends_with("Query") && !fields.is_empty() {
-                    messages.insert(one.ident.to_string(), fields);
-                }
+            let Item::Struct(one) = item else { continue };
+            let name = one.ident.to_string();
+            let place = match name.as_str() {
+                "Sphere" | "Plane" => "raykata::shape",
+                name if name.ends_with("Query") => "raykata::kit",
+                _ => continue,
+            };
+            let field = |field: syn::Field| Some((field.ident?.to_string(), field.ty));
+            let fields: Option<Vec<(String, Type)>> = one.fields.into_iter().map(field).collect();
+            if let (true, Some(fields)) = (one.generics.params.is_empty(), fields) {
+                bundles.insert(name, (place, fields));
             }
         }
     }
-    messages
+    bundles
 }
 
 /// The types of the parameters, sorted, and the type of the result.
 pub type Key = (Vec<String>, String);
 
 /// All functions of a crate whose sources are in `folder`, which other crates know as `name`.
-pub fn functions(root: &Path, folder: &str, name: &str, messages: &Messages) -> Vec<Function> {
+pub fn functions(root: &Path, folder: &str, name: &str, bundles: &Bundles) -> Vec<Function> {
     let mut files = Vec::new();
     rust_files(&root.join(folder), &mut files);
     let mut parsed = Vec::new();
@@ -85,7 +74,7 @@ pub fn functions(root: &Path, folder: &str, name: &str, messages: &Messages) -> 
     }
     let mut aliases = BTreeMap::new();
     parsed.iter().for_each(|(.., syntax)| collect_aliases(&syntax.items, &mut aliases));
-    let (mut found, known) = (Vec::new(), Known { aliases: &aliases, messages });
+    let (mut found, known) = (Vec::new(), Known { aliases: &aliases, bundles });
     for (file, module, syntax) in &parsed {
         let is_test = module.split("::").any(|part| part == "tests");
         collect(file, module, is_test, &syntax.items, known, &mut found);
@@ -94,11 +83,11 @@ pub fn functions(root: &Path, folder: &str, name: &str, messages: &Messages) -> 
 }
 
 /// The functions of one text.
-pub fn functions_of(file: &str, module: &str, text: &str) -> Vec<Function> {
+pub fn functions_of(file: &str, module: &str, text: &str, bundles: &Bundles) -> Vec<Function> {
     let syntax = parse(file, text);
     let (mut aliases, mut found) = (BTreeMap::new(), Vec::new());
     collect_aliases(&syntax.items, &mut aliases);
-    let known = Known { aliases: &aliases, messages: &Messages::new() };
+    let known = Known { aliases: &aliases, bundles };
     collect(file, module, false, &syntax.items, known, &mut found);
     found
 }
@@ -163,7 +152,7 @@ fn collect_aliases(items: &[Item], aliases: &mut BTreeMap<String, Type>) {
 #[derive(Clone, Copy)]
 struct Known<'a> {
     aliases: &'a BTreeMap<String, Type>,
-    messages: &'a Messages,
+    bundles: &'a Bundles,
 }
 
 fn collect(
@@ -182,14 +171,6 @@ fn collect(
                    block: &syn::Block| {
         let generics = [outer, &signature.generics];
         let names = Names { aliases: known.aliases, generics, self_type, depth: 0 };
-        let bundle = signature.inputs.iter().enumerate().find_map(|(index, input)| {
-            let name = match input {
-                FnArg::Receiver(_) => base(self_type?),
-                FnArg::Typed(typed) => base(&typed.ty),
-            };
-            let fields = known.messages.get(&name)?.clone();
-            Some(Bundle { index, name, fields })
-        });
         found.push(Function {
             file: file.to_owned(),
             path,
@@ -198,9 +179,8 @@ fn collect(
             self_type: self_type.cloned(),
             signature: signature.clone(),
             outer: outer.clone(),
-            key: names.key(signature, bundle.as_ref()),
+            key: names.key(signature, known.bundles),
             is_exercise: is_todo(block),
-            bundle,
         });
     };
     for item in items {
@@ -257,6 +237,15 @@ pub fn plain(function: &Function, ty: &Type) -> String {
     Names { aliases: &aliases, generics, self_type, depth: 0 }.plain(ty)
 }
 
+/// The fields of a type that stands for them.
+pub fn bundle<'a>(ty: &Type, bundles: &'a Bundles) -> Option<&'a (&'static str, Vec<(String, Type)>)> {
+    match ty {
+        Type::Reference(inner) => bundle(&inner.elem, bundles),
+        Type::Path(_) => bundles.get(&base(ty)),
+        _ => None,
+    }
+}
+
 /// What names of types stand for.
 struct Names<'a> {
     aliases: &'a BTreeMap<String, Type>,
@@ -266,21 +255,29 @@ struct Names<'a> {
 }
 
 impl Names<'_> {
-    fn key(&self, signature: &Signature, bundle: Option<&Bundle>) -> Key {
-        let parameter = |(index, input): (usize, &FnArg)| match (input, bundle) {
-            (_, Some(bundle)) if bundle.index == index => {
-                bundle.fields.iter().map(|(_, ty)| self.plain(ty)).collect()
+    fn key(&self, signature: &Signature, bundles: &Bundles) -> Key {
+        let mut parameters = Vec::new();
+        for input in &signature.inputs {
+            match (input, self.self_type) {
+                (FnArg::Receiver(_), Some(ty)) => self.leaves(ty, bundles, &mut parameters),
+                (FnArg::Receiver(_), None) => {}
+                (FnArg::Typed(typed), _) => self.leaves(&typed.ty, bundles, &mut parameters),
             }
-            (FnArg::Receiver(_), _) => vec![self.self_type.map_or_else(String::new, |ty| self.plain(ty))],
-            (FnArg::Typed(typed), _) => vec![self.plain(&typed.ty)],
-        };
-        let mut parameters: Vec<String> = signature.inputs.iter().enumerate().flat_map(parameter).collect();
+        }
         parameters.sort();
         let result = match &signature.output {
             ReturnType::Default => "()".into(),
             ReturnType::Type(_, ty) => self.plain(ty),
         };
         (parameters, result)
+    }
+
+    /// What a parameter of this type is made of.
+    fn leaves(&self, ty: &Type, bundles: &Bundles, leaves: &mut Vec<String>) {
+        match bundle(ty, bundles) {
+            Some((_, fields)) => fields.iter().for_each(|(_, ty)| self.leaves(ty, bundles, leaves)),
+            None => leaves.push(self.plain(ty)),
+        }
     }
 
     /// A type without references, precision and the kind of list.
