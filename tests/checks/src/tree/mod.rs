@@ -1,13 +1,12 @@
-//! What checks know of hierarchies: a reference builder, the invariants of a tree, its expected cost and its text; in
-//! `search`, a reference search and tables of answers.
+//! What checks know of hierarchies: the invariants of a tree, its expected cost and its text, the least cost of a cut; in
+//! `search`, tables of answers and what a search has to look at.
 
 mod search;
 
-pub use search::{closest_in_table, closest_of, overlapped, search, search_query, sphere_box};
+pub use search::{closest_in_table, closest_of, needed, overlapped, search_query, sphere_box};
 
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
-use raykata::scene::Split;
 
 /// The smallest box around all of `boxes`.
 pub fn around<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Aabb {
@@ -33,26 +32,37 @@ pub fn references(boxes: &[Aabb]) -> Vec<PrimitiveRef> {
     boxes.iter().enumerate().map(reference).collect()
 }
 
-/// `A(L) n(L) + A(R) n(R)`, with half areas, of the cut before `middle`.
-pub fn cut_cost(primitives: &[PrimitiveRef], middle: usize) -> f64 {
+/// `A(L) n(L) + A(R) n(R)`, with half areas.
+pub fn cut_cost(left: &[PrimitiveRef], right: &[PrimitiveRef]) -> f64 {
     let side = |part: &[PrimitiveRef]| half_area(&around(part.iter().map(|p| &p.bounds))) * part.len() as f64;
-    side(&primitives[..middle]) + side(&primitives[middle..])
+    side(left) + side(right)
 }
 
-/// The least [`cut_cost`] over all three axes, with the order and the place that give it. Tries every cut.
-pub fn best_cut(primitives: &[PrimitiveRef]) -> (f64, Vec<PrimitiveRef>, usize) {
-    let mut best = (f64::INFINITY, primitives.to_vec(), 1);
-    for axis in 0..3 {
-        let mut sorted = primitives.to_vec();
-        sorted.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
-        for middle in 1..sorted.len() {
-            let cost = cut_cost(&sorted, middle);
-            if cost < best.0 {
-                best = (cost, sorted.clone(), middle);
-            }
-        }
-    }
-    best
+/// All cuts across an axis, as what is left of them and what is right: one behind each centroid but the last. Primitives
+/// with the same centroid keep their order.
+pub fn cuts(primitives: &[PrimitiveRef], axis: usize) -> Vec<[Vec<PrimitiveRef>; 2]> {
+    let before = |p: usize, q: usize| {
+        let [p_at, q_at] = [p, q].map(|index| primitives[index].centroid[axis]);
+        p_at.total_cmp(&q_at).then(p.cmp(&q)).is_lt()
+    };
+    let sides = |last: usize| {
+        let side = |right: bool| {
+            let there = (0..primitives.len()).filter(|&index| before(last, index) == right);
+            there.map(|index| primitives[index]).collect::<Vec<PrimitiveRef>>()
+        };
+        [side(false), side(true)]
+    };
+    (0..primitives.len()).map(sides).filter(|[_, right]| !right.is_empty()).collect()
+}
+
+/// The least cost of all cuts across these axes.
+pub fn least_cost(
+    primitives: &[PrimitiveRef],
+    axes: &[usize],
+    cost: &dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64,
+) -> f64 {
+    let cuts = axes.iter().flat_map(|&axis| cuts(primitives, axis));
+    cuts.map(|[left, right]| cost(&left, &right)).fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a leaf is cheaper than a cut of this cost; `None` if rounding decides.
@@ -64,61 +74,43 @@ pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
     ((leaf - split).abs() > 1e-4 * leaf).then_some(leaf < split)
 }
 
-/// Builds a tree with the cheapest cut at every node.
-pub fn build(boxes: &[Aabb], leaf_size: usize) -> Bvh {
+/// A tree to search, which follows none of the rules by which students build: neighbours in the list are joined, from the
+/// leaves up.
+pub fn joined(boxes: &[Aabb], leaf_size: usize) -> Bvh {
+    let references = references(boxes);
+    let leaves: Vec<&[PrimitiveRef]> = references.chunks(leaf_size).collect();
+    let mut bounds: Vec<Aabb> =
+        leaves.iter().map(|leaf| around(leaf.iter().map(|primitive| &primitive.bounds))).collect();
+    let mut pairs = Vec::new();
+    let mut level: Vec<usize> = (0..leaves.len()).collect();
+    while level.len() > 1 {
+        let mut above = Vec::new();
+        for pair in level.chunks(2) {
+            if let [left, right] = *pair {
+                above.push(bounds.len());
+                bounds.push(around([&bounds[left], &bounds[right]]));
+                pairs.push((left, right));
+            } else {
+                above.extend_from_slice(pair);
+            }
+        }
+        level = above;
+    }
+    // The root, which was made last, is number 0, and every parent comes before its children.
     let mut bvh = Bvh::for_primitives(boxes.len());
-    if !boxes.is_empty() {
-        subdivide(&mut bvh, &references(boxes), leaf_size);
+    bounds.iter().rev().for_each(|one| _ = bvh.add_node(*one));
+    let number = |made: usize| (bounds.len() - 1 - made) as u32;
+    leaves.iter().enumerate().for_each(|(made, leaf)| bvh.set_leaf(number(made), leaf));
+    for (index, (left, right)) in pairs.into_iter().enumerate() {
+        bvh.set_children(number(leaves.len() + index), number(left), number(right));
     }
     bvh
-}
-
-fn subdivide(bvh: &mut Bvh, primitives: &[PrimitiveRef], leaf_size: usize) -> u32 {
-    let node = bvh.add_node(around(primitives.iter().map(|p| &p.bounds)));
-    let (cost, sorted, middle) = best_cut(primitives);
-    let fits = primitives.len() <= leaf_size;
-    if primitives.len() == 1 || fits && leaf_is_cheaper(primitives, cost) != Some(false) {
-        bvh.set_leaf(node, primitives);
-    } else {
-        let left = subdivide(bvh, &sorted[..middle], leaf_size);
-        let right = subdivide(bvh, &sorted[middle..], leaf_size);
-        bvh.set_children(node, left, right);
-    }
-    node
 }
 
 /// The axes on which a box is longest: several if they are alike to a rounding.
 pub fn longest_axes(bounds: &Aabb) -> Vec<usize> {
     let size = bounds.max - bounds.min;
     (0..3).filter(|&axis| size[axis] >= size.max_element() * (1.0 - 1e-6)).collect()
-}
-
-/// Builds a tree by one of the two medians.
-pub fn build_by_median(boxes: &[Aabb], leaf_size: usize, split: Split) -> Bvh {
-    let mut bvh = Bvh::for_primitives(boxes.len());
-    halve(&mut bvh, references(boxes), leaf_size, split);
-    bvh
-}
-
-fn halve(bvh: &mut Bvh, mut primitives: Vec<PrimitiveRef>, leaf_size: usize, split: Split) -> u32 {
-    let all = around(primitives.iter().map(|p| &p.bounds));
-    let node = bvh.add_node(all);
-    if primitives.len() <= leaf_size {
-        bvh.set_leaf(node, &primitives);
-        return node;
-    }
-    let axis = longest_axes(&all)[0];
-    primitives.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
-    let half = primitives.len() / 2;
-    let cut = 0.5 * (all.min[axis] + all.max[axis]);
-    let middle = match split {
-        Split::SpatialMedian => primitives.partition_point(|p| p.centroid[axis] < cut),
-        _ => half,
-    };
-    let right = primitives.split_off(if middle == 0 || middle == primitives.len() { half } else { middle });
-    let (left, right) = (halve(bvh, primitives, leaf_size, split), halve(bvh, right, leaf_size, split));
-    bvh.set_children(node, left, right);
-    node
 }
 
 /// What a tree is expected to cost a ray that enters its root: each node weighs the share of the root's area that it

@@ -1,8 +1,8 @@
-//! A reference search, and tables that answer whatever a search may ask.
+//! Tables that answer whatever a search may ask, and what a search has to look at.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
+use raykata::bvh::{Bvh, Contents};
 use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -61,37 +61,18 @@ fn interval(ray: &Ray, bounds: &Aabb) -> (f32, f32) {
     }
 }
 
-/// The reference search: nearer child first, and nothing beyond the best hit.
-pub fn search(bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
-    let mut ray = *ray;
-    let mut best: Option<PrimitiveHit> = None;
-    let root = bvh.root()?;
-    let mut waiting = vec![(probe.enter(root, &ray)?, root)];
-    while let Some((enter, node)) = waiting.pop() {
-        if enter >= ray.t_max {
-            continue;
-        }
-        match probe.open(node) {
-            Contents::Inner { left, right } => {
-                let mut children: Vec<(f32, u32)> = [left, right]
-                    .into_iter()
-                    .filter_map(|child| Some((probe.enter(child, &ray)?, child)))
-                    .collect();
-                children.sort_by(|p, q| q.0.total_cmp(&p.0));
-                waiting.extend(children);
-            }
-            Contents::Leaf { first, count } => {
-                for &primitive in bvh.primitives(first, count) {
-                    let Some(t) = probe.hit(primitive, &ray) else { continue };
-                    if best.is_none_or(|best| (t, primitive) < (best.t, best.primitive)) {
-                        best = Some(PrimitiveHit { t, primitive });
-                    }
-                    ray.t_max = ray.t_max.min(t.next_up());
-                }
-            }
-        }
-    }
-    best
+/// What every right search looks at: the nodes whose boxes the ray enters before its closest hit or at it, and how many
+/// primitives are in the leaves among them. A search that takes the nearer child first looks at little else.
+pub fn needed(query: &SearchQuery) -> (Vec<usize>, u64) {
+    let end = closest_in_table(query).map_or(query.ray.t_max, |(_, t)| t);
+    let mut nodes = overlapped(query);
+    nodes.retain(|&node| query.table.boxes[node].0 <= end);
+    let primitives = nodes.iter().map(|&node| match query.bvh.nodes[node].contents {
+        Contents::Leaf { count, .. } => u64::from(count),
+        Contents::Inner { .. } => 0,
+    });
+    let primitives = primitives.sum();
+    (nodes, primitives)
 }
 
 /// Nodes whose boxes the ray enters when nothing is skipped.

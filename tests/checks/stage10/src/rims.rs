@@ -6,9 +6,9 @@ use checks::broken::{Broken, Outcome};
 use checks::double::U;
 use checks::judge::known;
 use checks::paste::Arguments;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use oracle::STABLE;
-use oracle::exact::{Body, meet, sphere, t_in_double};
+use oracle::exact::{Body, Meeting, meet, sphere, t_in_double};
 use oracle::splitmix::Random;
 use raykata::kit::SphereQuery;
 use raykata::ray::Ray;
@@ -86,15 +86,10 @@ fn margin(SphereQuery { ray, sphere }: &SphereQuery) -> f64 {
         / f.length_squared()
 }
 
-/// A known mistake: all in double, but with `f` in single.
-fn difference_in_single(SphereQuery { ray, sphere }: &SphereQuery) -> Option<f32> {
-    let (f, d) = ((ray.origin - sphere.center).as_dvec3(), ray.dir.as_dvec3());
-    let (a, b, r) = (d.length_squared(), -f.dot(d), f64::from(sphere.radius));
-    let discriminant = r * r - (f + (b / a) * d).length_squared();
-    let q = b + (a * discriminant).sqrt().copysign(b);
-    let roots = [(f.length_squared() - r * r) / q, q / a].map(|t| t as f32);
-    let [near, far] = [roots[0].min(roots[1]), roots[0].max(roots[1])];
-    [near, far].into_iter().find(|&t| discriminant >= 0.0 && ray.contains(t))
+/// The exact answer to what a known mistake asks: the origin as seen from the centre is rounded to single precision.
+fn subtracted_in_single(SphereQuery { ray, sphere }: &SphereQuery) -> Option<Meeting> {
+    let ray = Ray { origin: ray.origin - sphere.center, ..*ray };
+    meet(&ray, Body::Sphere(Sphere { center: Vec3::ZERO, ..*sphere }))
 }
 
 pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
@@ -120,9 +115,9 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
         None if only_the_far_root => {
             "the near root does not count, but the far one does: the ray starts inside"
         }
-        _ if wrong
-            .iter()
-            .all(|(query, yours, _)| difference_in_single(query).is_some() == yours.is_some()) =>
+        _ if wrong.iter().all(|(query, yours, _)| {
+            subtracted_in_single(query).is_some_and(|exact| exact.t.is_some() == yours.is_some())
+        }) =>
         {
             CONVERTED_LATE
         }
@@ -176,7 +171,7 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     let worst = wrong.iter().max_by(|(.., p), (.., q)| p.total_cmp(q));
     let Some((query, yours, rounded, _)) = worst else { return Ok(()) };
     let converted_late = |(query, yours, ..): &(SphereQuery, f32, f32, f64)| {
-        let known = difference_in_single(query);
+        let known = subtracted_in_single(query).and_then(|exact| exact.t);
         known.is_some_and(|t| f64::from((t - yours).abs()) <= allowed(query, t))
     };
     let close = (yours - rounded).abs() <= 1e-2 * rounded.abs();

@@ -37,9 +37,11 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
     trial.forall(500, boxes(16), judge)
 }
 
+const AXES: [usize; 3] = [0, 1, 2];
+
 /// What is wrong with a cut: yours, expected, and the diagnosis.
 fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, &'static str)> {
-    let (best, _, _) = tree::best_cut(ordered);
+    let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
     let leaf = tree::leaf_is_cheaper(ordered, best);
     if middle == 0 {
         let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
@@ -52,7 +54,7 @@ fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, 
         let left_out = "TRAVERSAL_COST is left out, so a cut always looks cheaper";
         return Some((yours, "None: a leaf is cheaper than any cut".into(), left_out));
     }
-    let yours = tree::cut_cost(ordered, middle);
+    let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
     // Coincident centroids may be sorted in any order, which changes the cost of cuts between them; those sets are
     // judged by the best cut that some order gives only if centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
@@ -64,30 +66,25 @@ fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, 
 /// The rule by which such a cut would be the best.
 fn cut_diagnosis(ordered: &[PrimitiveRef], middle: usize) -> &'static str {
     let area = |part: &[PrimitiveRef]| tree::half_area(&tree::around(part.iter().map(|p| &p.bounds)));
-    let areas = |all: &[PrimitiveRef], at: usize| area(&all[..at]) + area(&all[at..]);
-    let counts = |all: &[PrimitiveRef], at: usize| at.max(all.len() - at) as f64;
-    let least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], usize) -> f64| {
-        let sorted = axes.iter().map(|&axis| {
-            let mut sorted = ordered.to_vec();
-            sorted.sort_by(|p, q| p.centroid[axis].total_cmp(&q.centroid[axis]));
-            sorted
-        });
-        let costs = sorted.flat_map(|all| (1..all.len()).map(|at| cost(&all, at)).collect::<Vec<_>>());
-        costs.fold(f64::INFINITY, f64::min)
+    let areas = |left: &[PrimitiveRef], right: &[PrimitiveRef]| area(left) + area(right);
+    let counts = |left: &[PrimitiveRef], right: &[PrimitiveRef]| left.len().max(right.len()) as f64;
+    let is_least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64| {
+        cost(&ordered[..middle], &ordered[middle..]) <= tree::least_cost(ordered, axes, cost) * 1.0001
     };
-    let is_least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], usize) -> f64| {
-        cost(ordered, middle) <= least(axes, cost) * 1.0001
+    let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
+    let is_best = |[left, right]: &[Vec<PrimitiveRef>; 2]| {
+        left.len() == middle && tree::cut_cost(left, right) <= best * 1.0001
     };
     match () {
         () if !(0..3).any(|axis| divided(ordered, middle, axis)) => "not sorted along any axis",
         () if (0..3).any(|axis| divided(ordered, middle, axis) && is_least(&[axis], &tree::cut_cost)) => {
             "only one axis tried: the best cut is along another"
         }
-        () if middle == tree::best_cut(ordered).2 => {
+        () if AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)) => {
             "sorted along another axis than that of the cut: sort again along the best axis"
         }
-        () if is_least(&[0, 1, 2], &areas) => "a cut by areas alone: the counts are left out",
-        () if ordered.len() > 3 && is_least(&[0, 1, 2], &counts) => {
+        () if is_least(&AXES, &areas) => "a cut by areas alone: the counts are left out",
+        () if ordered.len() > 3 && is_least(&AXES, &counts) => {
             "a cut by counts alone: the areas are left out"
         }
         () => "not every cut is tried",

@@ -23,7 +23,7 @@ fn spiral() -> Vec<Sphere> {
 pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
     let spheres = spiral();
     let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
-    let bvh = tree::build(&boxes, 2);
+    let bvh = tree::joined(&boxes, 2);
     let rays = picture::rays(vec3(4.0, 5.0, 6.0), TARGET);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect();
     // White near the eye, black behind the balls.

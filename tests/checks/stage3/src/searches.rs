@@ -24,7 +24,7 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
             let twice = if t_min % 3 == 0 { spheres.clone() } else { Vec::new() };
             let spheres: Vec<Sphere> = twice.into_iter().chain(spheres).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
-            let mut bvh = tree::build(&boxes, leaf_size);
+            let mut bvh = tree::joined(&boxes, leaf_size);
             if t_min % 2 == 0 {
                 // Numbered from the other end, so that of two hits at one t the larger number may come first.
                 let last = spheres.len() as u32;

@@ -129,7 +129,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
     // A room whose walls are the planes.
     let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
     let room = Scene::new(walls.collect());
-    let tree = bsp(&room.hulls(), 2, 5);
+    let tree = bsp(&room.hulls(), 5);
     for i in 0..64 {
         let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
         let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
@@ -141,7 +141,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
     let (scene, rays) = balls_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
-    let cells = bsp(&scene.hulls(), 2, 8);
+    let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
         judge_visits("BSP tree over 64 balls", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;

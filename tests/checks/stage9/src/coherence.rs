@@ -10,7 +10,7 @@ use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery, TableProbe};
+use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -96,7 +96,7 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
 
 fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
     let boxes: Vec<Aabb> = spheres.iter().map(sphere_box).collect();
-    let bvh = tree::build(&boxes, 2);
+    let bvh = tree::joined(&boxes, 2);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| search_query(&bvh, spheres, ray)).collect();
     let tables = queries.iter().map(|query| query.table.clone()).collect();
     (PacketQuery { bvh, rays: rays.to_vec(), tables }, queries)
@@ -157,9 +157,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
     for (x, dir) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
         let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), dir); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
-        let mut probe = TableProbe::new(&singles[0]);
-        tree::search(&query.bvh, &mut probe, &singles[0].ray);
-        judge_opened("8 equal rays along a row of", &yours, probe.counts.node_visits)?;
+        judge_opened("8 equal rays along a row of", &yours, opened_alone(&singles[0]))?;
     }
     let balls: Vec<Sphere> = (0..64)
         .map(|i| Sphere {
@@ -172,21 +170,15 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         // Eight times the same ray: what one of them costs, it costs once.
         let (query, singles) = packet(&balls, &[ray(x, y); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
-        let mut probe = TableProbe::new(&singles[0]);
-        tree::search(&query.bvh, &mut probe, &singles[0].ray);
         // Where both children are entered at one t either may come first.
-        let most = probe.counts.node_visits + 2;
+        let most = opened_alone(&singles[0]) + 2;
         judge_opened("8 equal rays through", &yours, most)?;
         // And eight rays side by side open fewer nodes than one after the other.
         let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
         let (query, singles) = packet(&balls, &beam);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
-        let alone = singles.iter().map(|single| {
-            let mut probe = TableProbe::new(single);
-            tree::search(&query.bvh, &mut probe, &single.ray);
-            probe.counts.node_visits
-        });
-        judge_opened("8 rays side by side through", &yours, alone.sum::<u64>() / 2)?;
+        let alone: u64 = singles.iter().map(opened_alone).sum();
+        judge_opened("8 rays side by side through", &yours, alone / 2)?;
         // A node is opened for the sake of a ray that enters it before its hit.
         let needed = |node: u32| {
             singles.iter().any(|single| {
@@ -205,6 +197,11 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         }
     }
     Ok(())
+}
+
+/// How many nodes a ray has to open.
+fn opened_alone(query: &SearchQuery) -> u64 {
+    tree::needed(query).0.len() as u64
 }
 
 fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {

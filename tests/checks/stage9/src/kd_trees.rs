@@ -251,7 +251,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
 pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
     let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
-    let cells = kd_tree(&scene.boxes(), 2, 10);
+    let cells = kd_tree(&scene.boxes(), 10);
     let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.kd_search(&queries)) {
         assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a ball");

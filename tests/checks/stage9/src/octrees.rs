@@ -192,7 +192,7 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
     let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
-    let cells = octree(&scene.boxes(), 2, 5);
+    let cells = octree(&scene.boxes(), 4);
     let queries = queries(&cells, &scene, &rays);
     let by_cells = trial.kit.octree_by_cells(&queries);
     for (query, (down, along)) in

@@ -1,6 +1,7 @@
 //! Balls and tiles, the boxes and hulls around them, and where a ray hits them: in double precision, then rounded as if
 //! each had a formula of its own.
 
+use checks::double::sphere_roots;
 use checks::generate::point;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -47,7 +48,10 @@ impl Scene {
     pub(super) fn hits(&self, ray: &Ray) -> Vec<f32> {
         let hit = |(index, thing): (usize, &Thing)| {
             let t = match thing {
-                Thing::Ball(ball) => ball_t(ray, ball),
+                Thing::Ball(ball) => {
+                    let roots = sphere_roots(ray, ball).ok();
+                    roots.and_then(|roots| [roots.near, roots.far].into_iter().find(|t| *t > 0.0))
+                }
                 Thing::Tile(tile) => tile_t(ray, tile),
             };
             match t {
@@ -72,15 +76,6 @@ fn bounds(thing: &Thing) -> Aabb {
         Thing::Ball(ball) => checks::tree::sphere_box(ball),
         Thing::Tile(Triangle { a, b, c }) => Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)),
     }
-}
-
-fn ball_t(ray: &Ray, ball: &Sphere) -> Option<f64> {
-    let (to_center, dir) = (ball.center.as_dvec3() - ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let closest = to_center.dot(dir) / dir.length_squared();
-    let off = (to_center - closest * dir).length_squared();
-    let radius = f64::from(ball.radius);
-    let half = ((radius * radius - off) / dir.length_squared()).sqrt();
-    [closest - half, closest + half].into_iter().find(|t| *t > 0.0)
 }
 
 fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {

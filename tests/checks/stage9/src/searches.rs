@@ -42,11 +42,11 @@ impl Searcher {
                 kit.grid_search(&queries(&grid, scene, rays))
             }
             Searcher::OctreeByCells => {
-                kit.octree_by_cells(&queries(&structures::octree(&boxes, 3, 3), scene, rays))
+                kit.octree_by_cells(&queries(&structures::octree(&boxes, 3), scene, rays))
             }
-            Searcher::Octree => kit.octree_search(&queries(&structures::octree(&boxes, 3, 3), scene, rays)),
-            Searcher::KdTree => kit.kd_search(&queries(&structures::kd_tree(&boxes, 3, 7), scene, rays)),
-            Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), 3, 6), scene, rays)),
+            Searcher::Octree => kit.octree_search(&queries(&structures::octree(&boxes, 3), scene, rays)),
+            Searcher::KdTree => kit.kd_search(&queries(&structures::kd_tree(&boxes, 7), scene, rays)),
+            Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), 6), scene, rays)),
         }
     }
 }

@@ -1,4 +1,6 @@
-//! Plain builders of all four structures, so that searches are judged on what is right by construction.
+//! Structures to search. Where they divide follows a pattern that knows nothing of the primitives, and each leaf lists what
+//! touches it, by the definition. The last cell lists one primitive too many, wherever that primitive is: a search must
+//! allow for it, and as answers to the exercises these structures are wrong.
 
 use checks::tree::around;
 use glam::{DVec3, UVec3, Vec3, uvec3};
@@ -28,6 +30,17 @@ fn ids(boxes: &[(u32, Aabb)]) -> Vec<u32> {
     boxes.iter().rev().map(|(id, _)| *id).collect()
 }
 
+/// What a cell lists; the last one, one primitive too many.
+fn listed(boxes: &[(u32, Aabb)], cell: &Cell, is_last: bool) -> Vec<u32> {
+    let mut inside = ids(&in_cell(boxes, cell));
+    if let (true, Some((first, _))) = (is_last, boxes.first())
+        && !inside.contains(first)
+    {
+        inside.push(*first);
+    }
+    inside
+}
+
 /// A grid of so many cells.
 pub(super) fn grid(boxes: &[Aabb], resolution: UVec3) -> Grid {
     let (boxes, bounds) = loose(boxes);
@@ -40,81 +53,71 @@ pub(super) fn grid_within(boxes: &[(u32, Aabb)], bounds: Aabb, resolution: UVec3
     let UVec3 { x: nx, y: ny, z: nz } = resolution;
     for number in 0..nx * ny * nz {
         let cell = grid.cell(uvec3(number % nx, number / nx % ny, number / (nx * ny)));
-        let inside = in_cell(boxes, &cell);
-        grid.items.extend(ids(&inside));
+        grid.items.extend(listed(boxes, &cell, number + 1 == nx * ny * nz));
         grid.starts.push(grid.items.len() as u32);
     }
     grid
 }
 
-/// An octree over the box around all.
-pub(super) fn octree(boxes: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
+/// An octree over the box around all: of eight octants three are divided again.
+pub(super) fn octree(boxes: &[Aabb], max_depth: usize) -> Octree {
     let (boxes, bounds) = loose(boxes);
     if boxes.is_empty() {
         return Octree::empty();
     }
     let mut octree = Octree::new(bounds);
-    in_octants(&mut octree, 0, &boxes, Cell::new(&bounds), 0, (leaf_size, max_depth));
+    let mut waiting = vec![(0, Cell::new(&bounds), 0, true)];
+    while let Some((node, cell, depth, is_divided)) = waiting.pop() {
+        if depth >= max_depth || !is_divided {
+            octree.set_leaf(node, &listed(&boxes, &cell, waiting.is_empty()));
+            continue;
+        }
+        let first = octree.divide(node, depth + 1, max_depth);
+        let octants = (0..8)
+            .map(|octant| (first + octant as u32, cell.octant(octant), depth + 1, (octant + depth) % 3 == 0));
+        waiting.extend(octants);
+    }
     octree
 }
 
-fn in_octants(
-    octree: &mut Octree,
-    node: u32,
-    boxes: &[(u32, Aabb)],
-    cell: Cell,
-    depth: usize,
-    limits: (usize, usize),
-) {
-    if boxes.len() <= limits.0 || depth >= limits.1 {
-        return octree.set_leaf(node, &ids(boxes));
-    }
-    let first = octree.divide(node, depth + 1, limits.1);
-    for octant in 0..8 {
-        let part = cell.octant(octant);
-        in_octants(octree, first + octant as u32, &in_cell(boxes, &part), part, depth + 1, limits);
-    }
-}
-
-/// A kd-tree with planes in the middle, across x, y, z by turns.
-pub(super) fn kd_tree(boxes: &[Aabb], leaf_size: usize, max_depth: usize) -> KdTree {
+/// A kd-tree with planes in the middle, across x, y, z by turns. Every fifth node is a leaf.
+pub(super) fn kd_tree(boxes: &[Aabb], max_depth: usize) -> KdTree {
     let (boxes, bounds) = loose(boxes);
     let mut tree = KdTree::new(bounds);
     if !boxes.is_empty() {
-        halve(&mut tree, &boxes, Cell::new(&bounds), 0, (leaf_size, max_depth));
+        add_kd_node(&mut tree, &boxes, Cell::new(&bounds), 0, max_depth);
     }
     tree
 }
 
-fn halve(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Cell, depth: usize, limits: (usize, usize)) -> u32 {
-    let node = tree.add_node(depth, limits.1);
-    if boxes.len() <= limits.0 || depth >= limits.1 {
-        tree.set_leaf(node, &ids(boxes));
+fn add_kd_node(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Cell, depth: usize, max_depth: usize) -> u32 {
+    let node = tree.add_node(depth, max_depth);
+    if depth >= max_depth || node % 5 == 4 {
+        tree.set_leaf(node, &listed(boxes, &cell, false));
         return node;
     }
     let axis = depth % 3;
     let at = cell.middle()[axis] as f32;
-    let [below, above] = cell.cut(axis, f64::from(at));
-    let left = halve(tree, &in_cell(boxes, &below), below, depth + 1, limits);
-    let right = halve(tree, &in_cell(boxes, &above), above, depth + 1, limits);
+    let [left, right] =
+        cell.cut(axis, f64::from(at)).map(|side| add_kd_node(tree, boxes, side, depth + 1, max_depth));
     tree.set_children(node, axis, at, left, right);
     node
 }
 
-/// A BSP tree with planes in many directions, each through the middle of what it divides.
-pub(super) fn bsp(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
+/// A BSP tree with planes in many directions, each through a corner of some primitive. Every seventh node is a leaf.
+pub(super) fn bsp(hulls: &[Vec<Vec3>], max_depth: usize) -> Bsp {
     let usable = |hull: &[Vec3]| hull.iter().all(|corner| corner.is_finite());
     let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
     let mut bsp = Bsp::default();
     if !ids.is_empty() {
-        by_planes(&mut bsp, hulls, &ids, 0, (leaf_size, max_depth));
+        add_bsp_node(&mut bsp, hulls, &ids, 0, max_depth);
     }
     bsp
 }
 
-fn by_planes(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, limits: (usize, usize)) -> u32 {
-    let node = bsp.add_node(depth, limits.1);
-    if ids.len() <= limits.0 || depth >= limits.1 {
+fn add_bsp_node(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, max_depth: usize) -> u32 {
+    let node = bsp.add_node(depth, max_depth);
+    if depth >= max_depth || ids.is_empty() || node % 7 == 6 {
         bsp.set_leaf(node, &ids.iter().rev().copied().collect::<Vec<u32>>());
         return node;
     }
@@ -123,9 +126,8 @@ fn by_planes(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, limi
     // Through a corner, so that planes and primitives touch.
     let corner = hulls[ids[ids.len() / 2] as usize][0].as_dvec3();
     let plane = CutPlane { normal, offset: normal.dot(corner) };
-    let [behind, before] = on_sides(hulls, ids, &plane);
-    let back = by_planes(bsp, hulls, &behind, depth + 1, limits);
-    let front = by_planes(bsp, hulls, &before, depth + 1, limits);
+    let [back, front] =
+        on_sides(hulls, ids, &plane).map(|side| add_bsp_node(bsp, hulls, &side, depth + 1, max_depth));
     bsp.set_children(node, plane, back, front);
     node
 }

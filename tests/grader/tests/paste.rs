@@ -1,0 +1,196 @@
+//! No answer stands in what students receive: whatever function there fits an exercise is pasted into it, and the checks of
+//! that stage must refuse it. Which functions fit is recorded in `paste/candidates.snap`; the long run builds them in and
+//! asks the checks.
+
+#![cfg(feature = "author")]
+
+#[path = "paste/call.rs"]
+mod call;
+#[path = "paste/collect.rs"]
+mod collect;
+#[path = "paste/copy.rs"]
+mod copy;
+
+use collect::{Function, bundles, candidates, functions, functions_of};
+use grader::sync;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Functions that may answer an exercise: `(function, exercise, reason)`.
+const EXCEPTIONS: &[(&str, &str, &str)] = &[
+    ("raykata::frame::tests::mean", "stage6_distribution::develop", "a mean, in a test of the scaffold"),
+    (
+        "stage4_checks::terms::specular",
+        "stage4_shading::specular_term",
+        "the slide's one-line formula in double precision",
+    ),
+    (
+        "stage5_checks::fresnel::exact",
+        "stage5_recursion::fresnel_exact",
+        "the slide's formula in double precision",
+    ),
+    (
+        "stage5_checks::fresnel::schlick",
+        "stage5_recursion::fresnel_schlick",
+        "the slide's one-line formula in double precision",
+    ),
+    (
+        "stage7_checks::decisions::takes",
+        "stage7_effects::material_effects",
+        "five conditions of a line each: who judges a decision has to decide",
+    ),
+    (
+        "stage8_checks::spaces::normal",
+        "stage8_scene_graph::normal_to_world",
+        "the slide's one-line formula in double precision",
+    ),
+    (
+        "stage9_checks::parts::part",
+        "stage9_cells::span",
+        "three intervals in double precision, from `double::box_interval`",
+    ),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the kit")
+}
+
+/// The crates that students receive: where their sources are, and what other crates call them.
+fn crates() -> Vec<(String, String)> {
+    let shared = [
+        ("src", "raykata"),
+        ("tests/oracle/src", "oracle"),
+        ("tests/checks/src", "checks"),
+        ("tests/checks/all/src", "all_checks"),
+    ];
+    let shared = shared.map(|(folder, name)| (folder.to_owned(), name.to_owned())).into_iter();
+    let stages =
+        (1..=10).map(|stage| (format!("tests/checks/stage{stage}/src"), format!("stage{stage}_checks")));
+    shared.chain(stages).collect()
+}
+
+/// The functions of those crates, in the kit or in a copy of it.
+fn handed_out(root: &Path) -> Vec<Function> {
+    let bundles = bundles(root);
+    crates().iter().flat_map(|(folder, name)| functions(root, folder, name, &bundles)).collect()
+}
+
+/// The functions that students write.
+fn exercises(root: &Path) -> Vec<Function> {
+    let texts = sync::pristine(root).expect("readable solutions");
+    let (mut exercises, bundles) = (Vec::new(), bundles(root));
+    for (name, text) in texts.iter().filter(|(name, _)| name.starts_with("stage")) {
+        exercises.extend(functions_of(
+            &format!("solutions/src/{name}"),
+            name.trim_end_matches(".rs"),
+            text,
+            &bundles,
+        ));
+    }
+    exercises.retain(|function| function.is_exercise);
+    exercises
+}
+
+/// What the names of the checks of an exercise's stage begin with.
+fn stage(exercise: &Function) -> String {
+    format!("{}::", exercise.path.split('_').next().unwrap_or_default())
+}
+
+/// Two answers that stand nowhere, so that the test can be seen to find answers: the file, where other crates find it, its
+/// text and the exercise.
+const PLANTED: [(&str, &str, &str, &str); 2] = [
+    (
+        "tests/checks/src/tree/mod.rs",
+        "checks::tree::planted_area",
+        "\npub fn planted_area(of: Aabb) -> f64 {\n    2.0 * half_area(&of)\n}\n",
+        "stage3_bvh::surface_area",
+    ),
+    (
+        "tests/checks/stage4/src/gamma.rs",
+        "stage4_checks::gamma::planted_byte",
+        "\nfn planted_byte(linear: f64) -> u8 {\n    (255.0 * linear.clamp(0.0, 1.0).sqrt() + 0.5) as u8\n}\n",
+        "stage4_shading::encode_gamma",
+    ),
+];
+
+#[test]
+fn what_fits_an_exercise_is_recorded() {
+    let root = root();
+    let (exercises, all) = (exercises(&root), handed_out(&root));
+    assert!(
+        exercises.len() > 100 && all.len() > 1400,
+        "{} exercises, {} functions",
+        exercises.len(),
+        all.len()
+    );
+    let lines: BTreeSet<String> = candidates(&exercises, &all)
+        .iter()
+        .map(|(exercise, function)| format!("{} in {}", function.path, exercise.path))
+        .collect();
+    insta::with_settings!({ snapshot_path => "paste", prepend_module_to_snapshot => false, omit_expression => true }, {
+        insta::assert_snapshot!("candidates", lines.into_iter().collect::<Vec<_>>().join("\n"));
+    });
+}
+
+#[test]
+fn a_planted_answer_fits() {
+    let exercises = exercises(&root());
+    for (file, path, text, exercise) in PLANTED {
+        let module = path.rsplit_once("::").expect("a module").0;
+        let planted = functions_of(file, module, text, &bundles(&root()));
+        let found = candidates(&exercises, &planted);
+        assert!(found.iter().any(|(found, one)| found.path == exercise && one.path == path), "{path}");
+    }
+}
+
+#[test]
+fn no_function_that_students_receive_is_an_answer() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("pasted only with CI_LONG=1: it builds the reference and all checks once more");
+    }
+    let (root, folder) = (root(), root().join("target/paste"));
+    let open: Vec<String> = crates().into_iter().map(|(folder, _)| folder).collect();
+    copy::copy(&root, &folder, &open);
+    for (file, _, text, _) in PLANTED {
+        copy::append(&folder.join(file), &text.replace("\nfn ", "\npub fn "));
+    }
+    let (exercises, all, bundles) = (exercises(&root), handed_out(&folder), bundles(&root));
+    let mut pasted: Vec<(&Function, &Function)> = Vec::new();
+    let mut arms: BTreeMap<(&str, &str), String> = BTreeMap::new();
+    let mut answers = BTreeSet::new();
+    for (exercise, function) in candidates(&exercises, &all) {
+        let calls = call::calls(exercise, function, &bundles);
+        if calls.is_empty() {
+            // Only a person can judge what nobody else can call.
+            answers.insert(format!("{} in {}", function.path, exercise.path));
+        }
+        for call in calls {
+            pasted.push((exercise, function));
+            let name = exercise.path.rsplit("::").next().unwrap_or_default();
+            let arm = format!("        {} => return {call},\n", pasted.len());
+            *arms.entry((&exercise.file, name)).or_default() += &arm;
+        }
+    }
+    for ((file, name), arms) in arms {
+        let code = format!("\n    match crate::pasted() {{\n{arms}        _ => {{}}\n    }}\n");
+        copy::insert(&folder.join(file), name, &code);
+    }
+    copy::append(
+        &folder.join("solutions/src/lib.rs"),
+        "\n/// Which function answers in place of an exercise.\npub fn pasted() -> usize {\n    \
+         static PASTED: std::sync::LazyLock<usize> = std::sync::LazyLock::new(|| {\n        \
+         std::env::var(\"PASTE\").ok().and_then(|number| number.parse().ok()).unwrap_or(0)\n    });\n    \
+         *PASTED\n}\n",
+    );
+    let program = copy::build(&folder);
+    assert!(copy::passes(&program, &folder, "stage", 0), "the copy fails as it is");
+    for (index, (exercise, function)) in pasted.iter().enumerate() {
+        if copy::passes(&program, &folder, &stage(exercise), index + 1) {
+            answers.insert(format!("{} in {}", function.path, exercise.path));
+        }
+    }
+    let known = EXCEPTIONS.iter().map(|(function, exercise, _)| format!("{function} in {exercise}"));
+    let planted = PLANTED.iter().map(|(_, path, _, exercise)| format!("{path} in {exercise}"));
+    let expected: BTreeSet<String> = known.chain(planted).collect();
+    assert_eq!(answers, expected, "answers that students receive, and the planted ones");
+}

@@ -1,0 +1,346 @@
+//! Which functions fit which exercise: same parameter and return types up to order, references, precision and the kind of
+//! list.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::{FnArg, GenericParam, Generics, ImplItem, Item, ReturnType, Signature, Type, TypeParamBound};
+
+/// A function, where it stands and what it takes.
+pub struct Function {
+    /// The file, from the root of the kit.
+    pub file: String,
+    /// How other crates call it: `checks::tree::around`.
+    pub path: String,
+    /// Whether only tests of its own crate can call it.
+    pub is_test: bool,
+    /// Whether it is a method of a trait.
+    pub of_trait: bool,
+    /// The type of `self`, if it is a method.
+    pub self_type: Option<Type>,
+    /// As it is written.
+    pub signature: Signature,
+    /// The generics of the `impl` block around it.
+    pub outer: Generics,
+    /// Its types without order, references and precision.
+    pub key: Key,
+    /// Whether its body is `todo!(…)`.
+    pub is_exercise: bool,
+}
+
+/// Types that stand for their fields, by name: where they are declared, and the names and types of the fields. So
+/// `query: &SphereQuery` is a ray, a centre and a radius.
+pub type Bundles = BTreeMap<String, (&'static str, Vec<(String, Type)>)>;
+
+/// The messages of the door, and the shapes that some exercises take and others take apart.
+pub fn bundles(root: &Path) -> Bundles {
+    let mut files = Vec::new();
+    rust_files(&root.join("src/kit"), &mut files);
+    files.push(root.join("src/shape.rs"));
+    let mut bundles = Bundles::new();
+    for file in files {
+        let text = fs::read_to_string(&file).expect("a readable file");
+        for item in parse(&file.display().to_string(), &text).items {
+            let Item::Struct(one) = item else { continue };
+            let name = one.ident.to_string();
+            let place = match name.as_str() {
+                "Sphere" | "Plane" => "raykata::shape",
+                name if name.ends_with("Query") => "raykata::kit",
+                _ => continue,
+            };
+            let field = |field: syn::Field| Some((field.ident?.to_string(), field.ty));
+            let fields: Option<Vec<(String, Type)>> = one.fields.into_iter().map(field).collect();
+            if let (true, Some(fields)) = (one.generics.params.is_empty(), fields) {
+                bundles.insert(name, (place, fields));
+            }
+        }
+    }
+    bundles
+}
+
+/// The types of the parameters, sorted, and the type of the result.
+pub type Key = (Vec<String>, String);
+
+/// All functions of a crate whose sources are in `folder`, which other crates know as `name`.
+pub fn functions(root: &Path, folder: &str, name: &str, bundles: &Bundles) -> Vec<Function> {
+    let mut files = Vec::new();
+    rust_files(&root.join(folder), &mut files);
+    let mut parsed = Vec::new();
+    for path in files {
+        let text = fs::read_to_string(&path).expect("a readable file");
+        let inside = path.strip_prefix(root.join(folder)).expect("a file of the folder");
+        let file = format!("{folder}/{}", inside.display());
+        parsed.push((file.clone(), module(name, inside), parse(&file, &text)));
+    }
+    let mut aliases = BTreeMap::new();
+    parsed.iter().for_each(|(.., syntax)| collect_aliases(&syntax.items, &mut aliases));
+    let (mut found, known) = (Vec::new(), Known { aliases: &aliases, bundles });
+    for (file, module, syntax) in &parsed {
+        let is_test = module.split("::").any(|part| part == "tests");
+        collect(file, module, is_test, &syntax.items, known, &mut found);
+    }
+    found
+}
+
+/// The functions of one text.
+pub fn functions_of(file: &str, module: &str, text: &str, bundles: &Bundles) -> Vec<Function> {
+    let syntax = parse(file, text);
+    let (mut aliases, mut found) = (BTreeMap::new(), Vec::new());
+    collect_aliases(&syntax.items, &mut aliases);
+    let known = Known { aliases: &aliases, bundles };
+    collect(file, module, false, &syntax.items, known, &mut found);
+    found
+}
+
+/// For each exercise the functions that fit it.
+pub fn candidates<'a>(exercises: &'a [Function], all: &'a [Function]) -> Vec<(&'a Function, &'a Function)> {
+    let mut by_key: BTreeMap<&Key, Vec<&Function>> = BTreeMap::new();
+    all.iter().for_each(|function| by_key.entry(&function.key).or_default().push(function));
+    let fitting = |exercise: &'a Function| {
+        let found = by_key.get(&exercise.key).into_iter().flatten();
+        found.map(move |function| (exercise, *function)).collect::<Vec<_>>()
+    };
+    exercises.iter().flat_map(fitting).collect()
+}
+
+fn parse(file: &str, text: &str) -> syn::File {
+    syn::parse_file(text).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
+    let mut entries: Vec<PathBuf> = fs::read_dir(folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        // A folder with a manifest is a crate of its own.
+        if path.is_dir() && !path.join("Cargo.toml").exists() {
+            rust_files(&path, files);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            files.push(path);
+        }
+    }
+}
+
+/// `checks::tree::search` for `tree/search.rs`.
+fn module(name: &str, file: &Path) -> String {
+    let mut module = name.to_owned();
+    for part in file.with_extension("").iter().map(|part| part.to_string_lossy()) {
+        if !matches!(&*part, "lib" | "mod") {
+            module = format!("{module}::{part}");
+        }
+    }
+    module
+}
+
+fn collect_aliases(items: &[Item], aliases: &mut BTreeMap<String, Type>) {
+    for item in items {
+        match item {
+            Item::Type(alias) if alias.generics.params.is_empty() => {
+                aliases.insert(alias.ident.to_string(), (*alias.ty).clone());
+            }
+            Item::Mod(module) => {
+                module.content.iter().for_each(|(_, items)| collect_aliases(items, aliases));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What names stand for, in a whole crate.
+#[derive(Clone, Copy)]
+struct Known<'a> {
+    aliases: &'a BTreeMap<String, Type>,
+    bundles: &'a Bundles,
+}
+
+fn collect(
+    file: &str,
+    module: &str,
+    is_test: bool,
+    items: &[Item],
+    known: Known<'_>,
+    found: &mut Vec<Function>,
+) {
+    let mut add = |path: String,
+                   of_trait: bool,
+                   self_type: Option<&Type>,
+                   signature: &Signature,
+                   outer: &Generics,
+                   block: &syn::Block| {
+        let generics = [outer, &signature.generics];
+        let names = Names { aliases: known.aliases, generics, self_type, depth: 0 };
+        found.push(Function {
+            file: file.to_owned(),
+            path,
+            is_test,
+            of_trait,
+            self_type: self_type.cloned(),
+            signature: signature.clone(),
+            outer: outer.clone(),
+            key: names.key(signature, known.bundles),
+            is_exercise: is_todo(block),
+        });
+    };
+    for item in items {
+        match item {
+            Item::Fn(function) => {
+                let path = format!("{module}::{}", function.sig.ident);
+                add(path, false, None, &function.sig, &Generics::default(), &function.block);
+            }
+            Item::Impl(block) => {
+                for item in &block.items {
+                    let ImplItem::Fn(method) = item else { continue };
+                    let path = format!("{module}::{}::{}", base(&block.self_ty), method.sig.ident);
+                    let of_trait = block.trait_.is_some();
+                    add(path, of_trait, Some(&block.self_ty), &method.sig, &block.generics, &method.block);
+                }
+            }
+            _ => {}
+        }
+    }
+    for item in items {
+        if let Item::Mod(inner) = item
+            && let Some((_, items)) = &inner.content
+        {
+            let for_tests = is_test || inner.ident == "tests";
+            collect(file, &format!("{module}::{}", inner.ident), for_tests, items, known, found);
+        }
+    }
+}
+
+fn is_todo(block: &syn::Block) -> bool {
+    let [statement] = &block.stmts[..] else { return false };
+    match statement {
+        syn::Stmt::Macro(one) => one.mac.path.is_ident("todo"),
+        syn::Stmt::Expr(syn::Expr::Macro(one), _) => one.mac.path.is_ident("todo"),
+        _ => false,
+    }
+}
+
+/// The last name of a path type.
+pub fn base(ty: &Type) -> String {
+    match ty {
+        Type::Path(path) => path.path.segments.last().map_or_else(String::new, |last| last.ident.to_string()),
+        Type::Reference(inner) => base(&inner.elem),
+        Type::Paren(inner) => base(&inner.elem),
+        Type::Group(inner) => base(&inner.elem),
+        _ => String::new(),
+    }
+}
+
+/// A type of a function without references, precision and the kind of list.
+pub fn plain(function: &Function, ty: &Type) -> String {
+    let (self_type, aliases) = (function.self_type.as_ref(), BTreeMap::new());
+    let generics = [&function.outer, &function.signature.generics];
+    Names { aliases: &aliases, generics, self_type, depth: 0 }.plain(ty)
+}
+
+/// The fields of a type that stands for them.
+pub fn bundle<'a>(ty: &Type, bundles: &'a Bundles) -> Option<&'a (&'static str, Vec<(String, Type)>)> {
+    match ty {
+        Type::Reference(inner) => bundle(&inner.elem, bundles),
+        Type::Path(_) => bundles.get(&base(ty)),
+        _ => None,
+    }
+}
+
+/// What names of types stand for.
+struct Names<'a> {
+    aliases: &'a BTreeMap<String, Type>,
+    generics: [&'a Generics; 2],
+    self_type: Option<&'a Type>,
+    depth: u32,
+}
+
+impl Names<'_> {
+    fn key(&self, signature: &Signature, bundles: &Bundles) -> Key {
+        let mut parameters = Vec::new();
+        for input in &signature.inputs {
+            match (input, self.self_type) {
+                (FnArg::Receiver(_), Some(ty)) => self.leaves(ty, bundles, &mut parameters),
+                (FnArg::Receiver(_), None) => {}
+                (FnArg::Typed(typed), _) => self.leaves(&typed.ty, bundles, &mut parameters),
+            }
+        }
+        parameters.sort();
+        let result = match &signature.output {
+            ReturnType::Default => "()".into(),
+            ReturnType::Type(_, ty) => self.plain(ty),
+        };
+        (parameters, result)
+    }
+
+    /// What a parameter of this type is made of.
+    fn leaves(&self, ty: &Type, bundles: &Bundles, leaves: &mut Vec<String>) {
+        match bundle(ty, bundles) {
+            Some((_, fields)) => fields.iter().for_each(|(_, ty)| self.leaves(ty, bundles, leaves)),
+            None => leaves.push(self.plain(ty)),
+        }
+    }
+
+    /// A type without references, precision and the kind of list.
+    fn plain(&self, ty: &Type) -> String {
+        match ty {
+            Type::Reference(inner) => self.plain(&inner.elem),
+            Type::Paren(inner) => self.plain(&inner.elem),
+            Type::Group(inner) => self.plain(&inner.elem),
+            Type::Slice(list) => format!("[{}]", self.plain(&list.elem)),
+            Type::Array(list) => format!("[{}]", self.plain(&list.elem)),
+            Type::Tuple(tuple) => {
+                let parts: Vec<String> = tuple.elems.iter().map(|part| self.plain(part)).collect();
+                format!("({})", parts.join(", "))
+            }
+            Type::ImplTrait(one) => self.bound(one.bounds.iter()),
+            Type::TraitObject(one) => self.bound(one.bounds.iter()),
+            Type::Path(path) => self.named(path),
+            _ => "?".into(),
+        }
+    }
+
+    fn named(&self, path: &syn::TypePath) -> String {
+        let Some(last) = path.path.segments.last() else { return "?".into() };
+        let name = last.ident.to_string();
+        if let (Some(alias), true) = (self.aliases.get(&name), self.depth < 8) {
+            return Names { depth: self.depth + 1, ..*self }.plain(alias);
+        }
+        if let (Some(ty), true, "Self") = (self.self_type, self.depth < 8, name.as_str()) {
+            return Names { depth: self.depth + 1, ..*self }.plain(ty);
+        }
+        for parameter in self.generics.iter().flat_map(|generics| &generics.params) {
+            if let GenericParam::Type(parameter) = parameter
+                && parameter.ident == name
+            {
+                return self.bound(parameter.bounds.iter());
+            }
+        }
+        let inside: Vec<String> = match &last.arguments {
+            syn::PathArguments::AngleBracketed(inside) => {
+                let types = inside.args.iter().filter_map(|argument| match argument {
+                    syn::GenericArgument::Type(ty) => Some(self.plain(ty)),
+                    _ => None,
+                });
+                types.collect()
+            }
+            _ => Vec::new(),
+        };
+        match (name.as_str(), &inside[..]) {
+            ("f64", _) => "f32".into(),
+            ("DVec2" | "DVec3" | "DVec4" | "DMat3" | "DAffine3", _) => name[1..].to_owned(),
+            ("usize" | "u32" | "u64" | "i32" | "i64", _) => "whole".into(),
+            ("Vec", [one]) => format!("[{one}]"),
+            ("Box" | "Arc", [one]) => one.clone(),
+            (_, []) => name,
+            (_, parts) => format!("{name}<{}>", parts.join(", ")),
+        }
+    }
+
+    fn bound<'b>(&self, mut bounds: impl Iterator<Item = &'b TypeParamBound>) -> String {
+        let first = bounds.find_map(|bound| match bound {
+            TypeParamBound::Trait(one) => one.path.segments.last().map(|last| last.ident.to_string()),
+            _ => None,
+        });
+        format!("impl {}", first.unwrap_or_default())
+    }
+}

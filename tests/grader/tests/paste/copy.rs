@@ -1,0 +1,196 @@
+//! A copy of the kit in which everything is public and each exercise can be answered by a function of the checks.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use syn::{Item, Visibility};
+
+/// Copies the folders of `root` that the reference and its checks need, all items of `open` folders made public.
+pub fn copy(root: &Path, to: &Path, open: &[String]) {
+    for folder in ["src", "solutions/src", "tests/checks", "tests/oracle", "tests/golden"] {
+        copy_folder(root, to, folder, open);
+    }
+    for file in ["Cargo.lock", ".cargo/config.toml", "tests/rubric.toml", "solutions/tests/stages.rs"] {
+        write(&to.join(file), &read(&root.join(file)));
+    }
+    let manifest = without_sections(&read(&root.join("Cargo.toml")));
+    let members = "members = [\"solutions\", \"tests/checks\", \"tests/checks/all\", \"tests/checks/stage*\", \"tests/oracle\"]";
+    let lines = manifest.lines().filter(|line| !line.starts_with("default-members"));
+    let lines = lines.map(|line| if line.starts_with("members = ") { members } else { line });
+    write(&to.join("Cargo.toml"), &(lines.collect::<Vec<_>>().join("\n") + "\n"));
+    let mut solutions = without_sections(&read(&root.join("solutions/Cargo.toml")));
+    let mut needed = String::from("[dependencies]\n");
+    for name in ["all-checks", "checks", "oracle"].map(str::to_owned).into_iter().chain(stages()) {
+        needed += &format!("{name}.workspace = true\n");
+    }
+    solutions = solutions.replace("[dependencies]\n", &needed);
+    write(&to.join("solutions/Cargo.toml"), &solutions);
+}
+
+fn stages() -> impl Iterator<Item = String> {
+    (1..=10).map(|stage| format!("stage{stage}"))
+}
+
+/// Builds the checks with the reference and returns the program that runs them.
+pub fn build(folder: &Path) -> String {
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .current_dir(folder)
+        .args(["test", "--quiet", "--package", "solutions", "--test", "stages", "--no-run"])
+        .args(["--message-format=json", "--target-dir", "target", "--config", "profile.dev.debug=false"])
+        .stdin(Stdio::null())
+        .output()
+        .expect("cargo");
+    let messages: Vec<serde_json::Value> = String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .filter_map(|line| serde_json::from_str(line).ok())
+        .collect();
+    let errors = messages.iter().filter(|message| message["message"]["level"] == "error");
+    let errors: Vec<&str> = errors.filter_map(|message| message["message"]["rendered"].as_str()).collect();
+    assert!(output.status.success(), "{}\n{}", errors.join("\n"), String::from_utf8_lossy(&output.stderr));
+    let program = messages.iter().find(|message| message["target"]["name"] == "stages");
+    program.and_then(|program| program["executable"].as_str()).expect("a program").to_owned()
+}
+
+/// Whether the checks whose names contain `filter` pass with this function in place of an exercise; 0 is none.
+pub fn passes(program: &str, folder: &Path, filter: &str, paste: usize) -> bool {
+    let status = Command::new(program)
+        .current_dir(folder.join("solutions"))
+        .args(["--quiet", filter])
+        .env("PASTE", paste.to_string())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    status.expect("a program").success()
+}
+
+/// Puts `code` at the beginning of the body of a function.
+pub fn insert(file: &Path, function: &str, code: &str) {
+    let text = read(file);
+    let syntax = syn::parse_file(&text).expect("Rust");
+    let body = syntax.items.iter().find_map(|item| match item {
+        Item::Fn(one) if one.sig.ident == function => {
+            Some(one.block.brace_token.span.open().byte_range().end)
+        }
+        _ => None,
+    });
+    let body = body.unwrap_or_else(|| panic!("{} has no `{function}`", file.display()));
+    write(file, &format!("{}{code}{}", &text[..body], &text[body..]));
+}
+
+/// Puts `code` at the end of a file.
+pub fn append(file: &Path, code: &str) {
+    write(file, &(read(file) + code));
+}
+
+fn copy_folder(root: &Path, to: &Path, folder: &str, open: &[String]) {
+    for entry in fs::read_dir(root.join(folder)).expect("a folder") {
+        let entry = entry.expect("an entry");
+        let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
+        let skipped = ["tests/checks/all/tests", "tests/oracle/examples"].contains(&path.as_str());
+        if skipped {
+            continue;
+        }
+        if entry.path().is_dir() {
+            copy_folder(root, to, &path, open);
+        } else if path.ends_with(".rs") {
+            let text = read(&entry.path());
+            let is_open = open.iter().any(|folder| path.starts_with(&format!("{folder}/")));
+            write(&to.join(&path), &if is_open { public(&text) } else { text });
+        } else if path.ends_with("Cargo.toml") {
+            write(&to.join(&path), &without_sections(&read(&entry.path())));
+        } else {
+            let target = to.join(&path);
+            fs::create_dir_all(target.parent().expect("a folder")).expect("a folder");
+            fs::copy(entry.path(), target).expect("a copy");
+        }
+    }
+}
+
+/// A manifest without targets and what only tests need.
+fn without_sections(manifest: &str) -> String {
+    let mut kept = String::new();
+    let mut keep = true;
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            let name = line.trim_matches(['[', ']']);
+            keep = !["dev-dependencies", "test", "bin", "example", "bench"].contains(&name);
+        }
+        if keep {
+            kept += line;
+            kept.push('\n');
+        }
+    }
+    kept
+}
+
+/// The text with all its items public.
+fn public(text: &str) -> String {
+    let syntax = syn::parse_file(text).expect("Rust");
+    let mut changes = Vec::new();
+    collect(&syntax.items, &mut changes);
+    changes.sort_by_key(|(start, _)| *start);
+    let mut changed = text.to_owned();
+    for (start, end) in changes.into_iter().rev() {
+        changed.replace_range(start..end, "pub ");
+    }
+    changed
+}
+
+/// Where a visibility is to be replaced, or put in.
+fn collect(items: &[Item], changes: &mut Vec<(usize, usize)>) {
+    let mut change = |visibility: &Visibility, keyword: proc_macro2::Span| match visibility {
+        Visibility::Public(_) => {}
+        Visibility::Restricted(one) => {
+            changes.push((one.pub_token.span.byte_range().start, keyword.byte_range().start));
+        }
+        Visibility::Inherited => changes.push((keyword.byte_range().start, keyword.byte_range().start)),
+    };
+    for item in items {
+        match item {
+            Item::Fn(one) => change(&one.vis, first(&one.sig)),
+            Item::Mod(one) => change(&one.vis, one.mod_token.span),
+            Item::Struct(one) => change(&one.vis, one.struct_token.span),
+            Item::Enum(one) => change(&one.vis, one.enum_token.span),
+            Item::Const(one) => change(&one.vis, one.const_token.span),
+            Item::Static(one) => change(&one.vis, one.static_token.span),
+            Item::Type(one) => change(&one.vis, one.type_token.span),
+            Item::Trait(one) => change(&one.vis, one.trait_token.span),
+            Item::Impl(block) if block.trait_.is_none() => {
+                for item in &block.items {
+                    match item {
+                        syn::ImplItem::Fn(one) => change(&one.vis, first(&one.sig)),
+                        syn::ImplItem::Const(one) => change(&one.vis, one.const_token.span),
+                        _ => {}
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    for item in items {
+        if let Item::Mod(one) = item
+            && let Some((_, items)) = &one.content
+        {
+            collect(items, changes);
+        }
+    }
+}
+
+/// `const`, or `fn`.
+fn first(signature: &syn::Signature) -> proc_macro2::Span {
+    signature.constness.map_or(signature.fn_token.span, |token| token.span)
+}
+
+fn read(file: &Path) -> String {
+    fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+/// Writes a text where another one was, so that cargo builds only what has changed.
+fn write(file: &Path, text: &str) {
+    if fs::read_to_string(file).is_ok_and(|old| old == text) {
+        return;
+    }
+    fs::create_dir_all(file.parent().expect("a folder")).expect("a folder");
+    fs::write(file, text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+}
