@@ -2,8 +2,6 @@
 //! that stage must refuse it. Which functions fit is recorded in `paste/candidates.snap`; the long run builds them in and
 //! asks the checks.
 
-#![cfg(feature = "author")]
-
 #[path = "paste/call.rs"]
 mod call;
 #[path = "paste/collect.rs"]
