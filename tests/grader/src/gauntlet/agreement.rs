@@ -4,16 +4,18 @@
 use super::scenes;
 use crate::kits::Source;
 use crate::queue;
+use crate::worker::Worker;
 use anyhow::Result;
 use oracle::exact::{Body, meet, triangle};
 use oracle::gauntlet::scenes::{HardScene, hard_scenes};
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{BuildQuery, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, mishap};
+use raykata::kit::{BuildQuery, Door, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, mishap};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
 use raykata::shape::Triangle;
+use std::time::Duration;
 
 /// What came of one way to search one scene.
 #[derive(Clone, Debug)]
@@ -105,11 +107,15 @@ fn exact_t(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     meet(ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t)
 }
 
+/// How long all rays of a scene may take in one structure, which is built first, without much optimisation.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 /// Every search of the reference on every hard scene, with so many rays each.
 pub fn all(reference: &Source, seed: u64, rays: u64) -> Result<Vec<Agreement>> {
-    let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
+    let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
+    let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
     let of_scenes = queue::run(&kits, &hard_scenes(), |kit, scene| {
-        Ok(mishap::catch(|| of_scene(&**kit, scene, seed, rays))?)
+        Ok(mishap::catch(|| of_scene(kit, scene, seed, rays))?)
     })?;
     Ok(of_scenes.into_iter().flatten().collect())
 }
@@ -157,7 +163,8 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
         let quality = Quality { grid_resolution, ..with(Accelerator::Grid, 1) };
         structures.push((format!("grid {name}"), quality));
     }
-    for leaf_size in [1, 8] {
+    // With smaller leaves copies of a triangle would be divided down to the deepest level.
+    for leaf_size in [4, 8] {
         for (how, accelerator) in
             [("by cells", Accelerator::OctreeByCells), ("from the root", Accelerator::Octree)]
         {
