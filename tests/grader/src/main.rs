@@ -9,6 +9,7 @@ use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
 use raykata_cli::cost;
 use raykata_cli::report::say;
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// A command and what does it; that returns whether all went well.
@@ -17,30 +18,28 @@ type Command = (&'static Spec, fn(&Given) -> Result<bool>);
 /// All commands, in the order of the help. A name of two words is a command below another one, or in a group.
 const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
-    (&grade::SPEC, |given| grade::run(&root()?, &grade::Options::read(given)?)),
+    (&grade::SPEC, |given| in_kit(grade::Options::read(given), grade::run)),
     #[cfg(target_os = "linux")]
     (&grade::ONE, |given| grade::one(root, &grade::OneOptions::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::MERGE, |given| grade::merge(&grade::MergeOptions::read(given)?)),
-    (&handout::SPEC, |given| done(handout::run(&root()?, &handout::Options::read(given)?))),
+    (&handout::SPEC, |given| done(in_kit(handout::Options::read(given), handout::run))),
     #[cfg(target_os = "linux")]
-    (&export::GRADESCOPE, |given| {
-        done(export::gradescope(&root()?, &export::Options::of_gradescope(given)?))
-    }),
+    (&export::GRADESCOPE, |given| done(in_kit(export::Options::of_gradescope(given), export::gradescope))),
     #[cfg(target_os = "linux")]
     (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
-    (&gauntlet::SPEC, |given| gauntlet::run(&root()?, &gauntlet::Options::read(given)?)),
+    (&gauntlet::SPEC, |given| in_kit(gauntlet::Options::read(given), gauntlet::run)),
     (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
     #[cfg(target_os = "linux")]
     (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given))),
     #[cfg(target_os = "linux")]
-    (&grade::REHEARSE, |given| grade::rehearse(&root()?, &grade::RehearsalOptions::read(given)?)),
+    (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
     (&cases::SPEC, |_| done(cases::list(&root()?))),
-    (&sync::SPEC, |given| done(sync::run(&root()?, &sync::Options::read(given)?))),
-    (&corpus::SPEC, |given| corpus::run(&root()?, &corpus::Options::read(given)?)),
-    (&corpus::carry::SPEC, |given| corpus::carry::run(&root()?, &corpus::carry::Options::read(given)?)),
+    (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
+    (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
+    (&corpus::carry::SPEC, |given| in_kit(corpus::carry::Options::read(given), corpus::carry::run)),
     (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
-    (&mutants::SPEC, |given| mutants::run(&root()?, &mutants::Options::read(given)?)),
+    (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];
 
@@ -65,6 +64,12 @@ fn main() -> ExitCode {
     }
 }
 
+/// Does the work in the kit around the working folder. A command line that is wrong is reported outside of a kit, too.
+fn in_kit<T, R>(options: Result<T, Misuse>, work: impl FnOnce(&Path, &T) -> Result<R>) -> Result<R> {
+    let options = options?;
+    work(&root()?, &options)
+}
+
 fn done(result: Result<()>) -> Result<bool> {
     result.map(|()| true)
 }
@@ -72,7 +77,7 @@ fn done(result: Result<()>) -> Result<bool> {
 /// Whether all went well.
 fn run(words: Vec<OsString>) -> Result<bool> {
     let Some((first, rest)) = words.split_first() else {
-        return Err(Misuse::new(format!("a command is missing\n\n{}", help())).into());
+        return Err(Misuse::new(format!("a command is missing\n\n{}", help().trim_end())).into());
     };
     let asks_for_help = |word: &OsString| ["help", "--help", "-h"].iter().any(|help| word == help);
     match (&*first.to_string_lossy(), rest) {
