@@ -87,15 +87,16 @@ pub struct Options {
 impl Options {
     /// As they were given.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
-        given.require("--shard", "--seed")?;
-        Ok(Options {
+        let options = Options {
             submissions: given.required(0)?.into(),
             out: given.required_path("--out")?,
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             shard: given.parsed("--shard", shard)?,
             resume: given.has("--resume"),
             terms: Terms::read(given)?,
-        })
+        };
+        given.require("--shard", "--seed")?;
+        Ok(options)
     }
 }
 
