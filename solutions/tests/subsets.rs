@@ -7,7 +7,7 @@ use raykata::count::Counts;
 use raykata::effects::Effect;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{Economy, Frames, RayKind, RenderJob, StudentKit, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
 use raykata::mesh::Mesh;
 use raykata::scene::{Scene, load};
 use std::path::Path;
