@@ -33,6 +33,8 @@ pub struct Argument {
     pub name: &'static str,
     /// Whether the command needs it.
     pub required: bool,
+    /// Whether it can be repeated; only the last argument can.
+    pub many: bool,
     /// What it is.
     pub help: &'static str,
 }
@@ -45,25 +47,31 @@ pub struct Opt {
     value: Option<&'static str>,
     choices: &'static [&'static str],
     many: bool,
+    required: bool,
     help: &'static str,
 }
 
 impl Argument {
     /// A value that must be given.
     pub const fn required(name: &'static str, help: &'static str) -> Argument {
-        Argument { name, required: true, help }
+        Argument { name, required: true, many: false, help }
     }
 
     /// A value that may be given.
     pub const fn optional(name: &'static str, help: &'static str) -> Argument {
-        Argument { name, required: false, help }
+        Argument { name, required: false, many: false, help }
+    }
+
+    /// The same, but it can be repeated.
+    pub const fn many(self) -> Argument {
+        Argument { many: true, ..self }
     }
 }
 
 impl Opt {
     /// An option without a value; `long` begins with two dashes.
     pub const fn flag(long: &'static str, help: &'static str) -> Opt {
-        Opt { long, short: None, value: None, choices: &[], many: false, help }
+        Opt { long, short: None, value: None, choices: &[], many: false, required: false, help }
     }
 
     /// An option with a value, which the help calls `value`.
@@ -81,9 +89,14 @@ impl Opt {
         Opt { choices, ..self }
     }
 
-    /// The same with several values, separated by commas.
+    /// The same with several values: it can be repeated, and [`Given::list`] splits values at commas.
     pub const fn many(self) -> Opt {
         Opt { many: true, ..self }
+    }
+
+    /// The same, but the command needs it: see [`Given::required_path`].
+    pub const fn required(self) -> Opt {
+        Opt { required: true, ..self }
     }
 
     fn is(&self, name: &str) -> bool {
@@ -140,7 +153,8 @@ impl Spec {
         while let Some(word) = words.next() {
             let text = word.to_string_lossy().into_owned();
             if only_arguments || !text.starts_with('-') || text == "-" {
-                if given.arguments.len() == self.arguments.len() {
+                let repeats = self.arguments.last().is_some_and(|last| last.many);
+                if given.arguments.len() >= self.arguments.len() && !repeats {
                     return Err(self.misuse(format!("unexpected argument `{text}`")));
                 }
                 given.arguments.push(word);
@@ -189,12 +203,16 @@ impl Spec {
 
     fn usage(&self) -> String {
         let mut usage = format!("Usage: {}", self.name);
-        if self.all_options().next().is_some() {
+        if self.all_options().any(|option| !option.required) {
             usage += " [OPTIONS]";
+        }
+        for option in self.all_options().filter(|option| option.required) {
+            usage += &format!(" {} {}", option.long, option.value.unwrap_or_default());
         }
         for argument in self.arguments {
             let name = argument.name;
             usage += &if argument.required { format!(" {name}") } else { format!(" [{name}]") };
+            usage += if argument.many { "..." } else { "" };
         }
         usage
     }
@@ -276,24 +294,47 @@ impl Given {
         self.values(long).next().map(PathBuf::from)
     }
 
+    /// The value of an option that the command needs and that names a file or a folder.
+    pub fn required_path(&self, long: &str) -> Result<PathBuf, Misuse> {
+        self.path(long).ok_or_else(|| self.misuse(format!("`{long}` is missing")))
+    }
+
     /// The value of an option, as `parse` understands it.
-    pub fn parsed<T>(
+    pub fn parsed<T, E: Display>(
         &self,
         long: &str,
-        parse: impl Fn(&str) -> Result<T, String>,
+        parse: impl Fn(&str) -> Result<T, E>,
     ) -> Result<Option<T>, Misuse> {
         self.values(long).next().map(|value| self.one(long, &value.to_string_lossy(), parse)).transpose()
     }
 
-    /// The values of an option that can have several.
-    pub fn list<T>(&self, long: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Misuse> {
+    /// The values of an option that can be repeated. A comma is part of a value.
+    pub fn repeated<T, E: Display>(
+        &self,
+        long: &str,
+        parse: impl Fn(&str) -> Result<T, E>,
+    ) -> Result<Vec<T>, Misuse> {
+        self.values(long).map(|value| self.one(long, &value.to_string_lossy(), &parse)).collect()
+    }
+
+    /// The values of an option that can have several, separated by commas.
+    pub fn list<T, E: Display>(
+        &self,
+        long: &str,
+        parse: impl Fn(&str) -> Result<T, E>,
+    ) -> Result<Vec<T>, Misuse> {
         let texts: Vec<String> =
             self.values(long).map(|value| value.to_string_lossy().into_owned()).collect();
         let parts = texts.iter().flat_map(|text| text.split(','));
         parts.map(|part| self.one(long, part, &parse)).collect()
     }
 
-    fn one<T>(&self, long: &str, text: &str, parse: impl Fn(&str) -> Result<T, String>) -> Result<T, Misuse> {
+    fn one<T, E: Display>(
+        &self,
+        long: &str,
+        text: &str,
+        parse: impl Fn(&str) -> Result<T, E>,
+    ) -> Result<T, Misuse> {
         parse(text).map_err(|why| self.spec.misuse(format!("`{long} {text}`: {why}")))
     }
 
@@ -321,6 +362,11 @@ impl Given {
         self.arguments.get(place).map(OsString::as_os_str)
     }
 
+    /// All arguments from this place on.
+    pub fn arguments(&self, place: usize) -> &[OsString] {
+        self.arguments.get(place..).unwrap_or_default()
+    }
+
     /// The argument at this place, which must be there.
     pub fn required(&self, place: usize) -> Result<&OsStr, Misuse> {
         self.argument(place).ok_or_else(|| {
@@ -330,10 +376,10 @@ impl Given {
     }
 
     /// The argument at this place, as `parse` understands it.
-    pub fn parsed_argument<T>(
+    pub fn parsed_argument<T, E: Display>(
         &self,
         place: usize,
-        parse: impl Fn(&str) -> Result<T, String>,
+        parse: impl Fn(&str) -> Result<T, E>,
     ) -> Result<Option<T>, Misuse> {
         let parse = |text: &OsStr| {
             let text = text.to_string_lossy();
@@ -346,6 +392,14 @@ impl Given {
     pub fn exclude(&self, one: &str, other: &str) -> Result<(), Misuse> {
         match self.has(one) && self.has(other) {
             true => Err(self.misuse(format!("`{one}` cannot be used with `{other}`"))),
+            false => Ok(()),
+        }
+    }
+
+    /// An error for an option that was given without another one that it needs.
+    pub fn require(&self, one: &str, other: &str) -> Result<(), Misuse> {
+        match self.has(one) && !self.has(other) {
+            true => Err(self.misuse(format!("`{one}` needs `{other}`"))),
             false => Ok(()),
         }
     }
@@ -449,6 +503,40 @@ mod tests {
         );
         assert!(given.number("--width", 1..=9u32).unwrap_err().to_string().contains("from 1 to 9"));
         assert!(given.required(0).unwrap_err().to_string().starts_with("WALL is missing"));
+    }
+
+    #[test]
+    fn what_repeats_and_what_is_required() {
+        static MIX: Spec = Spec {
+            name: "tool mix",
+            about: "Mix colours.",
+            arguments: &[Argument::required("TIN", "The colours.").many()],
+            options: &[&[
+                Opt::value("--out", "FILE", "Where it goes.").required(),
+                Opt::value("--rule", "OLD=NEW", "What becomes of a colour.").many(),
+                Opt::flag("--dry", "Use no water."),
+            ]],
+        };
+        let read = |words: &[&str]| match MIX.read(words.iter().map(OsString::from)) {
+            Ok(Read::Given(given)) => given,
+            other => panic!("{other:?}"),
+        };
+        let given = read(&["a", "--rule", "b=c,d", "e", "--rule=f=g", "--out", "h"]);
+        assert_eq!(given.arguments(0), ["a", "e"]);
+        assert_eq!(given.arguments(2), [""; 0]);
+        let rules = given.repeated("--rule", |text| Ok::<_, String>(text.to_owned())).unwrap();
+        assert_eq!(rules, ["b=c,d", "f=g"]);
+        assert_eq!(given.required_path("--out").unwrap(), PathBuf::from("h"));
+        assert!(given.require("--rule", "--out").is_ok() && given.require("--dry", "--rule").is_ok());
+        assert!(
+            given.require("--rule", "--dry").unwrap_err().to_string().starts_with("`--rule` needs `--dry`")
+        );
+        let missing = read(&["a"]).required_path("--out").unwrap_err().to_string();
+        assert!(
+            missing.starts_with("`--out` is missing\n\nUsage: tool mix [OPTIONS] --out FILE TIN...\n"),
+            "{missing}"
+        );
+        assert!(read(&[]).required(0).unwrap_err().to_string().starts_with("TIN is missing"));
     }
 
     #[test]

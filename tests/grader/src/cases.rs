@@ -1,8 +1,17 @@
 //! The catalogue of hard cases, `tests/cases.toml`: what goes in, what must come of it, and who sees to it.
 
 use anyhow::{Context, Result};
+use raykata_cli::args::Spec;
 use serde::Deserialize;
 use std::path::Path;
+
+/// `grader cases`.
+pub static SPEC: Spec = Spec {
+    name: "grader cases",
+    about: "List the hard cases, and the checks that cover them (for authors).",
+    arguments: &[],
+    options: &[],
+};
 
 /// One of them.
 #[derive(Clone, Debug, Deserialize)]

@@ -11,19 +11,33 @@ use crate::queue;
 use crate::sync::{self, Block};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
-use clap::Args;
 use raykata::kit::Door;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::path::Path;
 
+/// `grader gaps`.
+pub static SPEC: Spec = Spec {
+    name: "grader gaps",
+    about: "Show what pictures lack while a function is not written, for each function (for authors).",
+    arguments: &[],
+    options: &[&[
+        Opt::flag("--check", "Compare with tests/corpus/gaps.txt."),
+        Opt::flag("--bless", "Write tests/corpus/gaps.txt."),
+    ]],
+};
+
 /// Whether to compare or to write.
-#[derive(Args)]
 pub struct Options {
-    /// Compare with tests/corpus/gaps.txt.
-    #[arg(long)]
     check: bool,
-    /// Write tests/corpus/gaps.txt.
-    #[arg(long, conflicts_with = "check")]
     bless: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--bless", "--check")?;
+        Ok(Options { check: given.has("--check"), bless: given.has("--bless") })
+    }
 }
 
 /// Where what each picture lacks is kept.

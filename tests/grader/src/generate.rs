@@ -8,9 +8,26 @@ mod tree;
 use crate::report::make_folder;
 use anyhow::{Context, Result};
 use glam::{Vec3, vec3};
+use raykata_cli::args::{Argument, Given, Spec};
 use std::f32::consts::TAU;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// `grader generate`.
+pub static SPEC: Spec = Spec {
+    name: "grader generate",
+    about: "Make the meshes and images of the scenes (for authors).",
+    arguments: &[Argument::optional(
+        "SCENES",
+        "The folder that has, or will have, meshes/ and images/ [default: scenes].",
+    )],
+    options: &[],
+};
+
+/// The folder that was given.
+pub fn folder(given: &Given) -> PathBuf {
+    given.argument(0).map_or_else(|| "scenes".into(), PathBuf::from)
+}
 
 /// Points along the knot and around its tube.
 const ALONG: usize = 960;

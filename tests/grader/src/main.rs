@@ -1,98 +1,60 @@
 //! `grader`: grades submissions, makes hand-outs, and tries the checks themselves.
 
 use anyhow::Result;
-use clap::{Parser, Subcommand};
 use grader::kits::root;
 use grader::{cases, corpus, gaps, gauntlet, generate, handout, jail, mutants, sync};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
-use raykata_cli::args::{Misuse, Read};
-use raykata_cli::{cost, report};
+use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
+use raykata_cli::cost;
+use raykata_cli::report::say;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::Path;
 use std::process::ExitCode;
 
-/// Grade submissions, make hand-outs, and try the checks themselves. Students run `raykata`.
-///
-/// Exit codes: 0 all went well; 1 something is wrong: a submission could not be graded, files differ; 2 the command
-/// line was not understood.
-#[derive(Parser)]
-#[command(name = "grader", version, verbatim_doc_comment)]
-struct Cli {
-    #[command(subcommand)]
-    command: Command,
-}
+/// A command and what does it; that returns whether all went well.
+type Command = (&'static Spec, fn(&Given) -> Result<bool>);
 
-#[derive(Subcommand)]
-enum Command {
-    /// Grade a folder of submissions, each in a jail, and write tables and reports (for instructors).
+/// All commands, in the order of the help. A name of two words is a command below another one, or in a group.
+const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
-    Grade(grade::Options),
-    /// Grade one submission for Gradescope or GitHub Classroom (what `export` writes runs this).
+    (&grade::SPEC, |given| in_kit(grade::Options::read(given), grade::run)),
     #[cfg(target_os = "linux")]
-    GradeOne(grade::OneOptions),
-    /// Put together what `grade --shard` has made of the parts of a class (for instructors).
+    (&grade::ONE, |given| grade::one(root, &grade::OneOptions::read(given)?)),
     #[cfg(target_os = "linux")]
-    Merge {
-        /// The folders of the parts.
-        #[arg(required = true)]
-        parts: Vec<PathBuf>,
-        /// The folder for the grades of the whole class.
-        #[arg(long)]
-        out: PathBuf,
-    },
-    /// Make the student's repository: no answers, nothing that only instructors need (for instructors).
-    Handout(handout::Options),
-    /// Write what Gradescope or GitHub Classroom needs to grade (for instructors).
+    (&grade::MERGE, |given| grade::merge(&grade::MergeOptions::read(given)?)),
+    (&handout::SPEC, |given| done(in_kit(handout::Options::read(given), handout::run))),
     #[cfg(target_os = "linux")]
-    #[command(subcommand)]
-    Export(export::What),
-    /// Show what accuracy costs: ways to intersect a triangle against hard inputs, judged exactly.
-    Gauntlet(gauntlet::Options),
-    /// The same as `raykata cost`, with a chapter about ways to intersect a triangle.
-    #[command(disable_help_flag = true)]
-    Cost {
-        /// As `raykata cost` takes them.
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
-        arguments: Vec<OsString>,
-    },
-    /// Try the grader on submissions that want what they have not earned (for authors).
+    (&export::GRADESCOPE, |given| done(in_kit(export::Options::of_gradescope(given), export::gradescope))),
     #[cfg(target_os = "linux")]
-    Attacks(grade::AttackOptions),
-    /// Grade a made-up class whose grades are known, and compare (for authors).
+    (&export::CLASSROOM, |given| done(export::classroom(&export::Options::of_classroom(given)?))),
+    (&gauntlet::SPEC, |given| in_kit(gauntlet::Options::read(given), gauntlet::run)),
+    (&gauntlet::COST, |given| gauntlet::cost(&cost::Options::read(given)?)),
     #[cfg(target_os = "linux")]
-    Rehearse(grade::RehearsalOptions),
-    /// List the hard cases, and the checks that see to them (for authors).
-    Cases,
-    /// Make exercises/ from solutions/ (for authors). Keeps what you have begun.
-    Sync {
-        /// Only say whether anything differs.
-        #[arg(long)]
-        check: bool,
-        /// Overwrite exercises that have been begun.
-        #[arg(long, conflicts_with = "check")]
-        force: bool,
-    },
-    /// Try the checks on known mistakes and on other right solutions (for authors).
-    Corpus(corpus::Options),
-    /// Show what pictures lack while a function is not written, for each function (for authors).
-    Gaps(gaps::Options),
-    /// Try the checks on changes that cargo-mutants makes to the solutions (for authors).
-    Mutants(mutants::Options),
-    /// Make the meshes and images of the scenes (for authors).
-    Generate {
-        /// The folder that has, or will have, meshes/ and images/.
-        #[arg(default_value = "scenes")]
-        scenes: PathBuf,
-    },
-}
+    (&grade::ATTACKS, |given| grade::attack(&root()?, &grade::AttackOptions::read(given))),
+    #[cfg(target_os = "linux")]
+    (&grade::REHEARSE, |given| in_kit(grade::RehearsalOptions::read(given), grade::rehearse)),
+    (&cases::SPEC, |_| done(cases::list(&root()?))),
+    (&sync::SPEC, |given| done(in_kit(sync::Options::read(given), sync::run))),
+    (&corpus::SPEC, |given| in_kit(corpus::Options::read(given), corpus::run)),
+    (&corpus::carry::SPEC, |given| in_kit(corpus::carry::Options::read(given), corpus::carry::run)),
+    (&gaps::SPEC, |given| gaps::run(&gaps::Options::read(given)?)),
+    (&mutants::SPEC, |given| in_kit(mutants::Options::read(given), mutants::run)),
+    (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
+];
+
+/// Words that are no command but begin the names of some, and what these do.
+const GROUPS: &[(&str, &str)] = &[
+    #[cfg(target_os = "linux")]
+    ("export", "Write what Gradescope or GitHub Classroom needs to grade (for instructors)."),
+];
 
 fn main() -> ExitCode {
     // As a launcher of what is not trusted, or as the syntax check, this program does nothing else.
     jail::launch_if_asked();
     #[cfg(target_os = "linux")]
     grade::lint_if_asked();
-    match run(Cli::parse()) {
+    match run(std::env::args_os().skip(1).collect()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(error) => {
@@ -102,37 +64,117 @@ fn main() -> ExitCode {
     }
 }
 
+/// Does the work in the kit around the working folder. A command line that is wrong is reported outside of a kit, too.
+fn in_kit<T, R>(options: Result<T, Misuse>, work: impl FnOnce(&Path, &T) -> Result<R>) -> Result<R> {
+    let options = options?;
+    work(&root()?, &options)
+}
+
+fn done(result: Result<()>) -> Result<bool> {
+    result.map(|()| true)
+}
+
 /// Whether all went well.
-fn run(cli: Cli) -> Result<bool> {
-    match cli.command {
-        #[cfg(target_os = "linux")]
-        Command::Grade(options) => return grade::run(&root()?, &options),
-        #[cfg(target_os = "linux")]
-        Command::GradeOne(options) => return grade::one(root, &options),
-        #[cfg(target_os = "linux")]
-        Command::Merge { parts, out } => return grade::merge(&parts, &out),
-        Command::Handout(options) => handout::run(&root()?, &options)?,
-        #[cfg(target_os = "linux")]
-        Command::Export(what) => export::run(&root()?, &what)?,
-        Command::Gauntlet(options) => return gauntlet::run(&root()?, &options),
-        Command::Cost { arguments } => match cost::SPEC.read(arguments)? {
-            Read::Help(help) => report::say(format_args!("{help}")),
-            Read::Given(given) => {
-                let program = "cargo run --release -p grader --";
-                return cost::run(&cost::Options::read(&given)?, program, Some(&gauntlet::summary));
+fn run(words: Vec<OsString>) -> Result<bool> {
+    let Some((first, rest)) = words.split_first() else {
+        return Err(Misuse::new(format!("a command is missing\n\n{}", help().trim_end())).into());
+    };
+    let asks_for_help = |word: &OsString| ["help", "--help", "-h"].iter().any(|help| word == help);
+    match (&*first.to_string_lossy(), rest) {
+        ("--help" | "-h", _) | ("help", []) => say(format_args!("{}", help())),
+        ("--version" | "-V", _) => say(format_args!("grader {}\n", env!("CARGO_PKG_VERSION"))),
+        ("help", words) => say(format_args!("{}", help_for(words)?)),
+        (name, [second, rest @ ..]) if asks_for_help(second) && has_commands(name) => {
+            let words: Vec<OsString> = [first].into_iter().chain(rest).cloned().collect();
+            say(format_args!("{}", help_for(&words)?));
+        }
+        _ => {
+            let ((spec, work), rest) = find(&words)?;
+            match spec.read(rest.iter().cloned())? {
+                Read::Help(help) => say(format_args!("{help}")),
+                Read::Given(given) => return work(&given),
             }
-        },
-        #[cfg(target_os = "linux")]
-        Command::Attacks(options) => return grade::attack(&root()?, &options),
-        #[cfg(target_os = "linux")]
-        Command::Rehearse(options) => return grade::rehearse(&root()?, &options),
-        Command::Cases => cases::list(&root()?)?,
-        Command::Sync { check: true, .. } => sync::check(&root()?)?,
-        Command::Sync { force, .. } => sync::sync(&root()?, force)?,
-        Command::Corpus(options) => return corpus::run(&root()?, &options),
-        Command::Gaps(options) => return gaps::run(&options),
-        Command::Mutants(options) => return mutants::run(&root()?, &options),
-        Command::Generate { scenes } => generate::write(&scenes)?,
+        }
     }
     Ok(true)
+}
+
+/// The words that start a command, without the name of the program.
+fn words_of(spec: &Spec) -> &'static str {
+    spec.name.trim_start_matches("grader ")
+}
+
+/// The commands below this one, by their second words.
+fn below(name: &str) -> impl Iterator<Item = (&'static str, &'static Command)> {
+    let second = move |command: &'static Command| {
+        let (first, second) = words_of(command.0).split_once(' ')?;
+        (first == name).then_some((second, command))
+    };
+    COMMANDS.iter().filter_map(second)
+}
+
+fn has_commands(name: &str) -> bool {
+    below(name).next().is_some()
+}
+
+/// The command with which a line begins, and the rest of the line.
+fn find(line: &[OsString]) -> Result<(&'static Command, &[OsString]), Misuse> {
+    let word = |place: usize| line.get(place).map_or("".into(), |word| word.to_string_lossy());
+    let (first, second) = (word(0), word(1));
+    if let Some((_, command)) = below(&first).find(|(name, _)| *name == second) {
+        return Ok((command, &line[2..]));
+    }
+    if let Some(command) = COMMANDS.iter().find(|(spec, _)| words_of(spec) == first) {
+        return Ok((command, &line[1..]));
+    }
+    let (usage, unknown, known): (String, _, Vec<&str>) = if has_commands(&first) {
+        (format!("grader {first}"), second, below(&first).map(|(name, _)| name).collect())
+    } else {
+        let groups = GROUPS.iter().map(|(name, _)| *name);
+        ("grader".into(), first, COMMANDS.iter().map(|(spec, _)| words_of(spec)).chain(groups).collect())
+    };
+    let wrong = match unknown.is_empty() {
+        true => format!("a command is missing; known are {}", known.join(", ")),
+        false => format!("there is no command `{unknown}`{}", did_you_mean(&unknown, &known)),
+    };
+    Err(Misuse::new(format!(
+        "{wrong}\n\nUsage: {usage} COMMAND\n\nFor more information, try `{usage} --help`."
+    )))
+}
+
+/// The help of a command or of a group.
+fn help_for(words: &[OsString]) -> Result<String, Misuse> {
+    let first = words.first().map_or("".into(), |word| word.to_string_lossy());
+    let group = GROUPS.iter().find(|(name, _)| *name == first && words.len() == 1);
+    let text = match group {
+        Some((name, about)) => format!("{about}\n\nUsage: grader {name} COMMAND\n"),
+        None => find(words)?.0.0.help(),
+    };
+    let commands: String = match words.len() {
+        1 => below(&first).map(|(name, (spec, _))| entry(name, spec.about)).collect(),
+        _ => String::new(),
+    };
+    Ok(if commands.is_empty() { text } else { format!("{text}\nCommands:\n{commands}") })
+}
+
+fn help() -> String {
+    let commands: String = COMMANDS.iter().map(|(spec, _)| entry(words_of(spec), spec.about)).collect();
+    format!(
+        "Grade submissions, make hand-outs, and try the checks themselves. Students run
+`raykata`.
+
+Exit codes: 0 all went well; 1 something is wrong: a submission could not be
+graded, files differ; 2 the command line was not understood.
+
+Usage: grader COMMAND
+
+Commands:
+{commands}
+Options:
+{}{}
+`grader COMMAND --help` explains a command.
+",
+        entry("-h, --help", "Print this help."),
+        entry("-V, --version", "Print the version.")
+    )
 }

@@ -4,10 +4,36 @@
 //! `// <stub>` inside, without that mark; the marks themselves go, too. Everything else is the same in both.
 
 use anyhow::{Context, Result, bail};
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// `grader sync`.
+pub static SPEC: Spec = Spec {
+    name: "grader sync",
+    about: "Make exercises/ from solutions/ (for authors). Keeps what you have begun.",
+    arguments: &[],
+    options: &[&[
+        Opt::flag("--check", "Only say whether anything differs."),
+        Opt::flag("--force", "Overwrite exercises that have been begun."),
+    ]],
+};
+
+/// Whether to compare or to write.
+pub struct Options {
+    check: bool,
+    force: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--force", "--check")?;
+        Ok(Options { check: given.has("--check"), force: given.has("--force") })
+    }
+}
 
 const BEGIN: &str = "// <solution>";
 const STUB: &str = "// <stub>";
@@ -60,6 +86,11 @@ pub fn pristine(root: &Path) -> Result<BTreeMap<String, String>> {
         (name, exercise.stub)
     };
     Ok(exercises(root)?.into_iter().map(named).collect())
+}
+
+/// Compares or writes.
+pub fn run(root: &Path, options: &Options) -> Result<()> {
+    if options.check { check(root) } else { sync(root, options.force) }
 }
 
 /// Says which exercises differ from what `sync` would write; fails if any does.

@@ -204,7 +204,7 @@ fn what_cannot_be_graded_is_said_in_words() {
     for (more, says) in [
         (&["--stages", "12"][..], "there is no stage 12"),
         (&["--shard", "3/2"], "parts are counted from 1"),
-        (&["--jobs", "0"], "0 is not in 1.."),
+        (&["--jobs", "0"], "`--jobs 0`: a whole number from 1 to 65535 is wanted"),
     ] {
         let output =
             grader().arg("grade").arg(class.path()).arg("--out").arg(out.path()).args(more).output().unwrap();

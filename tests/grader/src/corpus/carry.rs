@@ -5,32 +5,61 @@
 
 use super::entry::apply;
 use anyhow::{Context, Result, bail, ensure};
-use clap::Args;
 use diffy::DiffOptions;
 use raykata::film::write_atomically;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// `grader corpus carry`.
+pub static SPEC: Spec = Spec {
+    name: "grader corpus carry",
+    about: "Make the patches follow files of the solutions that have moved, were split or have changed.",
+    arguments: &[Argument::required(
+        "FROM",
+        "A git revision with the files to which the patches apply, or a folder that holds these files.",
+    )],
+    options: &[&[
+        Opt::value(
+            "--moved",
+            "OLD=NEW",
+            "A file that has moved, as OLD=NEW, from the root of the kit. A file that was split is named once for each \
+             part.",
+        )
+        .many(),
+        Opt::value("--word", "OLD=NEW", "A word that is spelled in another way now, as OLD=NEW.").many(),
+        Opt::value(
+            "--corpus",
+            "FOLDER",
+            "The folder of the patches; those in folders below it count [default: tests/corpus].",
+        ),
+        Opt::flag("--check", "Only say what would be done."),
+    ]],
+};
+
 /// Which patches, and what has happened to their files.
-#[derive(Args)]
 pub struct Options {
-    /// A git revision with the files to which the patches apply, or a folder that holds these files.
     from: String,
-    /// A file that has moved, as OLD=NEW, from the root of the kit. A file that was split is named once for each part.
-    #[arg(long = "moved", value_name = "OLD=NEW", value_parser = pair)]
     moved: Vec<(String, String)>,
-    /// A word that is spelled in another way now, as OLD=NEW.
-    #[arg(long = "word", value_name = "OLD=NEW", value_parser = pair)]
     words: Vec<(String, String)>,
-    /// The folder of the patches; those in folders below it count.
-    #[arg(long, default_value = "tests/corpus")]
     corpus: PathBuf,
-    /// Only say what would be done.
-    #[arg(long)]
     check: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            from: given.required(0)?.to_string_lossy().into_owned(),
+            moved: given.repeated("--moved", pair)?,
+            words: given.repeated("--word", pair)?,
+            corpus: given.path("--corpus").unwrap_or_else(|| "tests/corpus".into()),
+            check: given.has("--check"),
+        })
+    }
 }
 
 fn pair(text: &str) -> Result<(String, String)> {

@@ -3,7 +3,7 @@
 //!
 //! `carry` (patches follow their files) · `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
 
-mod carry;
+pub mod carry;
 pub mod entry;
 pub mod records;
 pub mod verdict;
@@ -13,58 +13,73 @@ use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
-use clap::{Args, Subcommand};
 use entry::{Claim, Entry};
 use judge::scorecard::run_checks_on;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use records::Matrix;
 use std::path::Path;
 use verdict::{Fate, Tried};
 use workshop::{Built, Workshop};
 
-/// Which entries to try, and what to do with what comes of it.
-#[derive(Args)]
-#[command(args_conflicts_with_subcommands = true)]
+/// `grader corpus`.
+pub static SPEC: Spec = Spec {
+    name: "grader corpus",
+    about: "Try the checks on known mistakes and on other right solutions (for authors).",
+    arguments: &[Argument::optional("NAME", "Entries by name; all, if none is named.").many()],
+    options: &[&[
+        Opt::value("--stage", "N", "One stage only."),
+        Opt::flag("--slice", "Two mistakes and one right way of each stage."),
+        Opt::value("--jobs", "N", "How many to try at once [default: one per core]."),
+        Opt::flag("--check", "Also compare with tests/corpus/matrix.txt and tests/corpus/messages."),
+        Opt::flag("--bless", "Write tests/corpus/matrix.txt and tests/corpus/messages."),
+        Opt::flag("--right", "Right ways only."),
+        Opt::value(
+            "--seed",
+            "N",
+            "Pick the inputs of the checks with this seed instead of 0. The message about a mistake may then differ: \
+             only the check that must catch the mistake has to fail.",
+        ),
+    ]],
+};
+
+/// Which entries to try, and what to do with the results.
 pub struct Options {
-    #[command(subcommand)]
-    what: Option<What>,
-    /// Entries by name; all, if none is named.
     names: Vec<String>,
-    /// One stage only.
-    #[arg(long)]
     stage: Option<u8>,
-    /// Two mistakes and one right way of each stage.
-    #[arg(long)]
     slice: bool,
-    /// How many to try at once.
-    #[arg(long, default_value_t = queue::cores())]
     jobs: usize,
-    /// Also compare with tests/corpus/matrix.txt and tests/corpus/messages.
-    #[arg(long)]
     check: bool,
-    /// Write tests/corpus/matrix.txt and tests/corpus/messages.
-    #[arg(long, conflicts_with = "check")]
     bless: bool,
-    /// Right ways only.
-    #[arg(long)]
     right: bool,
-    /// Pick the inputs of the checks with this seed instead of 0. What a mistake is told may then be another thing: it only
-    /// has to be caught by the check that is there to catch it.
-    #[arg(long, conflicts_with_all = ["check", "bless"])]
     seed: Option<u64>,
 }
 
-/// What else can be done with the corpus.
-#[derive(Subcommand)]
-enum What {
-    /// Make the patches follow files of the solutions that have moved, were split or have changed.
-    Carry(carry::Options),
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--bless", "--check")?;
+        given.exclude("--seed", "--check")?;
+        given.exclude("--seed", "--bless")?;
+        let names: Vec<String> =
+            given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect();
+        if names.iter().any(|name| name == "carry") {
+            return Err(given.misuse("`carry` is a command of its own: `grader corpus carry`"));
+        }
+        Ok(Options {
+            names,
+            stage: given.number("--stage", 0..=u8::MAX)?,
+            slice: given.has("--slice"),
+            jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
+            check: given.has("--check"),
+            bless: given.has("--bless"),
+            right: given.has("--right"),
+            seed: given.number("--seed", 0..=u64::MAX)?,
+        })
+    }
 }
 
 /// Tries entries and reports; whether all is as it must be.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    if let Some(What::Carry(options)) = &options.what {
-        return carry::run(root, options);
-    }
     let all = entry::read_all(root)?;
     let n_all = all.len();
     let chosen = choose(all, options)?;

@@ -4,42 +4,56 @@ mod bundle;
 
 use crate::grade::{draw_seed, stages};
 use anyhow::{Context, Result, ensure};
-use clap::{Args, Subcommand};
 use raykata::film::write_atomically;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Which of them.
-#[derive(Subcommand)]
-pub enum What {
-    /// A zip to upload to Gradescope as an autograder. It holds the answers; students do not see it.
-    Gradescope {
-        /// Where the zip goes.
-        #[arg(long, default_value = "autograder.zip")]
-        out: PathBuf,
-        /// What is graded.
-        #[command(flatten)]
-        grading: Grading,
-    },
-    /// Workflows for GitHub: one that grades each push of a student, one that grades a class on several machines.
-    Classroom {
-        /// The folder for .github/workflows.
-        #[arg(long)]
-        out: PathBuf,
-        /// What is graded.
-        #[command(flatten)]
-        grading: Grading,
-    },
+/// `grader export gradescope`.
+pub static GRADESCOPE: Spec = Spec {
+    name: "grader export gradescope",
+    about: "Write a zip to upload to Gradescope as an autograder. It holds the answers; students do not see it.",
+    arguments: &[],
+    options: &[
+        &[Opt::value("--out", "FILE", "Where the zip goes [default: autograder.zip].")],
+        Grading::OPTIONS,
+    ],
+};
+
+/// `grader export classroom`.
+pub static CLASSROOM: Spec = Spec {
+    name: "grader export classroom",
+    about: "Write workflows for GitHub: one that grades each push of a student, one that grades a class on several \
+            machines.",
+    arguments: &[],
+    options: &[
+        &[Opt::value("--out", "FOLDER", "The folder for .github/workflows.").required()],
+        Grading::OPTIONS,
+    ],
+};
+
+/// Where to write, and what is graded.
+pub struct Options {
+    out: PathBuf,
+    grading: Grading,
+}
+
+impl Options {
+    /// As they were given to [`GRADESCOPE`].
+    pub fn of_gradescope(given: &Given) -> Result<Options, Misuse> {
+        let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
+        Ok(Options { out, grading: Grading::read(given)? })
+    }
+
+    /// As they were given to [`CLASSROOM`].
+    pub fn of_classroom(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options { out: given.required_path("--out")?, grading: Grading::read(given)? })
+    }
 }
 
 /// What is graded, the same for all students.
-#[derive(Args)]
-pub struct Grading {
-    /// The stages, as `3`, `1-4` or `1-4,10`; all if not given.
-    #[arg(long, value_parser = known_stages)]
+struct Grading {
     stages: Option<String>,
-    /// Picks the hidden inputs; drawn at random if not given.
-    #[arg(long)]
     seed: Option<u64>,
 }
 
@@ -49,6 +63,18 @@ fn known_stages(text: &str) -> Result<String> {
 }
 
 impl Grading {
+    const OPTIONS: &[Opt] = &[
+        Opt::value("--stages", "LIST", "The stages, as `3`, `1-4` or `1-4,10` [default: all]."),
+        Opt::value("--seed", "N", "Picks the hidden inputs [default: drawn at random]."),
+    ];
+
+    fn read(given: &Given) -> Result<Grading, Misuse> {
+        Ok(Grading {
+            stages: given.parsed("--stages", known_stages)?,
+            seed: given.number("--seed", 0..=u64::MAX)?,
+        })
+    }
+
     /// As options of `grader grade-one`.
     fn options(&self) -> String {
         let seed = self.seed.unwrap_or_else(draw_seed);
@@ -59,35 +85,34 @@ impl Grading {
 
 const SETUP: &str = include_str!("setup.sh");
 const RUN: &str = include_str!("run_autograder");
-const CLASSROOM: &str = include_str!("classroom.yml");
-const CLASS: &str = include_str!("class.yml");
+const EACH_PUSH: &str = include_str!("classroom.yml");
+const WHOLE_CLASS: &str = include_str!("class.yml");
 
 /// Where a template says how to grade.
 const OPTIONS: &str = "{options}";
 
-/// Writes it.
-pub fn run(root: &Path, what: &What) -> Result<()> {
-    match what {
-        What::Gradescope { out, grading } => {
-            let scripts = [
-                ("setup.sh", SETUP.to_owned()),
-                ("run_autograder", RUN.replace(OPTIONS, &grading.options())),
-            ];
-            let zip = bundle::zip(root, &scripts)?;
-            write(out, &zip)?;
-            println!("{}: upload it as the autograder of a programming assignment", out.display());
-        }
-        What::Classroom { out, grading } => {
-            let folder = out.join(".github/workflows");
-            let options = grading.options();
-            for (name, template) in [("classroom.yml", CLASSROOM), ("class.yml", CLASS)] {
-                let file = folder.join(name);
-                ensure!(!file.exists(), "{} is there already", file.display());
-                write(&file, template.replace(OPTIONS, &options).as_bytes())?;
-            }
-            println!("{}: read what each file says at its top before you use it", folder.display());
-        }
+/// Writes the zip for Gradescope.
+pub fn gradescope(root: &Path, options: &Options) -> Result<()> {
+    let scripts = [
+        ("setup.sh", SETUP.to_owned()),
+        ("run_autograder", RUN.replace(OPTIONS, &options.grading.options())),
+    ];
+    let zip = bundle::zip(root, &scripts)?;
+    write(&options.out, &zip)?;
+    println!("{}: upload it as the autograder of a programming assignment", options.out.display());
+    Ok(())
+}
+
+/// Writes the workflows for GitHub.
+pub fn classroom(options: &Options) -> Result<()> {
+    let folder = options.out.join(".github/workflows");
+    let graded = options.grading.options();
+    for (name, template) in [("classroom.yml", EACH_PUSH), ("class.yml", WHOLE_CLASS)] {
+        let file = folder.join(name);
+        ensure!(!file.exists(), "{} is there already", file.display());
+        write(&file, template.replace(OPTIONS, &graded).as_bytes())?;
     }
+    println!("{}: read what each file says at its top before you use it", folder.display());
     Ok(())
 }
 

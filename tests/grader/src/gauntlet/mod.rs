@@ -12,33 +12,74 @@ use crate::kits::{Need, Source, Which};
 use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
-use clap::Args;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
 use methods::METHODS;
 use raykata::kit::Kit;
-use raykata_cli::args::chosen;
-use raykata_cli::cost::Summary;
+use raykata_cli::args::{Given, Misuse, Opt, Spec, names};
+use raykata_cli::cost::{self, Summary};
 use std::path::{Path, PathBuf};
 
+/// `grader gauntlet`.
+pub static SPEC: Spec = Spec {
+    name: "grader gauntlet",
+    about: "Show what accuracy costs: ways to intersect a triangle against hard inputs, judged exactly.",
+    arguments: &[],
+    options: &[&[
+        Opt::value("--kit", "NAME", "Whose triangle tests join the methods [default: solutions].")
+            .choices(&names(&Which::NAMES)),
+        Opt::value(
+            "--inputs",
+            "N",
+            "Inputs of each distribution, and rays at each closed mesh [default: 20000].",
+        ),
+        Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
+        Opt::value(
+            "--rays",
+            "N",
+            "Instead of the table: so many rays at edges and as many at vertices for each structure of the reference, \
+             and so many at boxes. Goes on where it was stopped.",
+        ),
+        Opt::value(
+            "--state",
+            "FILE",
+            "Where the long run keeps what it has done [default: out/gauntlet.json].",
+        ),
+    ]],
+};
+
+/// `grader cost`: the same line as `raykata cost`.
+pub static COST: Spec = Spec {
+    name: "grader cost",
+    about: "The same as `raykata cost`, with a chapter about ways to intersect a triangle.",
+    arguments: cost::SPEC.arguments,
+    options: cost::SPEC.options,
+};
+
 /// How long, and whose code.
-#[derive(Args)]
 pub struct Options {
-    /// Whose triangle tests join the methods: exercises or solutions.
-    #[arg(long, default_value = "solutions", value_parser = |text: &str| chosen(text, &Which::NAMES))]
     kit: Which,
-    /// Inputs of each distribution, and rays at each closed mesh.
-    #[arg(long, default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(100..))]
     inputs: u64,
-    /// Picks the inputs.
-    #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Instead of the table: so many rays at edges and as many at vertices for each structure of the reference, and so
-    /// many at boxes. Goes on where it was stopped.
-    #[arg(long)]
     rays: Option<u64>,
-    /// Where the long run keeps what it has done.
-    #[arg(long, default_value = "out/gauntlet.json")]
     state: PathBuf,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
+            inputs: given.number("--inputs", 100..=u64::MAX)?.unwrap_or(20_000),
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
+            rays: given.number("--rays", 0..=u64::MAX)?,
+            state: given.path("--state").unwrap_or_else(|| "out/gauntlet.json".into()),
+        })
+    }
+}
+
+/// Measures as `raykata cost` does, and the methods; whether all went well.
+pub fn cost(options: &cost::Options) -> Result<bool> {
+    cost::run(options, "cargo run --release -p grader --", Some(&summary))
 }
 
 /// Runs the gauntlet; whether nothing leaked.

@@ -20,14 +20,14 @@ mod submission;
 mod terms;
 
 pub use class::{Grader, lint_if_asked};
-pub use one::{Options as OneOptions, run as one};
-pub use rehearsal::{Options as RehearsalOptions, run as rehearse};
-pub use siege::{Options as AttackOptions, run as attack};
+pub use one::{Options as OneOptions, SPEC as ONE, run as one};
+pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
+pub use siege::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
 pub(crate) use terms::{draw_seed, stages};
 
 use crate::queue;
 use anyhow::{Context, Result, ensure};
-use clap::Args;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use result::Graded;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -35,25 +35,68 @@ use store::Store;
 use submission::Submission;
 use terms::Terms;
 
-/// Grade a folder of submissions.
-#[derive(Args)]
+/// `grader grade`.
+pub static SPEC: Spec = Spec {
+    name: "grader grade",
+    about: "Grade a folder of submissions, each in a sandbox, and write tables and reports (for instructors).",
+    arguments: &[Argument::required(
+        "SUBMISSIONS",
+        "The folder: each folder, .zip, .tar or .tar.gz in it is a submission, by the name of its student.",
+    )],
+    options: &[
+        &[
+            Opt::value(
+                "--out",
+                "FOLDER",
+                "The folder for the grades: tables, reports, and the database that `--resume` continues.",
+            )
+            .required(),
+            Opt::value("--jobs", "N", "How many submissions are graded at a time [default: one per core]."),
+            Opt::value(
+                "--shard",
+                "I/N",
+                "Only part I of N of the class, as `2/8`; `grader merge` puts parts together. Needs --seed.",
+            ),
+            Opt::flag(
+                "--resume",
+                "Continue with the grades in the folder: only submissions that are new or have changed are graded.",
+            ),
+        ],
+        Terms::OPTIONS,
+    ],
+};
+
+/// `grader merge`.
+pub static MERGE: Spec = Spec {
+    name: "grader merge",
+    about: "Put together what `grade --shard` has made of the parts of a class (for instructors).",
+    arguments: &[Argument::required("PART", "The folders of the parts.").many()],
+    options: &[&[Opt::value("--out", "FOLDER", "The folder for the grades of the whole class.").required()]],
+};
+
+/// Which submissions, and how they are graded.
 pub struct Options {
-    /// The folder: each folder, .zip, .tar or .tar.gz in it is a submission, by the name of its student.
     submissions: PathBuf,
-    /// The folder for the grades: tables, reports, and the database that `--resume` goes on with.
-    #[arg(long)]
     out: PathBuf,
-    /// How many submissions are graded at a time; one a core if not given.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Only part I of N of the class, as `2/8`; `grader merge` puts parts together. Needs --seed.
-    #[arg(long, value_parser = shard, requires = "seed")]
     shard: Option<Shard>,
-    /// Go on with the grades in the folder: only what is new or has changed is graded.
-    #[arg(long)]
     resume: bool,
-    #[command(flatten)]
     terms: Terms,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.require("--shard", "--seed")?;
+        Ok(Options {
+            submissions: given.required(0)?.into(),
+            out: given.required_path("--out")?,
+            jobs: given.number("--jobs", 1..=u16::MAX)?,
+            shard: given.parsed("--shard", shard)?,
+            resume: given.has("--resume"),
+            terms: Terms::read(given)?,
+        })
+    }
 }
 
 /// A part of a class.
@@ -108,8 +151,23 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     finish(&store, &options.out)
 }
 
+/// The parts of a class.
+pub struct MergeOptions {
+    parts: Vec<PathBuf>,
+    out: PathBuf,
+}
+
+impl MergeOptions {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<MergeOptions, Misuse> {
+        given.required(0)?;
+        let parts = given.arguments(0).iter().map(PathBuf::from).collect();
+        Ok(MergeOptions { parts, out: given.required_path("--out")? })
+    }
+}
+
 /// Puts the parts of a class together.
-pub fn merge(parts: &[PathBuf], out: &Path) -> Result<bool> {
+pub fn merge(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
     crate::report::make_folder(out)?;
     let store = Store::open(out)?;
     ensure!(store.session()?.is_none(), "{} holds grades already; choose another folder", out.display());

@@ -4,28 +4,54 @@ use super::report;
 use super::result::{Graded, Session};
 use super::terms::Terms;
 use anyhow::{Context, Result, anyhow};
-use clap::Args;
 use raykata::film::write_atomically;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use serde_json::Value;
 use std::any::Any;
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
+/// `grader grade-one`.
+pub static SPEC: Spec = Spec {
+    name: "grader grade-one",
+    about: "Grade one submission for Gradescope or GitHub Classroom (what `export` writes runs this). At least one of \
+            `--gradescope` and `--classroom` is needed.",
+    arguments: &[Argument::required("SUBMISSION", "The submission: a folder, .zip, .tar or .tar.gz.")],
+    options: &[
+        &[
+            Opt::value("--gradescope", "FILE", "Where the results for Gradescope go, as JSON."),
+            Opt::value(
+                "--classroom",
+                "FILE",
+                "Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.",
+            ),
+        ],
+        Terms::OPTIONS,
+    ],
+};
+
 /// Which submission, and for whom.
-#[derive(Args)]
-#[command(group(clap::ArgGroup::new("reader").required(true).multiple(true).args(["gradescope", "classroom"])))]
 pub struct Options {
-    /// The submission: a folder, .zip, .tar or .tar.gz.
     submission: PathBuf,
-    /// Where the results for Gradescope go, as JSON.
-    #[arg(long, value_name = "FILE")]
     gradescope: Option<PathBuf>,
-    /// Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.
-    #[arg(long, value_name = "FILE")]
     classroom: Option<PathBuf>,
-    #[command(flatten)]
     terms: Terms,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        if !given.has("--gradescope") && !given.has("--classroom") {
+            return Err(given.misuse("at least one of `--gradescope FILE` and `--classroom FILE` is needed"));
+        }
+        Ok(Options {
+            submission: given.required(0)?.into(),
+            gradescope: given.path("--gradescope"),
+            classroom: given.path("--classroom"),
+            terms: Terms::read(given)?,
+        })
+    }
 }
 
 /// Grades, and writes what came of it, whatever breaks. `Ok(true)` if the submission could be graded.

@@ -10,31 +10,50 @@ use crate::corpus::entry::{self, Claim, Entry};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
 use anyhow::{Context, Result, ensure};
-use clap::Args;
+use raykata_cli::args::{Given, Misuse, Opt, Spec};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// Grade a class whose grades are known.
-#[derive(Args)]
+/// `grader rehearse`.
+pub static SPEC: Spec = Spec {
+    name: "grader rehearse",
+    about: "Grade a made-up class whose grades are known, and compare (for authors).",
+    arguments: &[],
+    options: &[&[
+        Opt::value("--students", "N", "How many students it has [default: 200]."),
+        Opt::value("--out", "FOLDER", "The folder for the grades [default: a temporary one]."),
+        Opt::value("--jobs", "N", "How many submissions are graded at a time [default: one per core]."),
+        Opt::flag("--honest", "Leave out attacks, as in a class of honest people."),
+        Opt::flag(
+            "--against-cargo",
+            "Also measure one fresh `cargo test` of the same stages, for comparison.",
+        ),
+    ]],
+};
+
+/// What the class is like, and how it is graded.
 pub struct Options {
-    /// How many students it has.
-    #[arg(long, default_value_t = 200)]
     students: usize,
-    /// The folder for the grades; a temporary one if not given.
-    #[arg(long)]
     out: Option<PathBuf>,
-    /// How many submissions are graded at a time; one a core if not given.
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Leave out attacks, as in a class of honest people.
-    #[arg(long)]
     honest: bool,
-    /// Also take the time of one fresh `cargo test` of the same stages, for comparison.
-    #[arg(long)]
     against_cargo: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options {
+            students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
+            out: given.path("--out"),
+            jobs: given.number("--jobs", 1..=u16::MAX)?,
+            honest: given.has("--honest"),
+            against_cargo: given.has("--against-cargo"),
+        })
+    }
 }
 
 /// The stages of the class: those that a first half of a course has.

@@ -8,19 +8,34 @@ use super::result::Outcome;
 use crate::jail::{self, Walls};
 use crate::report::bar_of_steps;
 use anyhow::Result;
-use clap::Args;
+use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Try the grader on submissions that want what they have not earned.
-#[derive(Args)]
+/// `grader attacks`.
+pub static SPEC: Spec = Spec {
+    name: "grader attacks",
+    about: "Try the grader on submissions that try to get points which they have not earned (for authors).",
+    arguments: &[Argument::optional("NAME", "Names of attacks; all if none is given.").many()],
+    options: &[&[Opt::flag(
+        "--table",
+        "For each attack that was tried on `cargo test`, print the result there and the result of this grader.",
+    )]],
+};
+
+/// Which attacks.
 pub struct Options {
-    /// Names of attacks; all if none is given.
     names: Vec<String>,
-    /// Print, of each attack that was tried on `cargo test`, what that made of it and what this grader does.
-    #[arg(long)]
     table: bool,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Options {
+        let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
+        Options { names: names.collect(), table: given.has("--table") }
+    }
 }
 
 /// Hidden inputs are picked by this: any number does, and the same one gives the same verdicts again.

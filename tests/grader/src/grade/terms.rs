@@ -7,7 +7,7 @@ use super::result::Session;
 use crate::jail::{self, Walls};
 use all_checks::STAGES;
 use anyhow::{Context, Result, ensure};
-use clap::Args;
+use raykata_cli::args::{Given, Misuse, Opt};
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::hash::{BuildHasher, RandomState};
@@ -15,24 +15,46 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What an instructor decides, for a class and for one submission alike.
-#[derive(Args, Default)]
+#[derive(Default)]
 pub struct Terms {
-    /// The stages, as `3`, `1-4` or `1-4,10`; all if not given.
-    #[arg(long, value_parser = stages)]
     pub(super) stages: Option<Stages>,
-    /// Picks the hidden inputs; drawn at random if not given. Give it where a class is graded one by one, or students are
-    /// asked different questions.
-    #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// Rules of the syntax check that do not apply, as a refusal names them.
-    #[arg(long, value_delimiter = ',')]
     pub(super) allow: Vec<String>,
-    /// Grade even where submissions cannot be contained. They can then do what you can.
-    #[arg(long)]
     pub(super) insecure: bool,
 }
 
 impl Terms {
+    /// As options.
+    pub const OPTIONS: &[Opt] = &[
+        Opt::value("--stages", "LIST", "The stages, as `3`, `1-4` or `1-4,10` [default: all]."),
+        Opt::value(
+            "--seed",
+            "N",
+            "Picks the hidden inputs [default: drawn at random]. Give it if submissions of a class are graded one at a \
+             time; otherwise each gets different inputs.",
+        ),
+        Opt::value(
+            "--allow",
+            "LIST",
+            "Rules of the syntax check that do not apply, as a refusal names them.",
+        )
+        .many(),
+        Opt::flag(
+            "--insecure",
+            "Grade even where submissions cannot be contained. They can then do what you can.",
+        ),
+    ];
+
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Terms, Misuse> {
+        Ok(Terms {
+            stages: given.parsed("--stages", stages)?,
+            seed: given.number("--seed", 0..=u64::MAX)?,
+            allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
+            insecure: given.has("--insecure"),
+        })
+    }
+
     /// A grader, and what is to be written down about it. Stages and seed that are not given are those with which the
     /// class was `begun`.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {

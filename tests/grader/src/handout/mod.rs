@@ -7,17 +7,30 @@ mod manifests;
 pub use leaks::{CANARY, answers, leaks};
 
 use anyhow::{Context, Result, bail, ensure};
-use clap::Args;
+use raykata_cli::args::{Argument, Given, Misuse, Spec};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+/// `grader handout`.
+pub static SPEC: Spec = Spec {
+    name: "grader handout",
+    about: "Make the student's repository: no answers, nothing that only instructors need (for instructors).",
+    arguments: &[Argument::required("FOLDER", "The folder: an empty one, or one that is not there yet.")],
+    options: &[],
+};
+
 /// Where to write it.
-#[derive(Args)]
 pub struct Options {
-    /// The folder: an empty one, or one that is not there yet.
     folder: PathBuf,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        Ok(Options { folder: given.required(0)?.into() })
+    }
 }
 
 /// Folders that are handed out, with all folders in them, and the endings of the files that are. A folder that is not

@@ -21,29 +21,49 @@ use crate::worker::{CALL_PATIENCE, Worker};
 use all_checks::STAGES;
 use anyhow::{Result, bail};
 use checks::{Check, Verdict};
-use clap::Args;
 use journal::Journal;
 use list::Mutant;
 use raykata::kit::Door;
+use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use reviewed::Reviewed;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Mutex;
 
+/// `grader mutants`.
+pub static SPEC: Spec = Spec {
+    name: "grader mutants",
+    about: "Try the checks on changes that cargo-mutants makes to the solutions (for authors).",
+    arguments: &[Argument::optional("FILE", "Only in files of solutions/src with this in their name.")],
+    options: &[&[
+        Opt::flag(
+            "--resume",
+            "Continue the last run, which was stopped: changes that it has tried are skipped.",
+        ),
+        Opt::flag("--again", "Only the changes that survived the last run."),
+        Opt::value("--jobs", "N", "How many to try at once [default: one per core]."),
+    ]],
+};
+
 /// Which changes to try.
-#[derive(Args)]
 pub struct Options {
-    /// Only in files of solutions/src with this in their name.
     file: Option<String>,
-    /// Go on with the last run, which was stopped: what it has tried is not tried again.
-    #[arg(long)]
     resume: bool,
-    /// Only what survived the last run.
-    #[arg(long, conflicts_with = "resume")]
     again: bool,
-    /// How many to try at once.
-    #[arg(long, default_value_t = queue::cores())]
     jobs: usize,
+}
+
+impl Options {
+    /// As they were given.
+    pub fn read(given: &Given) -> Result<Options, Misuse> {
+        given.exclude("--again", "--resume")?;
+        Ok(Options {
+            file: given.argument(0).map(|file| file.to_string_lossy().into_owned()),
+            resume: given.has("--resume"),
+            again: given.has("--again"),
+            jobs: given.number("--jobs", 0..=usize::MAX)?.unwrap_or_else(queue::cores),
+        })
+    }
 }
 
 /// How a change ended.

@@ -1,0 +1,127 @@
+//! Every command explains itself, and a command line that is not understood ends the program with code 2.
+#![cfg(target_os = "linux")]
+
+mod program_runs;
+
+use program_runs::{grader, told};
+use std::process::Command;
+
+/// The commands with their arguments and options.
+const COMMANDS: [(&str, &[&str]); 17] = [
+    (
+        "grade",
+        &[
+            "SUBMISSIONS",
+            "--out",
+            "--jobs",
+            "--shard",
+            "--resume",
+            "--stages",
+            "--seed",
+            "--allow",
+            "--insecure",
+        ],
+    ),
+    (
+        "grade-one",
+        &["SUBMISSION", "--gradescope", "--classroom", "--stages", "--seed", "--allow", "--insecure"],
+    ),
+    ("merge", &["PART...", "--out"]),
+    ("handout", &["FOLDER"]),
+    ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
+    ("export classroom", &["--out", "--stages", "--seed"]),
+    ("gauntlet", &["--kit", "--inputs", "--seed", "--rays", "--state", "20000", "out/gauntlet.json"]),
+    ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
+    ("attacks", &["[NAME]...", "--table"]),
+    ("rehearse", &["--students", "--out", "--jobs", "--honest", "--against-cargo", "200"]),
+    ("cases", &[]),
+    ("sync", &["--check", "--force"]),
+    (
+        "corpus",
+        &["[NAME]...", "--stage", "--slice", "--jobs", "--check", "--bless", "--right", "--seed", "carry"],
+    ),
+    ("corpus carry", &["FROM", "--moved", "--word", "--corpus", "--check"]),
+    ("gaps", &["--check", "--bless"]),
+    ("mutants", &["[FILE]", "--resume", "--again", "--jobs"]),
+    ("generate", &["[SCENES]"]),
+];
+
+fn said(line: &str) -> (Option<i32>, String, String) {
+    let output = grader(&line.split_whitespace().collect::<Vec<_>>());
+    let (out, err) = told(&output);
+    (output.status.code(), out, err)
+}
+
+#[test]
+fn every_command_is_explained() {
+    let (code, all, _) = said("--help");
+    assert_eq!(code, Some(0));
+    for (command, parts) in COMMANDS {
+        assert!(all.lines().any(|line| line.starts_with(&format!("  {command} "))), "no {command} in\n{all}");
+        let (code, help, complaint) = said(&format!("{command} --help"));
+        assert!(code == Some(0) && complaint.is_empty(), "{command}: {complaint}");
+        assert!(help.contains(&format!("\nUsage: grader {command}")), "{help}");
+        assert!(help.lines().all(|line| line.chars().count() <= 80), "{help}");
+        for part in parts {
+            assert!(help.contains(part), "no {part} in\n{help}");
+        }
+        assert_eq!(said(&format!("help {command}")).1, help);
+    }
+    let (code, export, _) = said("export --help");
+    assert!(
+        code == Some(0) && export.contains("\n  gradescope ") && export.contains("\n  classroom "),
+        "{export}"
+    );
+    assert_eq!(said("export help classroom").1, said("export classroom --help").1);
+    assert_eq!(said("--version").1, format!("grader {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn what_is_not_understood_ends_with_2() {
+    for (line, complaint) in [
+        ("", "a command is missing"),
+        ("exprot", "there is no command `exprot`; did you mean `export`?"),
+        ("export", "known are gradescope, classroom"),
+        ("export gradescop", "did you mean `gradescope`?"),
+        ("export classroom", "`--out` is missing"),
+        ("export gradescope --stages 12", "there is no stage 12"),
+        ("corpus --chekc", "unexpected option `--chekc`; did you mean `--check`?"),
+        ("corpus --bless --check", "`--bless` cannot be used with `--check`"),
+        ("corpus --seed 1 --check", "`--seed` cannot be used with `--check`"),
+        ("corpus --stage 256", "a whole number from 0 to 255"),
+        ("corpus --check carry", "grader corpus carry"),
+        ("corpus carry", "FROM is missing"),
+        ("corpus carry HEAD --moved a", "`a` is not OLD=NEW"),
+        ("gaps --check --bless", "cannot be used with"),
+        ("sync --check --force", "cannot be used with"),
+        ("mutants --again --resume", "cannot be used with"),
+        ("grade class", "`--out` is missing"),
+        ("grade --out grades", "SUBMISSIONS is missing"),
+        ("grade class --out grades --shard 1/2", "`--shard` needs `--seed`"),
+        ("grade class --out grades --shard 3/2 --seed 1", "parts are counted from 1"),
+        ("grade class --out grades --jobs 0", "a whole number from 1 to 65535"),
+        ("grade-one submission", "at least one of `--gradescope FILE` and `--classroom FILE`"),
+        ("merge --out grades", "PART is missing"),
+        ("merge part", "`--out` is missing"),
+        ("gauntlet --inputs 99", "from 100 to"),
+        ("gauntlet --kit solution", "did you mean `solutions`?"),
+        ("handout", "FOLDER is missing"),
+        ("cases all", "unexpected argument `all`"),
+        ("rehearse --jobs 0", "a whole number from 1 to 65535"),
+    ] {
+        let (code, out, err) = said(line);
+        assert!(code == Some(2) && out.is_empty() && err.contains(complaint), "{line}: {code:?} {out} {err}");
+    }
+}
+
+/// The command line is looked at first: what is wrong with it is the same wherever the program is started.
+#[test]
+fn outside_of_a_kit_the_same_is_wrong() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new(env!("CARGO_BIN_EXE_grader"))
+        .current_dir(folder.path())
+        .args(["sync", "--check", "--force"])
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(2));
+}
