@@ -3,7 +3,16 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The box `min.x..=max.x` by `min.y..=max.y` by `min.z..=max.z`; a flat box and a single point are boxes too.
+/// The closed box `min.x..=max.x` by `min.y..=max.y` by `min.z..=max.z`, in world units; a flat box and a single point are
+/// boxes too. A box with any `min` above its `max`, or with NaN, is empty.
+///
+/// ```
+/// use glam::Vec3;
+/// use raykata::aabb::Aabb;
+/// let unit = Aabb::new(Vec3::ZERO, Vec3::ONE);
+/// assert!(unit.contains(Vec3::ONE)); // its surface belongs to it
+/// assert!(unit.contains_box(&Aabb::EMPTY) && Aabb::EMPTY.is_empty());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aabb {
     /// The corner with the smallest coordinates.

@@ -45,6 +45,28 @@ pub struct Node {
 }
 
 /// A hierarchy over primitives `0..n`. Node 0 is the root; a hierarchy over nothing has no nodes.
+///
+/// Two primitives in two leaves below a root:
+///
+/// ```
+/// use glam::Vec3;
+/// use raykata::aabb::Aabb;
+/// use raykata::bvh::{Bvh, PrimitiveRef};
+/// let boxes = [0.0, 2.0].map(|x| Aabb::new(Vec3::splat(x), Vec3::splat(x + 1.0)));
+/// let refs = [0, 1].map(|id| PrimitiveRef {
+///     id: id as u32,
+///     bounds: boxes[id],
+///     centroid: boxes[id].min + 0.5,
+/// });
+/// let mut bvh = Bvh::for_primitives(2);
+/// let root = bvh.add_node(Aabb::new(Vec3::ZERO, Vec3::splat(3.0)));
+/// let (left, right) = (bvh.add_node(boxes[0]), bvh.add_node(boxes[1]));
+/// bvh.set_leaf(left, &refs[..1]);
+/// bvh.set_leaf(right, &refs[1..]);
+/// bvh.set_children(root, left, right);
+/// assert_eq!((bvh.root(), bvh.depth()), (Some(0), 2));
+/// assert_eq!(bvh.order, [0, 1]);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bvh {
     /// All nodes, a parent before its children.
@@ -119,12 +141,28 @@ impl Bvh {
 }
 
 /// Everything that a search for hits may ask. Each question is counted, so what a search costs is known exactly.
+///
+/// In the checks of stage 3 a table answers in place of a scene:
+///
+/// ```
+/// use glam::Vec3;
+/// use raykata::bvh::{Bvh, Probe};
+/// use raykata::kit::{SearchQuery, Table, TableProbe};
+/// use raykata::ray::Ray;
+/// let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+/// let table = Table { boxes: vec![(1.0, 4.0)], primitives: vec![2.0, f32::INFINITY] };
+/// let query = SearchQuery { bvh: Bvh::default(), ray, table };
+/// let mut probe = TableProbe::new(&query);
+/// assert_eq!(probe.enter(0, &ray), Some(1.0));
+/// assert_eq!((probe.hit(0, &ray), probe.hit(1, &ray)), (Some(2.0), None));
+/// assert_eq!((probe.counts.box_tests, probe.counts.primitive_tests), (1, 2));
+/// ```
 pub trait Probe {
     /// What `node` holds. Counts a node visit.
     fn open(&mut self, node: u32) -> Contents;
 
-    /// The `t` at which `ray` enters the box of `node`, not below `ray.t_min`; `None` if the ray misses the box
-    /// within `t_min..t_max`. Counts a box test.
+    /// The `t` at which `ray` enters the box of `node`, within `ray.t_min..=ray.t_max`; `t_min` if the ray starts inside,
+    /// and `None` if it misses the box within that range, as `slab` of stage 3 answers. Counts a box test.
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32>;
 
     /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.

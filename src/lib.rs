@@ -1,4 +1,23 @@
-//! The scaffold of Raykata: everything around the exercises and nothing that answers one.
+//! The scaffold of Raykata: everything around the exercises, and nothing that answers one.
+//!
+//! # Where to look
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`ray`], [`aabb`], [`shape`], [`mesh`] | geometry as data: rays with an open range of `t`, boxes, shapes, indexed meshes |
+//! | [`bvh`], [`graph`], [`partition`] | acceleration structures as data, and what a search may ask ([`bvh::Probe`], [`partition::Cells`]) |
+//! | [`material`], [`camera`], [`film`] | what surfaces and lights are made of, where rays start, where colours end |
+//! | [`scene`], [`world`] | scene files (TOML, PLY, OBJ), and the scene flattened into primitives |
+//! | [`effects`], [`count`], [`random`] | what a scene needs, what it cost, and random numbers that are looked up by address |
+//! | [`kit`] | the list of student functions, the door through which they are called, and the messages to a worker |
+//! | [`tracer`], [`frame`], [`building`] | the renderer, its tiles and threads, and the progress of a build |
+//! | [`rubric`], [`worker`] | points, titles and hints of the checks; the process that answers for a kit |
+//!
+//! # Conventions
+//!
+//! Lengths are in world units, angles in radians unless a name says degrees, colours linear unless a name says encoded.
+//! A ray's `t` counts lengths of its direction, which need not be of unit length. A range of `t` is open at both ends; a
+//! box is closed. Coordinates are right-handed, and the anticlockwise side of a triangle is its front.
 
 pub mod aabb;
 pub mod building;

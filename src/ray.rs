@@ -5,6 +5,15 @@ use serde::{Deserialize, Serialize};
 
 /// A ray `origin + t * dir` for `t_min < t < t_max`.
 ///
+/// ```
+/// use glam::vec3;
+/// use raykata::ray::Ray;
+/// let ray = Ray::new(vec3(1.0, 0.0, 0.0), vec3(0.0, 0.0, -2.0));
+/// assert_eq!(ray.at(3.0), vec3(1.0, 0.0, -6.0)); // t counts lengths of the direction
+/// let shorter = ray.with_range(0.5, 3.0);
+/// assert!(shorter.contains(1.0) && !shorter.contains(0.5) && !shorter.contains(3.0)); // both ends are open
+/// ```
+///
 /// `dir` need not be of unit length: `t` counts lengths of `dir`, so that a ray can be carried into the space
 /// of an instance and back without touching `t`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -5,7 +5,7 @@
 //! elsewhere requests come through standard input and replies leave through standard output.
 
 use crate::frame::Watch;
-use crate::kit::{Answer, Linked, Mishap, Renders, Request, StudentFunctions, mishap};
+use crate::kit::{Answer, Mishap, Request, StudentKit, mishap};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{self, Read, Write};
 use std::sync::Mutex;
@@ -73,9 +73,9 @@ pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) 
 }
 
 /// Answers requests with the functions of a crate until the pipe closes. The whole of a worker's `main`.
-pub fn serve<F: StudentFunctions + Renders>(functions: F) {
-    let kit = Linked(functions);
-    serve_with(&|request, watch| request.answer(&kit, watch));
+pub fn serve(functions: impl StudentKit) {
+    let kit = functions.door();
+    serve_with(&|request, watch| request.answer(&*kit, watch));
 }
 
 /// The same with any function in place of a kit.

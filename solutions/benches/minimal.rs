@@ -11,7 +11,7 @@ use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, Probe};
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, LightSample, RenderJob, Surface, View};
+use raykata::kit::{LightSample, RenderJob, StudentKit, Surface, View};
 use raykata::material::{Emitter, Light};
 use raykata::ray::Ray;
 use raykata::scene::{Scene, load};
@@ -41,8 +41,7 @@ fn main() -> Result<()> {
 
 fn compare(scene: &Scene, lamps: usize) -> Result<()> {
     let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
-    let full =
-        |count| raykata::kit::Linked(solutions::Kit).render(&job(count), &Unwatched).expect("nobody cancels");
+    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("nobody cancels");
     let caster = Caster::new(scene);
 
     let (mut picture, mut rays) = (Vec::new(), 0);

@@ -8,7 +8,7 @@ use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
 use glam::{Vec2, Vec3, vec2};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, BallQuery, Door, GlossQuery, Kit, Request, Transport};
+use raykata::kit::{Answer, BallQuery, Door, GlossQuery, Kit, Request, StudentKit, Transport};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -40,7 +40,7 @@ struct Twisted(fn(&Request) -> Option<Answer>);
 
 impl Transport for Twisted {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
-        (self.0)(&request).unwrap_or_else(|| request.answer(&raykata::kit::Linked(solutions::Kit), watch))
+        (self.0)(&request).unwrap_or_else(|| request.answer(&*solutions::Kit.door(), watch))
     }
 }
 
@@ -68,7 +68,7 @@ fn the_reference_is_rejected_as_rarely_as_stated() {
     assert!(f64::from(laws) * FALSE_ALARMS < UNFAIR, "{laws} tests");
     let (mut tests, mut alarms) = (0, 0);
     for (name, laws) in STATISTICAL {
-        let rejected = rejections(check(name), &raykata::kit::Linked(solutions::Kit));
+        let rejected = rejections(check(name), &*solutions::Kit.door());
         println!("{rejected:>4} of {} seeds rejected, {laws} tests each: {name}", seeds());
         tests += seeds() * u64::from(laws);
         alarms += rejected;
@@ -204,7 +204,7 @@ const WRONG: &[Wrong] = &[
         let halved = |query: &BallQuery| BallQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
         Some(
             Request::TowardBall(each(queries, halved))
-                .answer(&raykata::kit::Linked(solutions::Kit), &raykata::frame::Unwatched),
+                .answer(&*solutions::Kit.door(), &raykata::frame::Unwatched),
         )
     }),
     ("gloss: exponent 1 / n", "gloss_falls_with_the_power_of_the_cosine", |r| {

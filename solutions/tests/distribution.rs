@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Sampler, Scene, load};
 use std::path::Path;
 
@@ -20,7 +20,7 @@ fn job(scene: &Scene, threads: usize) -> RenderJob {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    raykata::kit::Linked(solutions::Kit).render(&job(scene, 1), &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("nobody cancels")
 }
 
 /// Everything that is spread over something, over a floor with tiles.
@@ -93,9 +93,8 @@ fn every_search_finds_what_moves_and_threads_change_nothing() {
         let found = render(&scene);
         assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
         for threads in [2, 5] {
-            let other = raykata::kit::Linked(solutions::Kit)
-                .render(&job(&scene, threads), &Unwatched)
-                .expect("nobody cancels");
+            let other =
+                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("nobody cancels");
             assert_eq!(
                 (&other.film, other.counts),
                 (&found.film, found.counts),
@@ -130,7 +129,7 @@ fn what_has_no_extent_changes_no_bit() {
 /// All first rays of the frame, with many samples' worth of seeds, and where they go `distance` along the view.
 fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
     let place = |seed| {
-        let ray = &raykata::kit::Linked(solutions::Kit).trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
+        let ray = &solutions::Kit.door().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
         let along = ray.dir.dot(scene.camera.towards);
         ray.origin
             + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along * ray.dir

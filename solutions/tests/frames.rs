@@ -5,7 +5,7 @@ use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Scene, Split, load};
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn scene(text: &str) -> Scene {
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };
-    raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
 }
 
 fn render(scene: &Scene) -> Rendering {

@@ -5,7 +5,7 @@ use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{Frames, RenderJob, Rendering, View};
+use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Scene, load};
 use std::path::Path;
 
@@ -24,7 +24,7 @@ fn file(name: &str, width: u32, height: u32) -> Scene {
 
 fn render(scene: &Scene) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count: true };
-    raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
 }
 
 fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
@@ -59,8 +59,7 @@ fn any_number_of_threads_asks_the_same_questions() {
             let mut scene = scene.clone();
             scene.quality.accelerator = accelerator;
             let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true };
-            let frame =
-                raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels");
+            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
             (frame.film, frame.counts)
         };
         assert_eq!(with(1), with(3), "{accelerator:?}");
@@ -129,8 +128,7 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
             let scene = lone(shape, &steps, size);
             let frame = render(&scene);
             let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-            let normals =
-                raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels").film;
+            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels").film;
             let light = Vec3::new(1.0, 1.1, 0.9).normalize();
             let mut lit = 0;
             for (pixel, normal) in frame.film.pixels.iter().zip(&normals.pixels) {

@@ -4,14 +4,14 @@
 
 use all_checks::STAGES;
 use checks::Verdict;
-use raykata::kit::Kit;
+use raykata::kit::{Kit, StudentKit};
 use std::sync::Arc;
 
 #[test]
 fn the_reference_passes_every_check_with_other_seeds() {
     let number = |name: &str| std::env::var(name).ok().and_then(|number| number.parse::<u64>().ok());
     let (first, seeds) = (number("FIRST").unwrap_or(1), number("SEEDS").unwrap_or(3));
-    let kit: Arc<dyn Kit + Send + Sync> = Arc::new(raykata::kit::Linked(solutions::Kit));
+    let kit: Arc<dyn Kit + Send + Sync> = solutions::Kit.door();
     let mut failed = Vec::new();
     // Far apart, so that no bit of a seed is always the same.
     for seed in (first..first + seeds).map(|number| number.wrapping_mul(0x9e37_79b9_7f4a_7c15)) {

@@ -7,7 +7,7 @@ use raykata::count::Counts;
 use raykata::effects::Effect;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{Economy, Frames, RayKind, RenderJob, TracedRay, View};
+use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
 use raykata::mesh::Mesh;
 use raykata::scene::{Scene, load};
 use std::path::Path;
@@ -80,10 +80,10 @@ struct Frame {
 
 fn frame(set: Set) -> Frame {
     let job = RenderJob { scene: only(set), view: View::Shaded, seed: 3, threads: 1, count: true };
-    let rendering = raykata::kit::Linked(solutions::Kit).render(&job, &Unwatched).expect("nobody cancels");
+    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
-    let trees = pixels.map(|(x, y)| raykata::kit::Linked(solutions::Kit).trace(&job, x, y)).collect();
+    let trees = pixels.map(|(x, y)| solutions::Kit.door().trace(&job, x, y)).collect();
     Frame { film: rendering.film, counts: rendering.counts, trees }
 }
 
@@ -120,7 +120,7 @@ fn passes_the_toy(tree: &[TracedRay]) -> bool {
 #[test]
 fn each_set_of_effects_is_seen_to_be_what_it_is() {
     for set in Set::all() {
-        let effects = &raykata::kit::Linked(solutions::Kit).effects(&[only(set)])[0];
+        let effects = &solutions::Kit.door().effects(&[only(set)])[0];
         for effect in EFFECTS {
             // The one thing that is rough is a mirror.
             let expected = set.has(effect) && (effect != Effect::Gloss || set.has(Effect::Mirrors));

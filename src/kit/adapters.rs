@@ -5,15 +5,19 @@ use super::types::*;
 use super::*;
 use crate::bvh::PrimitiveHit;
 use crate::frame::Watch;
+use std::sync::Arc;
 
 /// The functions of a crate behind the door.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Linked<F>(pub F);
 
-/// What renders with the functions of a crate, if it was built with the feature `frames`.
-pub trait Renders {
-    /// The renderer.
-    const FRAMES: Option<&'static dyn Frames>;
+/// What the crate of a student provides: its functions behind the door, compiled in that crate, once.
+pub trait StudentKit: StudentFunctions + Copy + Send {
+    /// All functions behind the door.
+    fn door(self) -> Arc<dyn Kit + Send + Sync>;
+
+    /// What renders with the functions, if the crate was built with the feature `frames`.
+    fn renderer() -> Option<&'static dyn Frames>;
 }
 
 /// A plain loop: iterators that are mapped and collected the compiler would have to write out for each of a hundred
@@ -74,7 +78,7 @@ macro_rules! linked {
 
 crate::student_functions! { linked }
 
-impl<F: Renders> Frames for Linked<F> {
+impl<F: StudentKit> Frames for Linked<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         frames::<F>().render(job, watch)
     }
@@ -92,8 +96,8 @@ impl<F: Renders> Frames for Linked<F> {
     }
 }
 
-fn frames<F: Renders>() -> &'static dyn Frames {
-    F::FRAMES.unwrap_or_else(|| {
+fn frames<F: StudentKit>() -> &'static dyn Frames {
+    F::renderer().unwrap_or_else(|| {
         mishap::unwind(Mishap::Nonsense {
             what: "a frame was asked of a kit that was built without frames".into(),
         })

@@ -154,15 +154,21 @@ macro_rules! student_kit {
             $crate::student_functions! { $crate::implement_student_functions }
         }
 
-        #[cfg(feature = "frames")]
-        impl $crate::kit::Renders for Kit {
-            const FRAMES: Option<&'static dyn $crate::kit::Frames> =
-                Some(&$crate::tracer::Renderer::<Kit>::NEW);
-        }
+        impl $crate::kit::StudentKit for Kit {
+            // Not generic, so that everything behind the door is compiled here and not in whatever uses it.
+            fn door(self) -> ::std::sync::Arc<dyn $crate::kit::Kit + Send + Sync> {
+                ::std::sync::Arc::new($crate::kit::Linked(self))
+            }
 
-        #[cfg(not(feature = "frames"))]
-        impl $crate::kit::Renders for Kit {
-            const FRAMES: Option<&'static dyn $crate::kit::Frames> = None;
+            #[cfg(feature = "frames")]
+            fn renderer() -> Option<&'static dyn $crate::kit::Frames> {
+                Some(&$crate::tracer::Renderer::<Kit>::NEW)
+            }
+
+            #[cfg(not(feature = "frames"))]
+            fn renderer() -> Option<&'static dyn $crate::kit::Frames> {
+                None
+            }
         }
     };
 }

@@ -24,7 +24,7 @@ mod triangles;
 #[doc(hidden)]
 pub mod types;
 
-pub use adapters::{Linked, Renders};
+pub use adapters::{Linked, StudentKit};
 pub use distribution::{
     BallQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };

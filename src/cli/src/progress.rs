@@ -177,9 +177,15 @@ mod tests {
         bar.inc(2);
         bar.set_message("two");
         assert_eq!(bar.suspend(|| 7), 7);
-        assert_eq!((bar.state().done, bar.state().message.as_str()), (2, "two"));
+        // One lock at a time: it is not taken twice by the same thread.
+        let done_and_message = |bar: &ProgressBar| {
+            let state = bar.state();
+            (state.done, state.message.clone())
+        };
+        assert_eq!(done_and_message(&bar), (2, "two".to_owned()));
         bar.begin("anew", 5);
-        assert_eq!((bar.state().done, bar.state().total), (0, 5));
+        assert_eq!(done_and_message(&bar), (0, "anew".to_owned()));
+        assert_eq!(bar.state().total, 5);
         bar.finish_and_clear();
     }
 }

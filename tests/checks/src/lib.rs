@@ -17,7 +17,7 @@ pub mod statistics;
 pub mod tree;
 pub mod trial;
 
-use raykata::kit::{Kit, Linked, Renders, StudentFunctions};
+use raykata::kit::{Kit, StudentKit};
 use std::sync::Arc;
 
 pub use broken::{Broken, Outcome};
@@ -25,8 +25,8 @@ pub use drawn::Drawn;
 pub use trial::{Check, Trial, Verdict, examine, examine_with, grade, run, verdict};
 
 /// The functions of a crate as a kit that checks can ask.
-pub fn linked<F: StudentFunctions + Renders + Send>(functions: F) -> Arc<dyn Kit + Send + Sync> {
-    Arc::new(Linked(functions))
+pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
+    functions.door()
 }
 
 /// Lists the checks of a stage in the crate of that stage, and makes the macro that turns them into tests of a kit:

@@ -42,11 +42,6 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "stage8_scene_graph::normal_to_world",
         "the slide's one-line formula in double precision",
     ),
-    (
-        "stage9_checks::parts::part",
-        "stage9_cells::span",
-        "three intervals in double precision, from `double::box_interval`",
-    ),
 ];
 
 fn root() -> PathBuf {

@@ -21,8 +21,9 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
             let spheres: Vec<Sphere> =
                 spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
             // Every third scene has each sphere twice: two hits at one t.
-            let twice = if t_min % 3 == 0 { spheres.clone() } else { Vec::new() };
-            let spheres: Vec<Sphere> = twice.into_iter().chain(spheres).collect();
+            let times = if t_min % 3 == 0 { 2 } else { 1 };
+            let spheres: Vec<Sphere> =
+                spheres.into_iter().flat_map(|sphere| std::iter::repeat_n(sphere, times)).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
             let mut bvh = tree::joined(&boxes, leaf_size);
             if t_min % 2 == 0 {
@@ -162,7 +163,7 @@ pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome 
 }
 
 pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
-    trial.forall(1500, searches(), |queries| {
+    let judge = |queries: &[SearchQuery]| {
         compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
             let expected = closest_in_table(query).is_some();
             let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
@@ -180,7 +181,12 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
                     .looks_like(Some(diagnosis)))
             }
         })
-    })
+    };
+    // First a leaf that is entered and holds nothing that is hit.
+    let [mut nothing, _] = drawn_searches();
+    nothing.table.primitives.fill(f32::INFINITY);
+    judge(&[nothing]).into_iter().collect::<Outcome>()?;
+    trial.forall(1500, searches(), judge)
 }
 
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {

@@ -162,9 +162,8 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
-/// Asks those who can notice: for an exercise the checks of its stage, then pictures, then the other stages; for what
-/// connects exercises with the door the checks, then pictures; and for what makes frames of them, which no check of a
-/// stage calls, pictures.
+/// Asks what can notice: for an exercise the checks of its stage, then pictures, then the other stages; for other files
+/// pictures.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
     let source = Source { which: Which::Solutions, program: worker.to_owned() };
@@ -186,7 +185,6 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
         Some(own) => {
             by_checks(&|stage| stage == own).or_else(by_picture).or_else(|| by_checks(&|stage| stage != own))
         }
-        None if mutant.file.ends_with("/glue.rs") => by_checks(&|_| true).or_else(by_picture),
         None => by_picture(),
     };
     noticed.unwrap_or(Fate::Survived)
