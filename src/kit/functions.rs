@@ -117,6 +117,7 @@ impl fmt::Display for Function {
 
 #[doc(hidden)]
 #[macro_export]
+#[allow(clippy::crate_in_macro_def, reason = "the stage files are in the crate that uses the macro")]
 macro_rules! implement_student_functions {
     ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
         $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
