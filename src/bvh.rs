@@ -161,8 +161,10 @@ pub trait Probe {
     /// What `node` holds. Counts a node visit.
     fn open(&mut self, node: u32) -> Contents;
 
-    /// The `t` at which `ray` enters the box of `node`, within `ray.t_min..=ray.t_max`; `t_min` if the ray starts inside,
-    /// and `None` if it misses the box within that range, as `slab` of stage 3 answers. Counts a box test.
+    /// The `t` at which `ray` enters the box of `node`: at least `ray.t_min`, which is the answer for a ray that starts
+    /// inside, and below `ray.t_max`. `None` if the ray misses the box within that range. A box that is entered at exactly
+    /// `t_max` may be reported or not, because no hit counts there: `slab` of stage 3, which frames ask, reports it; a
+    /// table does not. Counts a box test.
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32>;
 
     /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.

@@ -56,11 +56,11 @@ pub struct Table {
 }
 
 impl Table {
-    /// Where `ray` enters the box of `node`, if it does within `t_min..=t_max`.
+    /// Where `ray` enters the box of `node`, if it does before `t_max`.
     pub fn enter(&self, node: u32, ray: &Ray) -> Option<f32> {
         let (near, far) = self.boxes[node as usize];
         let enter = near.max(ray.t_min);
-        (enter <= far && enter <= ray.t_max).then_some(enter)
+        (enter <= far && enter < ray.t_max).then_some(enter)
     }
 
     /// Where `ray` hits `primitive`, if it does within its range.
