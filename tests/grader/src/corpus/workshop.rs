@@ -67,7 +67,7 @@ impl Workshop {
         )?;
         write_if_new(
             &workshop.folder.join("solutions/Cargo.toml"),
-            &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies"]),
+            &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"]),
         )?;
         if !workshop.folder.join("Cargo.lock").exists() {
             // The versions that the kit uses. Cargo strikes out what is not needed here.
