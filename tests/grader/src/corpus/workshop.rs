@@ -69,6 +69,9 @@ impl Workshop {
             &workshop.folder.join("solutions/Cargo.toml"),
             &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"]),
         )?;
+        // The scaffold reads the rubric when it is built.
+        fs::create_dir_all(workshop.folder.join("tests"))?;
+        write_if_new(&workshop.folder.join("tests/rubric.toml"), &read(&root.join("tests/rubric.toml"))?)?;
         if !workshop.folder.join("Cargo.lock").exists() {
             // The versions that the kit uses. Cargo strikes out what is not needed here.
             write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
