@@ -4,7 +4,7 @@ use super::path::Path;
 use crate::kit::{RayKind, TracedRay};
 use crate::ray::Ray;
 
-/// Hears of every ray. All methods do nothing unless somebody wants to see the rays.
+/// Receives every ray of a path. By default a ray is not kept.
 pub trait Record {
     /// The path met nothing.
     fn miss(&mut self, _path: &Path) {}
