@@ -2,11 +2,8 @@
 //! that stage must refuse it. Which functions fit is recorded in `paste/candidates.snap`; the long run builds them in and
 //! asks the checks.
 
-#[path = "paste/call.rs"]
 mod call;
-#[path = "paste/collect.rs"]
 mod collect;
-#[path = "paste/copy.rs"]
 mod copy;
 
 use collect::{Function, bundles, candidates, functions, functions_of};

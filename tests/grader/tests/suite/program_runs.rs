@@ -12,6 +12,6 @@ pub fn grader(arguments: &[&str]) -> Output {
     program.expect("the program starts")
 }
 
-pub fn told(output: &Output) -> (String, String) {
+pub fn printed(output: &Output) -> (String, String) {
     (String::from_utf8_lossy(&output.stdout).into(), String::from_utf8_lossy(&output.stderr).into())
 }

@@ -1,6 +1,6 @@
 //! Calls one function with the parameters of another, whatever their order and precision.
 
-use crate::collect::{Bundles, Function, base, bundle, plain};
+use super::collect::{Bundles, Function, base, bundle, plain};
 use syn::{FnArg, GenericArgument, Pat, PathArguments, ReturnType, Type};
 
 /// More orders than this of parameters that are alike are not tried.

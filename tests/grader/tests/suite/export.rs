@@ -1,10 +1,6 @@
 //! What is written for Gradescope and GitHub Classroom, and that grading one submission always ends in an answer.
 
-#![cfg(target_os = "linux")]
-
-mod program_runs;
-
-use program_runs::{grader, root, told};
+use super::program_runs::{grader, printed, root};
 use serde_json::Value;
 use std::fs;
 use std::io::Read;
@@ -16,7 +12,7 @@ fn written(arguments: &[&str]) -> tempfile::TempDir {
     let out = folder.path().join("out");
     let out = out.to_string_lossy();
     let output = grader(&[arguments, &["--out", &out, "--stages", "1-4", "--seed", "77"]].concat());
-    assert!(output.status.success(), "{}", told(&output).1);
+    assert!(output.status.success(), "{}", printed(&output).1);
     folder
 }
 
@@ -25,7 +21,7 @@ fn parses(script: &str) {
     let file = folder.path().join("script");
     fs::write(&file, script).expect("written");
     let output = Command::new("sh").arg("-n").arg(&file).output().expect("sh");
-    assert!(output.status.success(), "{}\n{script}", told(&output).1);
+    assert!(output.status.success(), "{}\n{script}", printed(&output).1);
 }
 
 fn json(file: &Path) -> Value {
@@ -87,7 +83,7 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
     // What is there is somebody's work by now.
     let out = folder.path().join("out");
     let again = grader(&["export", "classroom", "--out", &out.to_string_lossy()]);
-    assert!(told(&again).1.contains("is there already"), "{}", told(&again).1);
+    assert!(printed(&again).1.contains("is there already"), "{}", printed(&again).1);
 }
 
 /// Runs the bundle's entry point with another program in place of the grader.
@@ -99,7 +95,7 @@ fn entry_point(program: &str) -> Value {
     std::os::unix::fs::symlink(program, release.join("grader")).expect("linked");
     let script = root().join("tests/grader/src/export/run_autograder");
     let run = Command::new("sh").arg(script).env("AUTOGRADER_ROOT", folder.path()).output().expect("sh");
-    assert!(run.status.success(), "{}", told(&run).1);
+    assert!(run.status.success(), "{}", printed(&run).1);
     json(&folder.path().join("results/results.json"))
 }
 
@@ -160,7 +156,7 @@ fn one_submission_is_graded_for_both() {
             "--classroom",
             &at("c.json"),
         ]);
-        assert!(output.status.success(), "{}", told(&output).1);
+        assert!(output.status.success(), "{}", printed(&output).1);
         let (results, result) = (json(Path::new(&at("g.json"))), json(Path::new(&at("c.json"))));
         let sum = |tests: &Value, of: &str| -> f64 {
             tests.as_array().into_iter().flatten().filter_map(|test| test[of].as_f64()).sum()

@@ -1,8 +1,8 @@
 //! How well the statistical checks of stage 6 judge: each runs with many seeds on the reference, which it may reject once
 //! in 10 million tests, and on wrong distributions, each of which it must reject with 99 % of the seeds.
 //!
-//! 20 seeds by default, 1,000 with `CI_LONG=1`. The table: `CI_LONG=1 cargo test -p solutions --test calibration --
-//! --nocapture`.
+//! 20 seeds by default, 1,000 with `CI_LONG=1`. The table: `CI_LONG=1 cargo test -p solutions --test suite --
+//! calibration --nocapture`.
 
 use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};

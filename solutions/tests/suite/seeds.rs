@@ -1,5 +1,5 @@
 //! The reference passes every check on inputs that nobody has seen: instructors grade with seeds of their own. More seeds
-//! than these few: `SEEDS=300 cargo test --release -p solutions --test seeds`; others, with `FIRST=301` before that; of one
+//! than these few: `SEEDS=300 cargo test --release -p solutions --test suite seeds`; others, with `FIRST=301` before that; of one
 //! stage, with `STAGE=9`.
 
 use all_checks::STAGES;

@@ -1,5 +1,5 @@
 //! Small pictures of the scenes of the kit, bit by bit, with what they cost: whoever changes one, looks at it and blesses it
-//! with `INSTA_UPDATE=always cargo test -p grader --test pictures`.
+//! with `INSTA_UPDATE=always cargo test -p grader --test suite pictures`.
 
 use grader::kits::{Need, Source, Which};
 use grader::pictures::Scenes;

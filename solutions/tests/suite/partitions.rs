@@ -14,7 +14,7 @@ use solutions::{
     stage9_kd_tree, stage9_octree,
 };
 
-/// Rays a scene. `RAYS=1000000 cargo test --release -p solutions --test partitions -- --nocapture` tries more.
+/// Rays a scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions -- --nocapture` tries more.
 fn n_rays() -> u64 {
     std::env::var("RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1500)
 }

@@ -1,8 +1,6 @@
 //! The command `compare` as its users run it.
 
-mod program_runs;
-
-use program_runs::{raykata, told};
+use super::program_runs::{printed, raykata};
 
 #[test]
 fn structures_are_compared_side_by_side() {
@@ -20,7 +18,7 @@ fn structures_are_compared_side_by_side() {
         "--out",
         &folder,
     ]);
-    let (said, complained) = told(&output);
+    let (said, complained) = printed(&output);
     assert!(output.status.success(), "{said}{complained}");
     let rows = [
         "brute force",
@@ -88,7 +86,7 @@ fn savings_heuristics_grids_and_instances_have_tables() {
             of,
             "--table",
         ]);
-        let (said, complained) = told(&output);
+        let (said, complained) = printed(&output);
         assert!(said.contains(row), "{of}: {said}{complained}");
         assert!(output.status.success(), "{of}: {said}{complained}");
     }

@@ -1,8 +1,6 @@
 //! The program as its users run it.
 
-mod program_runs;
-
-use program_runs::{raykata, root, told};
+use super::program_runs::{printed, raykata, root};
 use raykata::scene::load;
 use std::path::PathBuf;
 
@@ -28,7 +26,7 @@ fn every_scene_of_the_kit_renders() {
             "--out",
             &picture.to_string_lossy(),
         ]);
-        let (said, complained) = told(&output);
+        let (said, complained) = printed(&output);
         assert!(output.status.success(), "{}: {complained}", file.display());
         assert!(said.contains("primary rays"), "{said}");
         assert!(!said.contains("NaN"), "{said}");
@@ -43,21 +41,21 @@ fn each_kind_of_picture_is_written_and_others_are_refused() {
         let picture = out.path().join(name);
         let output =
             raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
-        assert!(output.status.success(), "{}", told(&output).1);
+        assert!(output.status.success(), "{}", printed(&output).1);
         assert!(std::fs::read(&picture).expect("a picture").starts_with(magic), "{name}");
     }
     // OpenEXR takes longer to build than all other formats together, so it is built when somebody wants it.
     let picture = out.path().join("a.exr");
     let output =
         raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
-    let complaint = told(&output).1;
+    let complaint = printed(&output).1;
     match std::fs::read(&picture) {
         Ok(bytes) => assert!(bytes.starts_with(b"\x76\x2f\x31\x01")),
         Err(_) => assert!(complaint.contains("cargo run --features exr -- render"), "{complaint}"),
     }
     let output = raykata(&["render", "scenes/gamma.toml", "--out", "picture.jpg"]);
     assert_eq!(output.status.code(), Some(1));
-    let complaint = told(&output).1;
+    let complaint = printed(&output).1;
     assert!(complaint.contains("let it end in .png, .hdr or .exr"), "{complaint}");
 }
 
@@ -70,34 +68,34 @@ fn a_mistake_in_a_scene_is_drawn_and_nothing_is_written() {
     let output =
         raykata(&["render", &file.to_string_lossy(), "--out", &out.path().join("a.png").to_string_lossy()]);
     assert_eq!(output.status.code(), Some(1));
-    let complaint = told(&output).1;
+    let complaint = printed(&output).1;
     for part in ["unknown key `fil`", "did you mean `film`?", "typo.toml:5:2", "5 | [fil]"] {
         assert!(complaint.contains(part), "no `{part}` in\n{complaint}");
     }
     assert!(!out.path().join("a.png").exists());
     let missing = raykata(&["render", "scenes/showcas.toml"]);
     assert_eq!(missing.status.code(), Some(1));
-    assert!(told(&missing).1.contains("showcase.toml"), "{}", told(&missing).1);
+    assert!(printed(&missing).1.contains("showcase.toml"), "{}", printed(&missing).1);
 }
 
 #[test]
 fn the_reference_has_all_points() {
     let output = raykata(&["check", "--kit", "solutions"]);
-    let said = told(&output).0;
+    let said = printed(&output).0;
     assert!(output.status.success(), "{said}");
     assert!(said.trim_end().ends_with("passed, 0 failed"), "{said}");
 }
 
 #[test]
 fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
-    let said = told(&raykata(&["check", "1", "--kit", "solutions"])).0;
+    let said = printed(&raykata(&["check", "1", "--kit", "solutions"])).0;
     assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
-    assert_eq!(said, told(&raykata(&["check", "stage1", "--kit", "solutions"])).0);
+    assert_eq!(said, printed(&raykata(&["check", "stage1", "--kit", "solutions"])).0);
     for wrong in ["77", "0", "stage11", "one"] {
         for command in ["check", "list"] {
             let output = raykata(&[command, wrong]);
             assert_eq!(output.status.code(), Some(2));
-            let complaint = told(&output).1;
+            let complaint = printed(&output).1;
             assert!(
                 complaint.contains("there are stages 1 to 10") && !complaint.contains("building"),
                 "{complaint}"
@@ -108,10 +106,10 @@ fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
 
 #[test]
 fn checks_are_listed_by_stage() {
-    let all = told(&raykata(&["list"])).0;
-    let one = told(&raykata(&["list", "3"])).0;
+    let all = printed(&raykata(&["list"])).0;
+    let one = printed(&raykata(&["list", "3"])).0;
     assert!(all.contains(&one) && one.contains("picture_of_depth") && !one.contains("nearest_root"), "{one}");
-    assert_eq!(one, told(&raykata(&["list", "stage3"])).0);
+    assert_eq!(one, printed(&raykata(&["list", "stage3"])).0);
 }
 
 /// As `raykata list | head -1` does.
@@ -123,7 +121,7 @@ fn a_reader_that_goes_away_is_no_panic() {
         let (reader, writer) = std::io::pipe().expect("a pipe");
         drop(reader);
         let output = command.stdout(writer).output().expect("the program starts");
-        assert!(output.status.success() && output.stderr.is_empty(), "{}", told(&output).1);
+        assert!(output.status.success() && output.stderr.is_empty(), "{}", printed(&output).1);
     }
 }
 
@@ -132,18 +130,20 @@ fn a_worker_that_is_up_to_date_is_not_mentioned() {
     let tree = || raykata(&["tree", "scenes/stage1.toml", "--pixel", "1,1"]);
     assert!(tree().status.success());
     // Other tests ask cargo at the same time, and whoever has to wait is told so.
-    let said: Vec<String> = (0..100).map(|_| told(&tree()).1).take_while(|said| !said.is_empty()).collect();
+    let said: Vec<String> =
+        (0..100).map(|_| printed(&tree()).1).take_while(|said| !said.is_empty()).collect();
     assert!(said.len() < 100, "{}", said.concat());
 }
 
 #[test]
 fn hints_come_in_three_steps_and_near_names_are_suggested() {
     let name = "triangle_cramer_agrees_with_double_precision";
-    let hints: Vec<String> = ["1", "2", "3"].map(|level| told(&raykata(&["hint", name, level])).0).to_vec();
+    let hints: Vec<String> =
+        ["1", "2", "3"].map(|level| printed(&raykata(&["hint", name, level])).0).to_vec();
     assert!(hints[0] != hints[1] && hints[1] != hints[2] && hints[0].contains("hint triangle_cramer"));
     let output = raykata(&["hint", "triangle_cramer_agree"]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(told(&output).1.contains(name));
+    assert!(printed(&output).1.contains(name));
 }
 
 #[test]
@@ -151,13 +151,13 @@ fn the_command_line_says_when_it_does_not_understand() {
     assert_eq!(raykata(&["rendr"]).status.code(), Some(2));
     assert_eq!(raykata(&["render", "scenes/gamma.toml", "--size", "0x9"]).status.code(), Some(2));
     assert_eq!(raykata(&["hint", "anything", "4"]).status.code(), Some(2));
-    assert!(told(&raykata(&["--help"])).0.contains("Exit codes"));
+    assert!(printed(&raykata(&["--help"])).0.contains("Exit codes"));
 }
 
 #[test]
 fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
     let tree = |format: &str| {
-        told(&raykata(&["tree", "scenes/stage5.toml", "--pixel", "430,240", "--format", format])).0
+        printed(&raykata(&["tree", "scenes/stage5.toml", "--pixel", "430,240", "--format", format])).0
     };
     let text = tree("text");
     checks::golden::compare("tree_of_a_pixel", "raykata tree scenes/stage5.toml --pixel 430,240", &text)
@@ -169,7 +169,7 @@ fn the_rays_behind_a_pixel_are_a_tree_in_three_formats() {
     let dot = tree("dot");
     assert_eq!(dot.matches(" -> ").count(), rays.len() - 1);
     let outside = raykata(&["tree", "scenes/stage5.toml", "--pixel", "640,0"]);
-    assert!(told(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
+    assert!(printed(&outside).1.contains("there is no pixel 640,0: columns go from 0 to 639"));
 }
 
 #[test]
@@ -178,8 +178,8 @@ fn a_strip_shows_one_picture_a_depth() {
     let file = out.path().join("strip.png");
     let output =
         raykata(&["strip", "scenes/heckbert.toml", "--depths", "0,1,3", "--out", &file.to_string_lossy()]);
-    let said = told(&output).0;
-    assert!(output.status.success(), "{}", told(&output).1);
+    let said = printed(&output).0;
+    assert!(output.status.success(), "{}", printed(&output).1);
     assert_eq!(said.lines().count(), 5, "{said}");
     let picture = std::fs::read(&file).expect("a picture");
     // Width and height follow the first 16 bytes of a PNG.
@@ -192,7 +192,7 @@ fn a_strip_shows_one_picture_a_depth() {
 fn a_scene_is_explained_and_predictions_hold() {
     let output =
         raykata(&["explain", "scenes/effects.toml", "--size", "24x15", "--spp", "2", "--rounds", "1"]);
-    let (said, complained) = told(&output);
+    let (said, complained) = printed(&output);
     assert!(output.status.success(), "{complained}");
     for line in [
         "  shadows         lamp 1 (rectangle), lamp 2 (point)",
@@ -213,7 +213,7 @@ fn a_scene_is_explained_and_predictions_hold() {
 #[test]
 fn every_set_of_effects_has_its_line() {
     let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
-    let (said, complained) = told(&output);
+    let (said, complained) = printed(&output);
     assert!(output.status.success(), "{complained}");
     // Shadows, mirrors and transmission: eight sets, each with its rays from the camera.
     assert_eq!(

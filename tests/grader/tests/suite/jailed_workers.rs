@@ -1,8 +1,6 @@
 //! What the judge makes of jailed workers that do everything wrong: one mishap for the call, never a wait without end.
 
-#![cfg(target_os = "linux")]
-
-#[path = "../../misbehaving/tests/asking/mod.rs"]
+#[path = "../../../misbehaving/tests/asking/mod.rs"]
 mod asking;
 
 use asking::{ask, how_it_crashed, query};

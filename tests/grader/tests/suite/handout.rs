@@ -1,9 +1,7 @@
 //! The student's repository: what is in it, and what must not be.
 
-mod program_runs;
-
+use super::program_runs::{grader, printed, root};
 use grader::handout::{answers, leaks};
-use program_runs::{grader, root, told};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +12,7 @@ fn handed_out() -> (TempDir, PathBuf) {
     let around = tempfile::tempdir().expect("a folder");
     let folder = around.path().join("kit");
     let output = grader(&["handout", &folder.to_string_lossy()]);
-    assert!(output.status.success(), "{}", told(&output).1);
+    assert!(output.status.success(), "{}", printed(&output).1);
     (around, folder)
 }
 
@@ -142,7 +140,7 @@ fn what_is_there_is_not_overwritten() {
     fs::write(folder.path().join("mine"), "").expect("written");
     let output = grader(&["handout", &folder.path().to_string_lossy()]);
     assert_eq!(output.status.code(), Some(1));
-    assert!(told(&output).1.contains("is not empty"), "{}", told(&output).1);
+    assert!(printed(&output).1.contains("is not empty"), "{}", printed(&output).1);
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
     // A folder with nothing in it will do.
     fs::remove_file(folder.path().join("mine")).expect("removed");
@@ -165,7 +163,7 @@ fn a_student_can_begin() {
     };
     let lock = fs::read(folder.join("Cargo.lock")).expect("a lock");
     let tested = cargo(&["test", "--test", "stage1"]);
-    let (said, complained) = told(&tested);
+    let (said, complained) = printed(&tested);
     assert!(
         said.contains("not written yet") || complained.contains("not written yet"),
         "{said}\n{complained}"
@@ -195,7 +193,7 @@ fn a_student_can_begin() {
         (&["test", "--workspace"], true, "test result: ok"),
     ] {
         let output = cargo(arguments);
-        let (said, complained) = told(&output);
+        let (said, complained) = printed(&output);
         assert_eq!(output.status.success(), success, "{arguments:?}: {said}\n{complained}");
         assert!(said.contains(words) || complained.contains(words), "{arguments:?}: {said}\n{complained}");
         assert!(!complained.contains("warning: "), "{arguments:?}: {complained}");

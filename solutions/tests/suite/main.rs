@@ -1,0 +1,12 @@
+//! The tests of the reference in one program, so that it is linked once and slow tests run beside each other.
+
+mod calibration;
+mod distribution;
+mod frames;
+mod instances;
+mod partitions;
+mod precision;
+mod seeds;
+mod specials;
+mod stages;
+mod subsets;

@@ -1,0 +1,7 @@
+//! The tests of `raykata` in one program, so that it is linked once and slow tests run beside each other.
+
+mod compare;
+mod cost;
+mod program;
+mod program_runs;
+mod slides;

@@ -1,0 +1,21 @@
+//! The tests of the grader in one program, so that it is linked once and slow tests run beside each other.
+
+mod agreement;
+mod cases;
+#[cfg(target_os = "linux")]
+mod command_line;
+mod corpus;
+#[cfg(target_os = "linux")]
+mod export;
+#[cfg(target_os = "linux")]
+mod grade;
+mod handout;
+#[cfg(target_os = "linux")]
+mod jail;
+#[cfg(target_os = "linux")]
+mod jailed_workers;
+mod one_build;
+mod paste;
+mod pictures;
+mod program_runs;
+mod sync;
