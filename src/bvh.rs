@@ -195,8 +195,8 @@ pub trait Probe {
     /// May panic if `node` is not a node of the hierarchy.
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32>;
 
-    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with `ray.t_min < t <
-    /// ray.t_max`. Counts a primitive test.
+    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
+    /// `ray.t_min < t < ray.t_max`. Counts a primitive test.
     ///
     /// # Panics
     ///

@@ -78,7 +78,7 @@ impl AddAssign for Counts {
     }
 }
 
-/// Counts events, or ignores them at no cost. Each thread has a tally of its own.
+/// Counts events, or ignores them at no cost. Each tile of a frame is counted by a tally of its own.
 pub trait Tally: Default + Send {
     /// Counts one event.
     fn note(&mut self, event: Event);

@@ -84,7 +84,8 @@ pub struct CameraSample {
     /// The random number for the time, of which only `u.x` is used; `None` stands for the time at which the
     /// shutter opens.
     pub time: Option<Stratum>,
-    /// Where the random numbers for lights and secondary rays are looked up.
+    /// Where the random numbers for lights and secondary rays are looked up; [`Points::UNUSED`] if the sample
+    /// needs none.
     pub points: Points,
 }
 
@@ -124,9 +125,9 @@ impl CameraSample {
 }
 
 /// Renders a picture: calls `radiance` for the colour and weight of each sample, and `develop` for the colour
-/// that the samples of a pixel make. Each thread counts with a tally of its own; the result has their sum.
-/// Colours are linear radiance. The same settings give the same picture for any number of threads. `None` if
-/// `watch` cancelled the frame.
+/// that the samples of a pixel make. Colours are linear radiance. Each tile has a tally of its own; the
+/// counts of the result are their sum. The same settings give the same picture for any number of threads.
+/// `None` if `watch` cancelled the frame.
 ///
 /// # Panics
 ///

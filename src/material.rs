@@ -4,9 +4,11 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The optical properties of a surface, by the Phong model with reflection and refraction (Whitted): `A·ka +
-/// Σ (I·kd·cosθ + I·ks·cosⁿφ) + Ks·reflection + Kr·refraction`. Colours are linear red, green and blue, at
-/// least 0.
+/// The optical properties of a surface, by the Phong model with reflection and refraction (Whitted):
+///
+/// `A·ka + Σ (I·kd·cosθ + I·ks·cosⁿφ) + Ks·reflection + Kr·refraction`
+///
+/// Colours are linear red, green and blue, at least 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// `ka`, the ambient reflectance: the fraction of the scene's ambient light that is reflected. A scene

@@ -58,8 +58,8 @@ impl Points {
         Points { sampler, key: mix(seed ^ mix(pixel)), index: sample, count: samples }
     }
 
-    /// The address of secondary ray `part` of `parts` rays of the same kind (`0 <= part < parts`) that this
-    /// path sends on.
+    /// The address of secondary ray `part` of `parts` rays of the same kind (`0 <= part < parts`) that leave
+    /// the surface at which this path arrives.
     pub fn beyond(&self, bounce: Bounce, part: u32, parts: u32) -> Points {
         let key = mix(self.key ^ mix(1 + bounce as u64));
         Points { key, index: self.nth(part, parts), count: self.count.saturating_mul(parts), ..*self }

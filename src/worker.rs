@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{self, Read, Write};
 use std::sync::Mutex;
 
-/// The longest message that [`receive`] accepts, in bytes (1 GiB). No check and no scene comes near it.
+/// The longest message that [`receive`] accepts, in bytes (1 GiB).
 pub const LONGEST_MESSAGE: usize = 1 << 30;
 
 /// The stack of the thread that runs student code, in bytes (64 MiB): enough for a recursion of depth 100,000

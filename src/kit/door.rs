@@ -65,6 +65,11 @@ impl<T> Kit for T where
 
 /// Whole frames, rendered in the process that contains the student's code, so that no single ray crosses a
 /// process boundary.
+///
+/// # Panics
+///
+/// Every function unwinds with a [`Mishap`] if student code panics, if its process ends, or if the kit was
+/// built without frames.
 pub trait Frames {
     /// Renders `job`; returns `None` if `watch` cancelled it.
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering>;

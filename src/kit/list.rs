@@ -278,8 +278,8 @@ macro_rules! student_functions {
                     = stage5_recursion::fresnel_exact;
                 |q: FresnelQuery| -> f32 { F::fresnel_exact(q.cos_theta, q.n1, q.n2) }
                 /// The secondary rays that leave a surface, each with its weight. A ray is left out if its
-                /// weight is 0 or below `limits.min_contribution` in every channel, or if `depth >=
-                /// limits.max_depth`.
+                /// weight is 0 or below `limits.min_contribution` in every channel, or if
+                /// `depth >= limits.max_depth`.
                 Children fn children(
                     dir: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
                 ) -> Vec<Child>
@@ -340,8 +340,8 @@ macro_rules! student_functions {
                 TowardBall fn toward_ball(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3
                     = stage6_distribution::toward_ball;
                 |q: BallQuery| -> Vec3 { F::toward_ball(&q.ball, q.from, q.u) }
-                /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe), `n = 2 /
-                /// roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
+                /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
+                /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
                 Gloss fn gloss(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
                     = stage6_distribution::gloss;
                 |q: GlossQuery| -> Vec3 { F::gloss(q.ideal, q.normal, q.roughness, q.u) }
@@ -497,8 +497,8 @@ macro_rules! student_functions {
                 CellSpan fn cell_span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)>
                     = stage9_cells::span;
                 |q: SlabQuery| -> Option<(f64, f64)> { F::cell_span(&q.ray, &Cell::new(&q.bounds)) }
-                /// The number of cells of a grid along each axis, `1..=256`, which makes about `density ·
-                /// n_primitives` cells that are nearly cubes.
+                /// The number of cells of a grid along each axis, `1..=256`, which makes about
+                /// `density · n_primitives` cells that are nearly cubes.
                 GridResolution fn grid_resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3
                     = stage9_grid::resolution;
                 |q: ResolutionQuery| -> UVec3 { F::grid_resolution(&q.bounds, q.n_primitives, q.density) }

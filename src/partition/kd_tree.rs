@@ -85,9 +85,9 @@ impl KdTree {
         KdTree { bounds, nodes: Vec::new(), items: Vec::new() }
     }
 
-    /// The greatest depth of a tree over `n_primitives` primitives, where the root has depth 0: `8 + 1.3 log₂
-    /// n`, rounded down. Deeper trees gain nothing (Havran, "Heuristic Ray Shooting Algorithms", 2000). No
-    /// primitives count as one.
+    /// The greatest depth of a tree over `n_primitives` primitives, where the root has depth 0:
+    /// `8 + 1.3 log₂ n`, rounded down. Deeper trees gain nothing (Havran, "Heuristic Ray Shooting
+    /// Algorithms", 2000). No primitives count as one.
     pub fn most_depth(n_primitives: usize) -> usize {
         8 + (1.3 * (n_primitives.max(1) as f64).log2()) as usize
     }

@@ -28,8 +28,8 @@ pub trait Cells {
     /// May panic if a search makes so many visits that it must be in an endless loop.
     fn visit(&mut self, node: u32);
 
-    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with `ray.t_min < t <
-    /// ray.t_max`. Counts a primitive test.
+    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
+    /// `ray.t_min < t < ray.t_max`. Counts a primitive test.
     ///
     /// # Panics
     ///
