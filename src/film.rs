@@ -113,7 +113,7 @@ impl Film {
 
     /// Writes the picture as a Radiance HDR file: linear, with eight bits per component and a common
     /// exponent, so that the largest component of a pixel is exact to about one percent. Negative and NaN
-    /// components become 0.
+    /// components become 0. The format has no infinity: a pixel with a component of +∞ gets a wrong colour.
     ///
     /// # Errors
     ///
@@ -121,7 +121,8 @@ impl Film {
     ///
     /// # Panics
     ///
-    /// If `pixels` has fewer than `width * height` colours.
+    /// If `pixels` has fewer than `width * height` colours, and in builds with overflow checks if a component
+    /// is +∞.
     pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
         let pixels: Vec<image::Rgb<f32>> = self.pixels.iter().map(|p| image::Rgb(p.to_array())).collect();
         write_atomically(file, |out| {
