@@ -3,8 +3,8 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The closed box `min.x..=max.x` by `min.y..=max.y` by `min.z..=max.z`, in world units; a flat box and a single point are
-/// boxes too. A box with any `min` above its `max`, or with NaN, is empty.
+/// The closed box `min.x..=max.x` by `min.y..=max.y` by `min.z..=max.z`, in world units; a flat box and a
+/// single point are boxes too. A box with any `min` above its `max`, or with NaN, is empty.
 ///
 /// ```
 /// use glam::Vec3;
@@ -15,32 +15,34 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aabb {
-    /// The corner with the smallest coordinates.
+    /// The corner with the smallest coordinate on each axis, in world units; it belongs to the box.
     pub min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner with the largest coordinate on each axis, in world units; it belongs to the box.
     pub max: Vec3,
 }
 
 impl Aabb {
-    /// The box that holds nothing: the neutral element of union.
+    /// The box that contains no point, with `min` = +∞ and `max` = -∞. It is the neutral element of union.
     pub const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// The box from `min` to `max`.
+    /// The closed box from `min` to `max`, in world units. The corners are stored as they are: if `min` is
+    /// above `max` on some axis, or a coordinate is NaN, then the box is empty.
     pub const fn new(min: Vec3, max: Vec3) -> Self {
         Aabb { min, max }
     }
 
-    /// Whether no point lies in the box.
+    /// Whether the box contains no point: `min` is above `max` on some axis, or a coordinate is NaN.
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// Whether `point` lies in the box or on its surface.
+    /// Whether `point` lies in the box or on its surface. The answer is `false` for an empty box and for a
+    /// point with NaN.
     pub fn contains(&self, point: Vec3) -> bool {
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
-    /// Whether every point of `inner` lies in this box.
+    /// Whether every point of `inner` lies in this box. The answer is `true` for every empty `inner`.
     pub fn contains_box(&self, inner: &Aabb) -> bool {
         inner.is_empty() || (self.contains(inner.min) && self.contains(inner.max))
     }

@@ -1,5 +1,5 @@
-//! How far a hierarchy is that somebody builds: [`Bvh::set_leaf`](crate::bvh::Bvh::set_leaf) counts what is in its
-//! place, so whoever waits is told without a word in the builder.
+//! Progress of building a structure: [`Bvh::set_leaf`](crate::bvh::Bvh::set_leaf) counts the primitives that
+//! are in leaves, so a builder need not report anything itself.
 
 use crate::frame::Watch;
 use std::cell::RefCell;
@@ -12,13 +12,13 @@ thread_local! {
     static PLACED: RefCell<Option<Arc<AtomicU64>>> = const { RefCell::new(None) };
 }
 
-/// Fewer are built before anybody looks.
+/// Structures over fewer primitives are built without reports.
 const WORTH_TELLING: u64 = 100_000;
 
-/// How often somebody is told.
+/// The time between two reports.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// So many more primitives are in leaves, on this thread.
+/// Adds `count` to the number of primitives in leaves, if a build is watched on this thread.
 pub(crate) fn placed(count: usize) {
     PLACED.with_borrow(|placed| {
         if let Some(placed) = placed {
@@ -27,7 +27,14 @@ pub(crate) fn placed(count: usize) {
     });
 }
 
-/// Builds something over `total` primitives on this thread, and tells `watch` now and then how many are in leaves.
+/// Calls `build` on this thread and returns its result. If `total` is at least 100,000 primitives, another
+/// thread calls `watch.building(placed, total)` every 0.2 s meanwhile, with the number of primitives that
+/// [`Bvh::set_leaf`](crate::bvh::Bvh::set_leaf) has put into leaves on this thread, `0 <= placed <= total`.
+/// Where no thread can be started, nothing is reported.
+///
+/// # Panics
+///
+/// A panic of `build` is passed on; the reports end all the same.
 pub fn watched<T>(watch: &dyn Watch, total: u64, build: impl FnOnce() -> T) -> T {
     if total < WORTH_TELLING {
         return build();

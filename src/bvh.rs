@@ -5,46 +5,47 @@ use crate::ray::Ray;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What a builder needs to know of a primitive.
+/// A primitive as the builder of a hierarchy sees it: its number, its box and the centre of that box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrimitiveRef {
-    /// Which primitive this is.
+    /// The number of the primitive. [`Bvh::set_leaf`] copies it into [`Bvh::order`].
     pub id: u32,
-    /// A box around it.
+    /// A closed box that contains the primitive, in world units.
     pub bounds: Aabb,
-    /// The middle of that box.
+    /// The centre of `bounds`, in world units, by which splits sort primitives.
     pub centroid: Vec3,
 }
 
-/// What a node holds.
+/// What a node contains: either two child nodes or a range of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Contents {
-    /// Two nodes below.
+    /// An inner node, which has exactly two children.
     Inner {
-        /// Number of the left one.
+        /// The index of the left child in [`Bvh::nodes`].
         left: u32,
-        /// Number of the right one.
+        /// The index of the right child in [`Bvh::nodes`].
         right: u32,
     },
-    /// The primitives `order[first..first + count]`.
+    /// A leaf, which contains the primitives `order[first..first + count]`.
     Leaf {
-        /// Where they begin in [`Bvh::order`].
+        /// The index in [`Bvh::order`] of the leaf's first primitive.
         first: u32,
-        /// How many they are.
+        /// The number of primitives in the leaf.
         count: u32,
     },
 }
 
-/// A node: a box, and what lies in it.
+/// A node of a bounding volume hierarchy: a box and what it contains.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// Holds everything below.
+    /// A closed box around all primitives below this node, in world units.
     pub bounds: Aabb,
-    /// What lies below.
+    /// The node's children, or its primitives if it is a leaf.
     pub contents: Contents,
 }
 
-/// A hierarchy over primitives `0..n`. Node 0 is the root; a hierarchy over nothing has no nodes.
+/// A bounding volume hierarchy over primitives `0..n`. Node 0 is the root; a hierarchy over no primitives has
+/// no nodes.
 ///
 /// Two primitives in two leaves below a root:
 ///
@@ -69,28 +70,29 @@ pub struct Node {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bvh {
-    /// All nodes, a parent before its children.
+    /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<Node>,
-    /// Every primitive once, those of a leaf side by side.
+    /// The numbers of all primitives, each exactly once. The primitives of a leaf are adjacent.
     pub order: Vec<u32>,
     most_nodes: usize,
 }
 
 impl Bvh {
-    /// An empty hierarchy that will hold `n_primitives`.
+    /// A hierarchy without nodes, which can take at most the `2 n - 1` nodes that a binary tree over
+    /// `n_primitives` primitives can have.
     pub fn for_primitives(n_primitives: usize) -> Self {
         // A binary tree whose leaves hold something has at most one inner node fewer than leaves.
         let most_nodes = (2 * n_primitives).saturating_sub(1);
         Bvh { nodes: Vec::new(), order: Vec::with_capacity(n_primitives), most_nodes }
     }
 
-    /// Adds a node around `bounds` and gives its number. It is a leaf with nothing in it until
-    /// [`Bvh::set_leaf`] or [`Bvh::set_children`] says otherwise.
+    /// Adds a node with the box `bounds` and returns its index in [`Bvh::nodes`]. The node is a leaf without
+    /// primitives until [`Bvh::set_leaf`] or [`Bvh::set_children`] changes it.
     ///
     /// # Panics
     ///
-    /// When there are more nodes than any tree over these primitives can have: then some split has put all
-    /// primitives on one side, and the recursion would never end.
+    /// If the hierarchy already has as many nodes as a tree over its primitives can have. Then some split has
+    /// put all primitives on one side, and the recursion would never end.
     #[track_caller]
     pub fn add_node(&mut self, bounds: Aabb) -> u32 {
         assert!(
@@ -103,7 +105,11 @@ impl Bvh {
         self.nodes.len() as u32 - 1
     }
 
-    /// Makes `node` a leaf that holds `primitives`.
+    /// Makes `node` a leaf with `primitives`: appends their ids to [`Bvh::order`]. Call it once per leaf.
+    ///
+    /// # Panics
+    ///
+    /// If there is no node with the index `node`.
     pub fn set_leaf(&mut self, node: u32, primitives: &[PrimitiveRef]) {
         crate::building::placed(primitives.len());
         let first = self.order.len() as u32;
@@ -111,22 +117,35 @@ impl Bvh {
         self.nodes[node as usize].contents = Contents::Leaf { first, count: primitives.len() as u32 };
     }
 
-    /// Makes `node` the parent of `left` and `right`.
+    /// Makes `node` an inner node with the children `left` and `right`, which are indices in [`Bvh::nodes`].
+    ///
+    /// # Panics
+    ///
+    /// If there is no node with the index `node`. The two children are not checked.
     pub fn set_children(&mut self, node: u32, left: u32, right: u32) {
         self.nodes[node as usize].contents = Contents::Inner { left, right };
     }
 
-    /// The number of the root, if there is anything.
+    /// The index of the root, which is 0; `None` if there are no nodes.
     pub fn root(&self) -> Option<u32> {
         (!self.nodes.is_empty()).then_some(0)
     }
 
-    /// The primitives of a leaf.
+    /// The numbers of the primitives of a leaf, `order[first..first + count]`.
+    ///
+    /// # Panics
+    ///
+    /// If the range does not lie in [`Bvh::order`].
     pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
         &self.order[first as usize..(first + count) as usize]
     }
 
-    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
+    /// nodes. The nodes must form a tree: on a cycle the function does not return.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
         let mut deepest = 0;
         let mut waiting: Vec<(u32, usize)> = self.root().map(|root| (root, 1)).into_iter().collect();
@@ -140,7 +159,8 @@ impl Bvh {
     }
 }
 
-/// Everything that a search for hits may ask. Each question is counted, so what a search costs is known exactly.
+/// All that a search for hits may ask about a scene: the contents of a node, the entry into its box, the hit
+/// with a primitive. Each call is counted, so the cost of a search is known exactly.
 ///
 /// In the checks of stage 3 a table answers in place of a scene:
 ///
@@ -158,30 +178,44 @@ impl Bvh {
 /// assert_eq!((probe.counts.box_tests, probe.counts.primitive_tests), (1, 2));
 /// ```
 pub trait Probe {
-    /// What `node` holds. Counts a node visit.
+    /// The contents of `node`. Counts a node visit.
+    ///
+    /// # Panics
+    ///
+    /// May panic if `node` is not a node of the hierarchy.
     fn open(&mut self, node: u32) -> Contents;
 
-    /// The `t` at which `ray` enters the box of `node`: at least `ray.t_min`, which is the answer for a ray that starts
-    /// inside, and below `ray.t_max`. `None` if the ray misses the box within that range. A box that is entered at exactly
-    /// `t_max` may be reported or not, because no hit counts there: `slab` of stage 3, which frames ask, reports it; a
-    /// table does not. Counts a box test.
+    /// The `t` at which `ray` enters the box of `node`: at least `ray.t_min`, which is the answer for a ray
+    /// that starts inside, and below `ray.t_max`. `None` if the ray misses the box within that range. A box
+    /// that is entered at exactly `t_max` may be reported or not, because no hit counts there: `slab` of
+    /// stage 3, which frames call, reports it; a table does not. Counts a box test.
+    ///
+    /// # Panics
+    ///
+    /// May panic if `node` is not a node of the hierarchy.
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32>;
 
-    /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.
+    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
+    /// `ray.t_min < t < ray.t_max`. Counts a primitive test.
+    ///
+    /// # Panics
+    ///
+    /// May panic if there is no primitive with this number.
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
 }
 
-/// The primitive that a ray meets, and where.
+/// A hit of a ray: the number of the primitive and the ray parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PrimitiveHit {
-    /// Distance along the ray, in lengths of its direction.
+    /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
-    /// Which primitive.
+    /// The number of the primitive that is hit.
     pub primitive: u32,
 }
 
-/// What it costs to look into an inner node (two box tests), in the unit of [`INTERSECTION_COST`].
+/// The cost of visiting an inner node, which takes two box tests, in the surface area heuristic. Its unit is
+/// the cost of one primitive test, [`INTERSECTION_COST`].
 pub const TRAVERSAL_COST: f32 = 1.0;
 
-/// What it costs to test one primitive.
+/// The cost of one test of a ray against a primitive in the surface area heuristic. It is the unit of cost.
 pub const INTERSECTION_COST: f32 = 1.0;

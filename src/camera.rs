@@ -5,69 +5,74 @@ use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What a lens adds to a pinhole (stage 6).
+/// A thin lens, which adds depth of field to a pinhole camera (stage 6).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lens {
-    /// Diameter of the opening; 0 is a pinhole.
+    /// The diameter of the aperture in world units, at least 0; with 0 the camera is a pinhole.
     pub aperture: f32,
-    /// Distance, along the view direction, at which everything is sharp; above 0.
+    /// The distance of the focal plane from the camera along the view direction, in world units, above 0.
+    /// Points on that plane are sharp.
     pub focal_distance: f32,
 }
 
-/// When the film is open to light (stage 6).
+/// The interval of time in which the film receives light; `0..=1` is the time in which nodes move (stage 6).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Shutter {
-    /// Opening time in `0..=1`.
+    /// The time at which the shutter opens, `0 <= open <= 1`.
     pub open: f32,
-    /// Closing time in `open..=1`.
+    /// The time at which the shutter closes, `open <= close <= 1`.
     pub close: f32,
 }
 
-/// A camera that looks along `towards`; `right` and `up` span the film.
+/// A camera that looks along `towards`; `right` and `up` span the film. The three axes have unit length and
+/// are perpendicular to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
-    /// The eye.
+    /// The centre of projection in world units, where all pinhole rays start.
     pub position: Vec3,
-    /// Unit view direction.
+    /// The view direction, of unit length.
     pub towards: Vec3,
-    /// Unit direction of increasing x on the film.
+    /// The direction of increasing x on the film, of unit length.
     pub right: Vec3,
-    /// Unit direction of decreasing y on the film.
+    /// The direction of decreasing y on the film, of unit length.
     pub up: Vec3,
     /// Half the height of the film at distance 1: the tangent of half the vertical field of view.
     pub half_height: f32,
-    /// Width over height.
+    /// The width of the film divided by its height, above 0.
     pub aspect: f32,
-    /// The lens, if there is one.
+    /// The thin lens; `None` for a pinhole camera.
     pub lens: Option<Lens>,
-    /// The shutter, if it matters.
+    /// The shutter; `None` if the picture is taken at time 0.
     pub shutter: Option<Shutter>,
 }
 
-/// Why a camera cannot be built.
+/// Why [`Camera::new`] cannot build a camera from its arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CameraError {
-    /// Position and target are the same, or the direction is zero.
+    /// The view direction is zero, for example because position and target are the same.
     #[error("the camera looks nowhere: its direction has no length")]
     NoDirection,
-    /// Up is zero or parallel to the view direction.
+    /// The up direction is zero, or parallel to the view direction.
     #[error("`up` runs along the view direction, so the picture could be turned any way")]
     UpParallel,
-    /// Field of view out of range.
+    /// The vertical field of view, in degrees, is not above 0 and below 180, or is NaN.
     #[error("the vertical field of view must lie between 0 and 180 degrees, and is {0}")]
     FieldOfView(f32),
-    /// Aspect ratio not above zero.
+    /// The aspect ratio is not above 0, or is infinite or NaN.
     #[error("the aspect ratio must be above zero, and is {0}")]
     Aspect(f32),
-    /// Some number is NaN or infinite.
+    /// A coordinate of the position or of a direction is NaN or infinite.
     #[error("a coordinate of the camera is not a finite number")]
     NotFinite,
 }
 
 impl Camera {
-    /// A pinhole at `position` that looks along `direction`, with `up` upwards in the picture.
+    /// A pinhole camera at `position` (world units) that looks along `direction`, with `up` upwards in the
+    /// picture. Both directions may have any length but zero, and `up` need not be perpendicular to
+    /// `direction`.
     ///
-    /// `vertical_fov` in degrees, the whole angle, above 0 and below 180; `aspect` is width over height.
+    /// `vertical_fov` is the whole vertical angle in degrees, `0 < vertical_fov < 180`. `aspect` is width
+    /// divided by height, above 0 and finite.
     ///
     /// ```
     /// use glam::Vec3;
@@ -76,6 +81,14 @@ impl Camera {
     /// assert_eq!(camera.right, Vec3::X);
     /// assert_eq!(camera.ray(0.5, 0.5).dir, Vec3::NEG_Z);
     /// ```
+    ///
+    /// # Errors
+    ///
+    /// - [`CameraError::NotFinite`] if a coordinate of `position`, `direction` or `up` is NaN or infinite.
+    /// - [`CameraError::FieldOfView`] and [`CameraError::Aspect`] if that number is out of range or NaN.
+    /// - [`CameraError::NoDirection`] if `direction` is zero.
+    /// - [`CameraError::UpParallel`] if `up` is zero, or if the sine of its angle with `direction` is at most
+    ///   1e-6.
     pub fn new(
         position: Vec3,
         direction: Vec3,
@@ -111,10 +124,12 @@ impl Camera {
         })
     }
 
-    /// The pinhole ray through film position `(x, y)`, both in `0..=1`, `(0, 0)` at the upper left.
+    /// The pinhole ray through film position `(x, y)`: from `position`, of unit direction, for `0 < t < ∞`,
+    /// at time 0. Both coordinates are in `0..=1`; `(0, 0)` is the upper left corner of the film and `(1, 1)`
+    /// the lower right one.
     ///
-    /// The direction comes from the axes alone and never as the difference of two far points, so a camera a
-    /// million units from the origin sees as many distinct directions as one at the origin (hard case K1).
+    /// The direction is computed from the axes and never as the difference of two far points. So a camera a
+    /// million units from the origin has as many distinct directions as one at the origin (hard case K1).
     #[inline]
     pub fn ray(&self, x: f32, y: f32) -> Ray {
         let film = Vec2::new((2.0 * x - 1.0) * self.aspect, 1.0 - 2.0 * y) * self.half_height;

@@ -1,63 +1,63 @@
-//! Counting work: rays by kind, and what the search for the closest hit costs.
+//! Counts of work: rays by kind, and what the search for the closest hit costs.
 //!
-//! Code that works is generic over [`Tally`]. With [`Counts`] every event is one addition to a local number; with
-//! [`Uncounted`] the calls compile to nothing.
+//! Code that is counted is generic over [`Tally`]. With [`Counts`] every event is one addition to a local
+//! number; with [`Uncounted`] the calls compile to nothing.
 
 use serde::{Deserialize, Serialize};
 use std::ops::AddAssign;
 
-/// Something worth counting.
+/// A kind of work that is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A ray from the camera.
+    /// A ray from the camera was traced.
     Primary,
-    /// A ray towards a light.
+    /// A shadow ray was traced to a light.
     Shadow,
-    /// A ray off a mirror.
+    /// A reflected ray was traced.
     Reflection,
-    /// A ray through a surface.
+    /// A refracted ray was traced through a surface.
     Transmission,
-    /// A surface that one of those rays met, shadow rays apart.
+    /// A ray other than a shadow ray hit a surface.
     Hit,
-    /// A node of a hierarchy whose contents were looked at.
+    /// A search looked at the contents of a node or cell.
     NodeVisit,
-    /// A ray tested against a box.
+    /// A ray was tested against a bounding volume.
     BoxTest,
-    /// A ray tested against a primitive.
+    /// A ray was tested against a primitive.
     PrimitiveTest,
-    /// A random number looked up.
+    /// One random number was looked up.
     RandomNumber,
-    /// A colour read from an image.
+    /// One colour was read from an image.
     TextureRead,
 }
 
-/// How often each [`Event`] happened.
+/// How often each [`Event`] happened. The sum of two counts is the sum of each field.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
-    /// Rays from the camera.
+    /// The number of rays from the camera.
     pub primary: u64,
-    /// Rays towards lights.
+    /// The number of shadow rays.
     pub shadow: u64,
-    /// Rays off mirrors.
+    /// The number of reflected rays.
     pub reflection: u64,
-    /// Rays through surfaces.
+    /// The number of refracted rays.
     pub transmission: u64,
-    /// Surfaces that rays met, shadow rays apart.
+    /// The number of hits of rays with surfaces, without those of shadow rays.
     pub hits: u64,
-    /// Nodes looked at.
+    /// The number of nodes or cells whose contents a search looked at.
     pub node_visits: u64,
-    /// Box tests.
+    /// The number of tests of a ray against a bounding volume.
     pub box_tests: u64,
-    /// Primitive tests.
+    /// The number of tests of a ray against a primitive.
     pub primitive_tests: u64,
-    /// Random numbers.
+    /// The number of random numbers that were looked up.
     pub random_numbers: u64,
-    /// Colours read from images.
+    /// The number of colours that were read from images.
     pub texture_reads: u64,
 }
 
 impl Counts {
-    /// Rays of all kinds.
+    /// The number of rays of all four kinds: primary, shadow, reflected and refracted.
     pub fn rays(&self) -> u64 {
         self.primary + self.shadow + self.reflection + self.transmission
     }
@@ -78,12 +78,12 @@ impl AddAssign for Counts {
     }
 }
 
-/// Takes note of events, or does not.
+/// Counts events, or ignores them at no cost. Each tile of a frame is counted by a tally of its own.
 pub trait Tally: Default + Send {
-    /// Notes one event.
+    /// Counts one event.
     fn note(&mut self, event: Event);
 
-    /// What was noted.
+    /// The counts so far; all zero for a tally that ignores events.
     fn counts(&self) -> Counts;
 }
 
@@ -109,7 +109,7 @@ impl Tally for Counts {
     }
 }
 
-/// Counts nothing and costs nothing.
+/// The [`Tally`] that ignores every event: its calls compile to nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Uncounted;
 

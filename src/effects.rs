@@ -1,5 +1,5 @@
-//! What a scene can call for, as vocabulary. Which of it a scene does call for is an exercise (stage 7); the frame
-//! driver and the tracer do what [`Effects`] say and nothing else.
+//! The effects that a scene can need, as data. Deciding which of them a scene does need is an exercise (stage
+//! 7); the frame driver and the tracer compute what [`Effects`] lists and nothing else.
 
 use crate::material::{Emitter, Light};
 use crate::scene::{Node, Scene};
@@ -7,52 +7,54 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What rendering a scene takes, and where.
+/// What rendering a scene needs: the effects of the camera, of each light, of each material and of each mesh.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
-    /// Rays start all over the lens, and not in its centre.
+    /// Whether rays start at points all over the lens (depth of field), and not at its centre.
     pub lens: bool,
-    /// Rays have times of their own, because something moves while the shutter is open.
+    /// Whether each ray has a time of its own, because something moves while the shutter is open (motion
+    /// blur).
     pub motion: bool,
-    /// Light bounced between surfaces is followed (stage 11).
+    /// Whether indirect light, which surfaces reflect to each other, is computed (stage 11).
     pub indirect_light: bool,
-    /// For each light what it takes.
+    /// What each light of the scene needs, by its index.
     pub lights: Vec<LightEffects>,
-    /// For each material what it takes.
+    /// What each material of the scene needs, by its index.
     pub materials: Vec<MaterialEffects>,
-    /// For each mesh whether normals are interpolated over its triangles.
+    /// For each mesh of the scene, by its index, whether normals are interpolated over its triangles.
     pub smooth_meshes: Vec<bool>,
 }
 
-/// What a light takes.
+/// What a light needs. The default needs nothing: it is that of a light that emits nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LightEffects {
-    /// Places on the lamp that a surface asks about: 0 for a lamp without light, 1 for one that shines from a point.
+    /// The number of points of the light that each hit samples: 0 for a light that emits nothing, 1 for a
+    /// light that shines from one point or one direction.
     pub samples: u32,
-    /// Whether those places are spread over the lamp at random.
+    /// Whether those points are spread at random over an area light.
     pub area: bool,
-    /// Whether it casts shadows, so that a ray has to ask.
+    /// Whether the light casts shadows, so that shadow rays are traced to it.
     pub shadows: bool,
 }
 
-/// What a material takes. All is false and empty for a material that nothing in the scene is made of.
+/// What a material needs. All fields are `false` or empty for a material that no surface of the scene has.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MaterialEffects {
-    /// Lights that can make it brighter, in ascending order.
+    /// The indices of the lights that can make the material brighter, in ascending order.
     pub lights: Vec<usize>,
-    /// Whether rays can be mirrored off it.
+    /// Whether surfaces of the material spawn reflected rays.
     pub mirror: bool,
-    /// Whether rays can go through it.
+    /// Whether surfaces of the material spawn refracted rays.
     pub transmission: bool,
-    /// Whether those rays are blurred.
+    /// Whether those secondary rays are spread around the ideal direction (glossy reflection and refraction).
     pub gloss: bool,
-    /// Whether its colour is read from an image.
+    /// Whether the colour of the material is read from an image.
     pub texture: bool,
 }
 
 impl Effects {
-    /// All that could be called for if nobody looks closer: as much as any scene with so many lights and materials can
-    /// take. Pictures come out the same, but cost more.
+    /// All effects that a scene with these lights and materials can need, without a closer look. Rendered
+    /// with them, the picture is the same as with the effects of stage 7, but costs more.
     pub fn everything(scene: &Scene) -> Effects {
         let quality = &scene.quality;
         let light = |light: &Light| {
@@ -77,7 +79,8 @@ impl Effects {
         }
     }
 
-    /// Whether any part of the scene calls for `effect`.
+    /// Whether any light, material or mesh, or the camera, needs `effect`. A light counts only if some
+    /// material lists it.
     pub fn calls_for(&self, effect: Effect) -> bool {
         let materials = |wants: fn(&MaterialEffects) -> bool| self.materials.iter().any(wants);
         let seen = |light: usize| self.materials.iter().any(|material| material.lights.contains(&light));
@@ -97,34 +100,34 @@ impl Effects {
     }
 }
 
-/// Something that a scene can call for.
+/// An effect that a scene can need and that costs time only where it is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Effect {
-    /// Rays towards lights.
+    /// Shadow rays to lights.
     Shadows,
-    /// Lamps with an extent.
+    /// Lights with an extent, which cast soft shadows.
     AreaLights,
-    /// Mirrored rays.
+    /// Reflected rays.
     Mirrors,
-    /// Rays through surfaces.
+    /// Refracted rays through surfaces.
     Transmission,
-    /// Blurred mirrors and glass.
+    /// Glossy reflection and refraction: secondary rays spread around the ideal direction.
     Gloss,
-    /// Depth of field.
+    /// Depth of field, by a thin lens.
     Lens,
-    /// Motion blur.
+    /// Motion blur, by rays at different times.
     Motion,
-    /// Normals interpolated over meshes.
+    /// Normals that are interpolated over the triangles of meshes.
     SmoothNormals,
-    /// Colours from images.
+    /// Colours that are read from images.
     Textures,
-    /// Light bounced between surfaces.
+    /// Indirect light, which surfaces reflect to each other.
     IndirectLight,
 }
 
 impl Effect {
-    /// All of them.
+    /// All ten effects, in the order of their declaration.
     pub const ALL: [Effect; 10] = [
         Effect::Shadows,
         Effect::AreaLights,
@@ -138,10 +141,19 @@ impl Effect {
         Effect::IndirectLight,
     ];
 
-    /// `scene` as it would be if it did not call for this effect: lamps cast no shadow, area lights shine from their
-    /// middle, weights of mirrors or of glass are 0 (what glass itself mirrors by Fresnel goes with the glass), rough is
-    /// sharp, the lens is a pinhole, what moves stands where it is when the shutter opens, meshes are flat, images are
-    /// left out.
+    /// A copy of `scene` that does not need this effect.
+    ///
+    /// - Without shadows, no light casts one.
+    /// - Without area lights, each of them shines from its centre.
+    /// - Without mirrors, the weight of reflection is 0.
+    /// - Without transmission, the weight of refraction is 0; the Fresnel reflection of a transparent
+    ///   material goes with it.
+    /// - Without gloss, roughness is 0.
+    /// - Without the lens, the camera is a pinhole.
+    /// - Without motion, every node stays where it is when the shutter opens.
+    /// - Without smooth normals, meshes are flat.
+    /// - Without textures, images are left out.
+    /// - Without indirect light, only direct light is computed.
     pub fn removed_from(self, scene: &Scene) -> Scene {
         let mut scene = scene.clone();
         match self {

@@ -1,4 +1,4 @@
-//! The film: linear light, one colour a pixel, and the files it can become.
+//! The film: one colour per pixel in linear light, and the files that it can be written to.
 
 use glam::Vec3;
 use image::codecs::hdr::HdrEncoder;
@@ -8,58 +8,85 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// A picture in linear light, row by row from the top.
+/// A picture in linear light, without limit above. Pixels are stored row by row from the top, each row from
+/// the left.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Film {
-    /// Pixels a row.
+    /// The number of pixels per row.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// `width * height` colours.
+    /// The `width * height` colours, red, green and blue in linear radiance.
     pub pixels: Vec<Vec3>,
 }
 
-/// A picture in bytes, three a pixel.
+/// A picture of 8 bits per component and three components per pixel, as in a PNG file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bytes {
-    /// Red, green, blue, row by row from the top.
+    /// Red, green and blue of each pixel, row by row from the top.
     pub rgb: Vec<u8>,
-    /// Pixels that were NaN and are magenta now.
+    /// The number of pixels that had a NaN component; they are magenta in `rgb`.
     pub not_a_number: usize,
 }
 
 impl Film {
-    /// A black film.
+    /// A black film of `width` by `height` pixels.
     pub fn new(width: u32, height: u32) -> Self {
         Film { width, height, pixels: vec![Vec3::ZERO; width as usize * height as usize] }
     }
 
-    /// The colour at column `x` and row `y`.
+    /// The colour at column `x` and row `y`, `0 <= x < width` from the left and `0 <= y < height` from the
+    /// top.
+    ///
+    /// # Panics
+    ///
+    /// If `y * width + x` is not an index of `pixels`. An `x` of `width` or more reads from a later row if
+    /// there is one.
     pub fn at(&self, x: u32, y: u32) -> Vec3 {
         self.pixels[y as usize * self.width as usize + x as usize]
     }
 
-    /// How many pixels have a component that is not a number.
+    /// The number of pixels that have a NaN component.
     pub fn not_a_number(&self) -> usize {
         self.pixels.iter().filter(|pixel| pixel.is_nan()).count()
     }
 
-    /// The picture in bytes, each component through `encode`.
+    /// The picture in bytes, each component of linear light passed through `encode`, for example
+    /// [`encode_srgb`].
     ///
-    /// NaN would come out black and hide; such pixels turn magenta and are counted instead.
+    /// NaN would turn black and would not be noticed. So pixels with NaN turn magenta and are counted;
+    /// `encode` is not called for them.
     pub fn to_bytes(&self, encode: impl Fn(f32) -> u8) -> Bytes {
         let magenta = [255, 0, 255];
         let byte = |pixel: &Vec3| if pixel.is_nan() { magenta } else { pixel.to_array().map(&encode) };
         Bytes { rgb: self.pixels.iter().flat_map(byte).collect(), not_a_number: self.not_a_number() }
     }
 
-    /// Writes a PNG file; see [`Film::to_bytes`] for `encode`.
+    /// Writes the picture as a PNG file of 8 bits per component; see [`Film::to_bytes`] for `encode`.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written, or the picture has no pixels.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` does not have `width * height` colours.
     pub fn write_png(&self, file: &Path, encode: impl Fn(f32) -> u8) -> io::Result<()> {
         self.write_rgb(file, &self.to_bytes(encode).rgb)
     }
 
-    /// Writes a PNG file of components that were encoded elsewhere, one byte for each of ours. NaN turns magenta, as
-    /// in [`Film::to_bytes`].
+    /// Writes a PNG file of components that were encoded by the caller: `components` has red, green and blue
+    /// of each pixel of this film, in the same order. Pixels that are NaN in the film turn magenta, as in
+    /// [`Film::to_bytes`].
+    ///
+    /// # Errors
+    ///
+    /// If `components` does not have three bytes per pixel, if the file cannot be written, or if the picture
+    /// has no pixels.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` does not have `width * height` colours.
     pub fn write_png_bytes(&self, file: &Path, components: &[u8]) -> io::Result<()> {
         if components.len() != 3 * self.pixels.len() {
             return Err(io::Error::other(format!(
@@ -84,7 +111,18 @@ impl Film {
         })
     }
 
-    /// Writes a Radiance HDR file: linear, with steps of about one percent.
+    /// Writes the picture as a Radiance HDR file: linear, with eight bits per component and a common
+    /// exponent, so that the largest component of a pixel is exact to about one percent. Negative and NaN
+    /// components become 0. The format has no infinity: a pixel with a component of +∞ gets a wrong colour.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    ///
+    /// # Panics
+    ///
+    /// If `pixels` has fewer than `width * height` colours, and in builds with overflow checks if a component
+    /// is +∞.
     pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
         let pixels: Vec<image::Rgb<f32>> = self.pixels.iter().map(|p| image::Rgb(p.to_array())).collect();
         write_atomically(file, |out| {
@@ -95,14 +133,21 @@ impl Film {
     }
 }
 
-/// The curve of IEC 61966-2-1 that screens expect, in bytes. NaN becomes 0.
+/// The sRGB byte for a component of linear light, by the curve of IEC 61966-2-1, rounded to nearest. Input
+/// below 0 gives 0, input above 1 gives 255, and NaN gives 0.
 pub fn encode_srgb(linear: f32) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let curve = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (255.0 * curve + 0.5) as u8
 }
 
-/// Writes a file so that it is whole or not there: first beside its place, then into it.
+/// Writes a file so that it is complete or absent: `write` fills a temporary file in the same folder, which
+/// is then renamed to `file`. A failure removes the temporary file and leaves an existing `file` as it was.
+///
+/// # Errors
+///
+/// If `file` has no file name, if the temporary file cannot be created, if `write` fails, or if the file
+/// cannot be renamed.
 pub fn write_atomically(
     file: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,

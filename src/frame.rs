@@ -1,5 +1,5 @@
-//! The frame driver: every pixel once, on all cores, with the same result for any number of them; and no random number
-//! that the scene does not call for. One idea in one file, a third of it tests.
+//! The frame driver: renders every pixel exactly once, on all cores, with the same result for any number of
+//! threads. It looks up no random number that the scene does not need.
 
 use crate::count::{Counts, Event, Tally};
 use crate::effects::{Effect, Effects};
@@ -11,82 +11,87 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours share caches.
+/// The side of a tile in pixels: small enough to share the work out evenly, large enough that neighbours
+/// share caches.
 pub const TILE: u32 = 16;
 
-/// Someone who waits for a frame.
+/// Receives the progress of a frame, and can cancel it.
 pub trait Watch: Sync {
-    /// `done` of `total` pixels are finished. Called from any thread.
+    /// `done` of `total` pixels are finished, `0 < done <= total`. Called after each tile, from any thread.
     fn progress(&self, done: u64, total: u64);
 
     /// Before the first pixel: `placed` of `total` primitives are in leaves. Called from any thread.
     fn building(&self, _placed: u64, _total: u64) {}
 
-    /// Whether the frame is no longer wanted.
+    /// Whether the frame is no longer wanted. Called before each tile, from any thread; the default is
+    /// `false`.
     fn cancelled(&self) -> bool {
         false
     }
 }
 
-/// Waits in silence.
+/// A [`Watch`] that ignores progress and never cancels.
 pub struct Unwatched;
 
 impl Watch for Unwatched {
     fn progress(&self, _: u64, _: u64) {}
 }
 
-/// What a frame needs to know before its first pixel.
+/// What the frame driver needs to know before the first pixel: size, sampling, threads and seed.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameSettings {
-    /// Pixels a row.
+    /// The number of pixels per row.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// Rays a pixel, at least 1.
+    /// The number of rays from the camera per pixel, at least 1.
     pub samples_per_pixel: u32,
-    /// Where they lie.
+    /// How the samples are distributed over the pixel.
     pub sampler: Sampler,
-    /// Whether rays start at random places of a lens.
+    /// Whether rays start at random points of the lens.
     pub lens: bool,
-    /// Whether rays start at random times.
+    /// Whether each ray has a random time.
     pub motion: bool,
-    /// Whether rays need random numbers on their way.
+    /// Whether secondary rays or shadow rays need random numbers (area lights, glossy reflection).
     pub on_the_way: bool,
-    /// Threads; 0 takes one a core, 1 stays on the calling thread.
+    /// The number of threads: 0 takes one per core, 1 stays on the calling thread.
     pub threads: usize,
-    /// Picks the random numbers.
+    /// The seed of the random numbers: equal seeds give equal pictures.
     pub seed: u64,
 }
 
 impl FrameSettings {
-    /// Draws what `effects` call for and nothing else.
+    /// The same settings, with random numbers for those effects that `effects` lists and for no other.
     pub fn obey(self, effects: &Effects) -> Self {
         let on_the_way = effects.calls_for(Effect::AreaLights) || effects.calls_for(Effect::Gloss);
         FrameSettings { lens: effects.lens, motion: effects.motion, on_the_way, ..self }
     }
 }
 
-/// One ray from the camera: where, and what was drawn for it.
+/// A sample of a pixel: which one it is, and the random numbers for its ray.
 #[derive(Clone, Copy, Debug)]
 pub struct CameraSample {
-    /// Column of the pixel.
+    /// The column of the pixel, from 0 at the left.
     pub column: u32,
-    /// Row of the pixel.
+    /// The row of the pixel, from 0 at the top.
     pub row: u32,
-    /// Which of the pixel's samples.
+    /// The number of the sample within its pixel, from 0.
     pub sample: u32,
-    /// Where in the pixel; `None` is its centre.
+    /// The random numbers for the position in the pixel; `None` stands for its centre.
     pub pixel: Option<Stratum>,
-    /// Where on the lens; `None` is its centre.
+    /// The random numbers for the point on the lens; `None` stands for its centre.
     pub lens: Option<Stratum>,
-    /// When; `None` is when the shutter opens.
+    /// The random number for the time, of which only `u.x` is used; `None` stands for the time at which the
+    /// shutter opens.
     pub time: Option<Stratum>,
-    /// Where to look up what the ray needs on its way.
+    /// Where the random numbers for lights and secondary rays are looked up; [`Points::UNUSED`] if the sample
+    /// needs none.
     pub points: Points,
 }
 
 impl CameraSample {
-    /// Sample `sample` of the pixel in this column and row.
+    /// Looks up the random numbers for sample `sample` of the pixel in this column and row. The result
+    /// depends on the arguments alone, so all threads agree.
     #[inline(always)]
     pub fn draw(settings: &FrameSettings, column: u32, row: u32, sample: u32) -> CameraSample {
         let samples = settings.samples_per_pixel.max(1);
@@ -111,7 +116,7 @@ impl CameraSample {
         }
     }
 
-    /// How many random numbers were looked up.
+    /// The number of random numbers that were looked up.
     fn random_numbers(&self) -> usize {
         2 * usize::from(self.pixel.is_some())
             + 2 * usize::from(self.lens.is_some())
@@ -119,8 +124,15 @@ impl CameraSample {
     }
 }
 
-/// Makes a picture: asks `radiance` for the colour and weight of each sample, and `develop` for the colour that the
-/// samples of a pixel make; adds up what was counted. `None` if the watch cancelled it.
+/// Renders a picture: calls `radiance` for the colour and weight of each sample, and `develop` for the colour
+/// that the samples of a pixel make. Colours are linear radiance. Each tile has a tally of its own; the
+/// counts of the result are their sum. The same settings give the same picture for any number of threads.
+/// `None` if `watch` cancelled the frame.
+///
+/// # Panics
+///
+/// A panic of `radiance` or `develop` is passed on to the caller, as a [`Mishap`] with the place where it
+/// happened.
 pub fn render<T: Tally>(
     settings: &FrameSettings,
     watch: &dyn Watch,

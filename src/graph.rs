@@ -1,28 +1,33 @@
-//! The scene graph as a search sees it: nodes with a volume around each, and primitives that hang from them. Searching it
-//! is an exercise of stage 8.
+//! The scene graph as data for a search: nodes that contain primitives and child nodes. Searching it is an
+//! exercise of stage 8.
 
 use glam::Affine3A;
 use serde::{Deserialize, Serialize};
 
-/// A node: what it holds itself, and what lies below.
+/// A node of a scene graph: its own primitives, and its child nodes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GraphNode {
-    /// Numbers of the nodes below.
+    /// The indices of the child nodes in [`Graph::nodes`].
     pub children: Vec<u32>,
-    /// Numbers of the primitives of this node's own shape.
+    /// The numbers of the primitives of this node's own shape.
     pub primitives: Vec<u32>,
 }
 
-/// A scene graph unfolded into a tree: a node that has several parents is there once for each. Node 0 is the root; a
-/// graph over nothing has no nodes.
+/// A scene graph unfolded into a tree: a node with several parents appears once per parent. Node 0 is the
+/// root; a graph over nothing has no nodes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Graph {
-    /// All nodes, a parent before its children.
+    /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<GraphNode>,
 }
 
 impl Graph {
-    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
+    /// nodes.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
         let mut levels = vec![1; self.nodes.len()];
         // Children have higher numbers than their parents.
@@ -34,25 +39,26 @@ impl Graph {
     }
 }
 
-/// Where a node stands: its way to the world and back.
+/// The transforms of a node from its own space to the world and back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
-    /// From the space of the node to the world.
+    /// The transform from the space of the node to the world.
     pub to_world: Affine3A,
-    /// Back.
+    /// The inverse transform, from the world to the space of the node.
     pub to_object: Affine3A,
 }
 
-/// What a search of a scene graph may save (lecture "Bounding Volumes", "Ray-Scene Intersection"). Each can be left out, to
-/// count what it is worth.
+/// The three optimisations of a search of a scene graph (lecture "Bounding Volumes", "Ray-Scene
+/// Intersection"). Each can be switched off, to measure what it saves; the default has all three. The hit is
+/// the same for all combinations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Savings {
-    /// Ask for the volume around a node first, and leave out a node whose volume the ray misses.
+    /// Test the bounding volume of a node first, and skip a node whose volume the ray misses.
     pub volumes: bool,
-    /// Leave out what begins beyond the closest hit so far.
+    /// Skip a node whose volume the ray enters beyond the closest hit so far.
     pub skip: bool,
-    /// Look into the nearest child first.
+    /// Visit the children in the order in which the ray enters their volumes.
     pub sort: bool,
 }
 

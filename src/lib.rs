@@ -1,4 +1,5 @@
-//! The scaffold of Raykata: everything around the exercises, and nothing that answers one.
+//! The scaffold of Raykata, a teaching kit for ray tracing: everything around the exercises, and no answer to
+//! any of them.
 //!
 //! # Where to look
 //!
@@ -15,9 +16,11 @@
 //!
 //! # Conventions
 //!
-//! Lengths are in world units, angles in radians unless a name says degrees, colours linear unless a name says encoded.
-//! A ray's `t` counts lengths of its direction, which need not be of unit length. A range of `t` is open at both ends; a
-//! box is closed. Coordinates are right-handed, and the anticlockwise side of a triangle is its front.
+//! Lengths are in world units, angles in radians unless a name says degrees, times in `0..=1` of the interval
+//! in which nodes move. Colours are red, green and blue in linear light unless a name says encoded. A ray's
+//! `t` counts lengths of its direction, which need not be of unit length. A range of `t` is open at both
+//! ends; a box is closed. Coordinates are right-handed, and the anticlockwise side of a triangle is its
+//! front.
 
 pub mod aabb;
 pub mod building;

@@ -1,33 +1,39 @@
-//! What surfaces do with light, and where light comes from. Data only.
+//! What surfaces do with light, and where light comes from, as data.
 
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// The optical properties of a surface: `A·kd + Σ (I·kd·cosθ + I·ks·cosⁿφ) + Ks·mirror + Kr·refraction`.
+/// The optical properties of a surface, by the Phong model with reflection and refraction (Whitted):
+///
+/// `A·ka + Σ (I·kd·cosθ + I·ks·cosⁿφ) + Ks·reflection + Kr·refraction`
+///
+/// Colours are linear red, green and blue, at least 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// Share of the scene's ambient light that comes back; as `diffuse` unless the scene says otherwise.
+    /// `ka`, the ambient reflectance: the fraction of the scene's ambient light that is reflected. A scene
+    /// file that does not name it gets the value of `diffuse`.
     pub ambient: Vec3,
-    /// `kd`, the share of light that scatters evenly.
+    /// `kd`, the diffuse reflectance: the fraction of light that is scattered evenly (Lambertian).
     pub diffuse: Vec3,
-    /// `ks`, the strength of the highlight.
+    /// `ks`, the strength of the specular highlight.
     pub specular: Vec3,
-    /// `n`, the sharpness of the highlight, at least 0.
+    /// `n`, the Phong exponent, at least 0: the larger it is, the smaller is the highlight.
     pub exponent: f32,
-    /// `Ks`, the weight of the mirror image (stage 5).
+    /// `Ks`, the weight of the light along the reflected ray (stage 5).
     pub mirror: Vec3,
-    /// `Kr`, the weight of what is seen through the surface (stage 5).
+    /// `Kr`, the weight of the light along the refracted ray (stage 5).
     pub transmission: Vec3,
-    /// Index of refraction inside, above 0; 1 bends nothing (stage 5).
+    /// The index of refraction inside, above 0; with 1 light is not bent (stage 5). Outside it is 1.
     pub index_of_refraction: f32,
-    /// Whether what is seen through gives way to the mirror image at flat angles (stage 5).
+    /// How reflection and transmission depend on the angle (stage 5).
     pub fresnel: Fresnel,
-    /// Blur of mirror images and of what is seen through, `0..=1`; 0 is sharp (stage 6).
+    /// The roughness of glossy reflection and refraction, `0..=1`; 0 is a perfectly smooth surface (stage 6).
     pub roughness: f32,
-    /// Light that the surface gives off by itself (stage 11).
+    /// The radiance that the surface emits by itself (stage 11).
     pub emission: Vec3,
-    /// Index into [`crate::scene::Scene::textures`]: an image that multiplies `diffuse` and `ambient` (stage 7).
+    /// The index in [`crate::scene::Scene::textures`] of an image that multiplies `diffuse` and `ambient`
+    /// (stage 7).
     pub texture: Option<usize>,
 }
 
@@ -50,98 +56,98 @@ impl Default for Material {
     }
 }
 
-/// How the mirrored share of light depends on the angle.
+/// By which formula the reflected fraction of light depends on the angle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fresnel {
-    /// Not at all: constant weights, as in the lecture notes.
+    /// No dependence: constant weights, as in the lecture notes.
     #[default]
     None,
-    /// By Schlick's formula.
+    /// The approximation of Schlick.
     Schlick,
-    /// By Fresnel's equations.
+    /// Fresnel's equations for unpolarised light.
     Exact,
 }
 
-/// What happens to texture coordinates outside `0..1`.
+/// What an image shows at texture coordinates outside of `0..=1`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Wrap {
     /// The image repeats.
     #[default]
     Repeat,
-    /// The border is drawn out.
+    /// The colours at the border continue.
     Clamp,
-    /// The image repeats, every other time mirrored.
+    /// The image repeats, and every other repetition is mirrored.
     Mirror,
 }
 
-/// An image in linear light, row by row from the top.
+/// An image in linear light, stored row by row from the top, each row from the left.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Texture {
-    /// Pixels a row.
+    /// The number of pixels per row, at least 1.
     pub width: u32,
-    /// Rows.
+    /// The number of rows, at least 1.
     pub height: u32,
-    /// `width * height` linear colours.
+    /// The `width * height` colours, red, green and blue in linear light.
     pub pixels: Arc<Vec<Vec3>>,
-    /// What lies outside.
+    /// What the image shows at coordinates outside of `0..=1`.
     pub wrap: Wrap,
 }
 
-/// How light weakens on its way.
+/// How light from a point or area light depends on the distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Falloff {
-    /// Not at all, as in the lecture notes.
+    /// No dependence, as in the lecture notes.
     #[default]
     None,
-    /// With the square of the distance, as in nature.
+    /// It falls with the square of the distance, which is the physical law.
     InverseSquare,
 }
 
-/// Where a light is and how far it spreads.
+/// The position and extent of a light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Emitter {
-    /// A point in space.
+    /// A point light.
     Point {
-        /// Where it is.
+        /// The position of the light, in world units.
         position: Vec3,
-        /// How it weakens.
+        /// How the light depends on the distance.
         falloff: Falloff,
     },
-    /// Endlessly far away, shining along `direction` (from the lamp to the scene; unit length).
+    /// An infinitely distant light, whose rays are all parallel.
     Directional {
-        /// Where the light goes.
+        /// The direction from the light to the scene, of unit length.
         direction: Vec3,
     },
-    /// A lamp with an extent (stage 6).
+    /// An area light, which casts soft shadows (stage 6).
     Area {
-        /// Its outline.
+        /// The shape of the light.
         shape: AreaShape,
-        /// How it weakens.
+        /// How the light depends on the distance.
         falloff: Falloff,
     },
 }
 
-/// The outline of an area light.
+/// The shape of an area light, in world units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum AreaShape {
-    /// `corner + u * edges.0 + v * edges.1` for `u`, `v` in `0..1`.
+    /// The parallelogram of all `corner + u * edges.0 + v * edges.1` with `u` and `v` in `0..=1`.
     Rectangle {
-        /// One corner.
+        /// A corner, in world units.
         corner: Vec3,
-        /// The two edges that leave it.
+        /// The two edges from that corner, in world units.
         edges: (Vec3, Vec3),
     },
-    /// A disk.
+    /// A flat disk.
     Disk(crate::shape::Disk),
-    /// A ball.
+    /// The surface of a sphere.
     Sphere(crate::shape::Sphere),
 }
 
 impl AreaShape {
-    /// The middle of the lamp.
+    /// The centre of the light, in world units.
     pub fn center(&self) -> Vec3 {
         match self {
             AreaShape::Rectangle { corner, edges } => *corner + 0.5 * (edges.0 + edges.1),
@@ -151,25 +157,27 @@ impl AreaShape {
     }
 }
 
-/// A lamp: the colour of its light is `intensity * color`.
+/// A light. Its colour is `intensity * color`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Light {
-    /// Where it is.
+    /// Where the light comes from: a point, a direction or an area.
     pub emitter: Emitter,
-    /// Red, green, blue.
+    /// Red, green and blue in linear light, at least 0 each.
     pub color: Vec3,
-    /// A factor on the colour, at least 0.
+    /// A factor for the colour, at least 0.
     pub intensity: f32,
-    /// Whether things stand in its light.
+    /// Whether the light casts shadows. Without, it reaches every surface that faces it.
     pub shadows: bool,
 }
 
 impl Light {
-    /// `intensity * color`: the light that arrives at distance 1, or anywhere if it does not weaken.
+    /// `intensity * color`, in linear light. With [`Falloff::InverseSquare`] that is the light that arrives
+    /// at a distance of one world unit (for a point light its radiant intensity); otherwise it arrives at any
+    /// distance.
     pub fn radiance(&self) -> Vec3 {
         self.intensity * self.color
     }
 }
 
-/// A texture coordinate; `(0, 0)` is the lower left of the image.
+/// A texture coordinate; `(0, 0)` is the lower left corner of the image and `(1, 1)` the upper right one.
 pub type Uv = Vec2;

@@ -4,32 +4,43 @@ use crate::aabb::Aabb;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// A triangle mesh. Triangles name their vertices by index, so a vertex is stored once however many triangles
-/// share it.
+/// A triangle mesh. Triangles refer to their vertices by index, so a vertex is stored once however many
+/// triangles share it. Texture coordinates and normals are optional; [`Mesh::validate`] says which tables fit
+/// together.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Mesh {
-    /// Vertex positions.
+    /// The position of each vertex, in units of the mesh's own space.
     pub positions: Vec<Vec3>,
-    /// One unit normal a vertex, or nothing when the file has none.
+    /// One unit normal per vertex, or empty if the file has none.
     pub normals: Vec<Vec3>,
-    /// One texture coordinate a vertex, or nothing when the file has none.
+    /// One texture coordinate per vertex, or empty if the file has none.
     pub uvs: Vec<Vec2>,
-    /// Three indices into the vertex tables a triangle.
+    /// Three vertex indices per triangle, anticlockwise as seen from the front.
     pub triangles: Vec<[u32; 3]>,
-    /// One index into [`Mesh::material_names`] a triangle, or nothing when the mesh has one material.
+    /// One index in [`Mesh::material_names`] per triangle, or empty if the whole mesh has one material.
     pub face_materials: Vec<u32>,
-    /// The materials that the file names for its faces, in order of first use.
+    /// The names of the materials that the file gives to its faces, in order of first use.
     pub material_names: Vec<String>,
 }
 
 impl Mesh {
-    /// The three corners of triangle `index`.
+    /// The positions of the three corners of triangle `index`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no triangle `index`, or one of its vertex indices is out of range.
     pub fn corners(&self, index: usize) -> [Vec3; 3] {
         self.triangles[index].map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Says what is wrong with the tables, if anything: lengths that differ, indices out of range, numbers that
-    /// are not finite, no triangle at all.
+    /// Checks that the tables fit together. Normals and texture coordinates may have any value.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the first fault: no triangles; normals or texture coordinates whose number is
+    /// neither 0 nor that of the vertices; face materials whose number is neither 0 nor that of the
+    /// triangles; a position that is not finite; a triangle with a vertex index out of range; a face material
+    /// without a name.
     pub fn validate(&self) -> Result<(), String> {
         let vertices = self.positions.len();
         if self.triangles.is_empty() {
@@ -63,7 +74,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// The smallest box around all vertices; empty for a mesh without vertices.
+    /// The smallest box around all vertices, in the mesh's own space; empty for a mesh without vertices.
     pub fn bounds(&self) -> Aabb {
         crate::shape::bounds_of_points(&self.positions)
     }

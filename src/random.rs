@@ -1,69 +1,73 @@
-//! Random numbers by address: which pixel, which sample, which path, and what for.
+//! Random numbers by address: the pixel, the sample, the path and the purpose.
 //!
-//! Numbers are not taken from a sequence, one after the other, but looked up. So switching an effect on or off moves
-//! no number of any other effect, and neither threads nor neighbours have a say.
+//! Numbers are looked up and not taken from a sequence one after the other. So switching an effect on or off
+//! changes no random number of any other effect, and the numbers depend neither on threads nor on
+//! neighbouring pixels.
 
 use crate::kit::Bounce;
 use crate::scene::Sampler;
 use glam::{UVec2, Vec2, uvec2};
 use serde::{Deserialize, Serialize};
 
-/// What a pair of numbers decides.
+/// What a pair of random numbers is used for. Each purpose has numbers of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// The place in the pixel.
+    /// The position in the pixel.
     Pixel,
-    /// The place on the lens.
+    /// The point on the lens.
     Lens,
-    /// The moment while the shutter is open.
+    /// The time while the shutter is open; only the first number is used.
     Time,
-    /// The place on the lamp with this index.
+    /// The point on the area light with this index.
     Light(u32),
-    /// The way off or through a rough surface.
+    /// The direction of a glossy reflection or refraction.
     Gloss(Bounce),
 }
 
-/// One of several samples of a unit square, each in a cell of its own: somewhere in cell `cell` of `grid.x` columns and
-/// `grid.y` rows. Samples that are not kept apart have one cell for all.
+/// A sample of the unit square by stratified sampling: it lies in cell `cell` of a grid of `grid.x` columns
+/// and `grid.y` rows, at `u` within the cell. Samples that are not stratified have a grid of a single cell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stratum {
-    /// Column and row of the cell.
+    /// The column and row of the cell, `0 <= cell.x < grid.x` and `0 <= cell.y < grid.y`.
     pub cell: UVec2,
-    /// Columns and rows.
+    /// The number of columns and rows of the grid, at least 1 each.
     pub grid: UVec2,
-    /// Two random numbers in `0.0..1.0`.
+    /// Two random numbers, `0 <= u < 1` each.
     pub u: Vec2,
 }
 
-/// Where to look up the numbers of one path.
+/// The address of a path's random numbers. Equal addresses give equal numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Points {
     sampler: Sampler,
-    /// Stands for the seed, the pixel, and the bounces behind; not for the sample, so that the samples of a pixel share
-    /// what they have in common and can be spread evenly.
+    /// Stands for the seed, the pixel and the bounces so far. It does not depend on the sample, so the
+    /// samples of a pixel share a sequence and can be spread evenly.
     key: u64,
-    /// Number of this path among `count` of the same key.
+    /// The number of this path among the `count` paths with the same key.
     index: u32,
     count: u32,
 }
 
 impl Points {
-    /// For who draws nothing.
+    /// A fixed address, for a frame that needs no random numbers.
     pub const UNUSED: Points = Points { sampler: Sampler::Center, key: 0, index: 0, count: 1 };
 
-    /// The numbers of sample `sample` of `samples` of pixel number `pixel`.
+    /// The address of sample `sample` (`0 <= sample < samples`) of pixel number `pixel`, for a given sampler
+    /// and seed. `samples` is the number of samples per pixel, at least 1.
     pub fn new(sampler: Sampler, seed: u64, pixel: u64, sample: u32, samples: u32) -> Points {
         Points { sampler, key: mix(seed ^ mix(pixel)), index: sample, count: samples }
     }
 
-    /// The numbers of the path that goes on from here as ray `part` of `parts` of the same kind.
+    /// The address of secondary ray `part` of `parts` rays of the same kind (`0 <= part < parts`) that leave
+    /// the surface at which this path arrives.
     pub fn beyond(&self, bounce: Bounce, part: u32, parts: u32) -> Points {
         let key = mix(self.key ^ mix(1 + bounce as u64));
         Points { key, index: self.nth(part, parts), count: self.count.saturating_mul(parts), ..*self }
     }
 
-    /// Draw `part` of `parts` for `purpose`. Among all samples of the pixel, the draws for one purpose are spread as the
-    /// sampler says.
+    /// The random numbers of draw `part` of `parts` (`0 <= part < parts`) for `purpose`, with both numbers in
+    /// `0 <= u < 1`. Among all samples of the pixel, the draws for one purpose are distributed as the sampler
+    /// says: stratified, by a Sobol sequence, or independent.
     pub fn stratum(&self, purpose: Purpose, part: u32, parts: u32) -> Stratum {
         let index = self.nth(part, parts);
         let key = || self.key ^ mix(address(purpose));
@@ -100,7 +104,7 @@ impl Points {
     }
 }
 
-/// A number of its own for each purpose.
+/// A distinct number for each purpose.
 fn address(purpose: Purpose) -> u64 {
     match purpose {
         Purpose::Pixel => 1,
@@ -111,7 +115,8 @@ fn address(purpose: Purpose) -> u64 {
     }
 }
 
-/// Columns and rows for `samples` samples: as square as can be, and room for all.
+/// The columns and rows of a grid with at least `samples` cells that is as close to a square as possible.
+/// `samples` counts as at least 1 and at most 2³⁰.
 pub fn grid_of(samples: u32) -> UVec2 {
     // 2^15 cells a side and more could not be numbered in 32 bits.
     let samples = samples.clamp(1, 1 << 30);
@@ -119,8 +124,8 @@ pub fn grid_of(samples: u32) -> UVec2 {
     uvec2(columns, samples.div_ceil(columns))
 }
 
-/// Two numbers in `0.0..1.0`, never 1.0: all 32 bits over 2³² would round up to 1.0 for 128 of the values (hard case
-/// D1); 24 bits fit exactly.
+/// Two random numbers, `0 <= u < 1` each: all 32 bits over 2³² would round up to 1.0 for 128 of the values
+/// (hard case D1); 24 bits fit exactly.
 fn random_pair(key: u64, index: u32) -> Vec2 {
     let bits = mix(key.wrapping_add(mix(u64::from(index))));
     let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
@@ -136,9 +141,9 @@ fn mix(key: u64) -> u64 {
     key ^ (key >> 31)
 }
 
-/// Where `index` lies in a shuffled `0..length`, without a table: in each round the indices are paired, and a coin says
-/// for each pair whether its two change places (Hoang, Morris and Rogaway, "An enciphering scheme based on a card
-/// shuffle", 2012).
+/// The position of `index` in a shuffled `0..length`, without a table: in each round the indices are paired,
+/// and a random bit says for each pair whether its two members are exchanged (Hoang, Morris and Rogaway, "An
+/// enciphering scheme based on a card shuffle", 2012).
 fn permute(mut index: u32, length: u32, seed: u64) -> u32 {
     /// Enough that all orders of a few cells come up equally often.
     const ROUNDS: u64 = 12;

@@ -14,42 +14,44 @@ use serde::{Deserialize, Serialize};
 /// assert!(shorter.contains(1.0) && !shorter.contains(0.5) && !shorter.contains(3.0)); // both ends are open
 /// ```
 ///
-/// `dir` need not be of unit length: `t` counts lengths of `dir`, so that a ray can be carried into the space
-/// of an instance and back without touching `t`.
+/// `dir` need not be of unit length: `t` counts lengths of `dir`, so that a ray can be transformed into the
+/// space of an instance and back without a change of `t`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
-    /// Where the ray starts, in world units.
+    /// The point at `t` = 0, in world units.
     pub origin: Vec3,
-    /// Where it goes; any length but zero.
+    /// The direction, of any length but zero.
     pub dir: Vec3,
-    /// Hits at or before this `t` do not count.
+    /// The lower end of the range, open: a hit at or before this `t` does not count.
     pub t_min: f32,
-    /// Hits at or beyond this `t` do not count; shrinks while the closest hit is sought.
+    /// The upper end of the range, open: a hit at or beyond this `t` does not count. A search lowers it to
+    /// the closest hit.
     pub t_max: f32,
-    /// The moment at which the ray flies, `0..=1` over the shutter interval.
+    /// The time of the ray, `0..=1`, at which moving nodes are intersected.
     pub time: f32,
 }
 
 impl Ray {
-    /// A ray from `origin` along `dir` that counts every hit in front of it.
+    /// A ray from `origin` along `dir` (any length but zero) with the range `0 < t < ∞`, at time 0.
     #[inline]
     pub fn new(origin: Vec3, dir: Vec3) -> Self {
         Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
     }
 
-    /// The same ray, counting hits in `t_min < t < t_max` only.
+    /// The same ray with the open range `t_min < t < t_max`. If `t_min >= t_max` or one of them is NaN, no
+    /// hit counts.
     #[inline]
     pub fn with_range(self, t_min: f32, t_max: f32) -> Self {
         Ray { t_min, t_max, ..self }
     }
 
-    /// The point `origin + t * dir`.
+    /// The point `origin + t * dir`, in world units. The range of the ray plays no role.
     #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + t * self.dir
     }
 
-    /// Whether a hit at `t` counts. Both ends are open, and NaN never counts.
+    /// Whether a hit at `t` counts: `t_min < t < t_max`. Both ends are open, and NaN never counts.
     #[inline]
     pub fn contains(&self, t: f32) -> bool {
         self.t_min < t && t < self.t_max

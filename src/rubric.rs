@@ -1,59 +1,65 @@
-//! The rubric: for each check its points, its title, its slide and three hints, read from `tests/rubric.toml`. It is here so
-//! that `raykata list` and `raykata hint` need not build the checks.
+//! The rubric: points, title, slide and three hints of each check, read from `tests/rubric.toml`. It is part
+//! of this crate so that `raykata list` and `raykata hint` need not build the checks.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-/// What the rubric says of a check.
+/// The rubric's entry for a check: its points and its texts.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// Its stage; filled in from the table it stands in.
+    /// The number of the check's stage. It is filled in from the name of the table.
     #[serde(skip)]
     pub stage: u8,
-    /// Where in the rubric it stands; filled in from its text.
+    /// The byte offset of the entry in the text of the rubric, which gives the order of the checks.
     #[serde(skip)]
     pub place: usize,
-    /// What it is worth.
+    /// The number of points for a passed check.
     pub points: u32,
-    /// The law in one sentence.
+    /// The law that the check tests, in one sentence.
     pub title: String,
-    /// Where to read it up.
+    /// The lecture and the slide that teach it.
     pub slide: String,
-    /// From a nudge to nearly the answer.
+    /// Three hints, from a first thought to nearly the answer.
     pub hints: [String; 3],
-    /// Whether students see the inputs.
+    /// Whether students see the inputs of the check; the default is [`Visibility::Visible`].
     #[serde(default)]
     pub visibility: Visibility,
 }
 
-/// What students see of a check.
+/// How much of a check students see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// Everything.
+    /// Its inputs and its full report.
     #[default]
     Visible,
-    /// That it exists and whether it passes.
+    /// Only that the check exists and whether it passes.
     Hidden,
 }
 
-/// What the rubric says of a stage.
+/// The rubric's entry for a stage: its title, its file and its checks.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stage {
-    /// Its name.
+    /// The name of the stage, such as `shapes`.
     pub title: String,
-    /// The file to work in.
+    /// The path of the file that students write, from the root of the repository.
     pub file: String,
-    /// Its checks.
+    /// The checks of the stage by name, in alphabetical order; [`Stage::in_order`] has them in the order of
+    /// the lecture.
     pub checks: BTreeMap<String, Entry>,
 }
 
+/// The text of the rubric.
 const TEXT: &str = include_str!("../tests/rubric.toml");
 
-/// The whole rubric, by stage name (`stage1`, `stage2`, …).
+/// The whole rubric, by stage name (`stage1`, `stage2`, …). It is parsed on first use.
+///
+/// # Panics
+///
+/// On first use, if `tests/rubric.toml` is malformed.
 pub static RUBRIC: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
     let mut rubric: BTreeMap<String, Stage> =
         toml::from_str(TEXT).unwrap_or_else(|error| panic!("tests/rubric.toml: {error}"));
@@ -67,7 +73,11 @@ pub static RUBRIC: LazyLock<BTreeMap<String, Stage>> = LazyLock::new(|| {
     rubric
 });
 
-/// The stages with their numbers, in order.
+/// The stages with their numbers, in ascending order.
+///
+/// # Panics
+///
+/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed.
 pub fn stages() -> Vec<(u8, &'static Stage)> {
     let number = |name: &str| name.trim_start_matches("stage").parse().ok();
     let mut stages: Vec<(u8, &Stage)> =
@@ -77,7 +87,7 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
 }
 
 impl Stage {
-    /// The checks with their names, in the order of the rubric, which is that of the lecture.
+    /// The checks of the stage with their names, in the order of the rubric, which is that of the lecture.
     pub fn in_order(&self) -> Vec<(&str, &Entry)> {
         let mut checks: Vec<(&str, &Entry)> =
             self.checks.iter().map(|(name, entry)| (name.as_str(), entry)).collect();
@@ -87,13 +97,18 @@ impl Stage {
 }
 
 impl Entry {
-    /// The first line of every message about the check.
+    /// The two lines with which every report about the check begins: stage and title, then the slide.
     pub fn header(&self) -> String {
         format!("stage {} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
     }
 }
 
-/// The entry of a check. A check that the rubric forgot, which the kit's own tests catch, gets a bare one.
+/// The rubric's entry for a check. A check that the rubric does not list gets an entry of one point with its
+/// name as title; a test of the kit finds such checks.
+///
+/// # Panics
+///
+/// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed.
 pub fn entry(stage: u8, check: &str) -> Entry {
     RUBRIC
         .get(&format!("stage{stage}"))

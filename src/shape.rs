@@ -1,24 +1,25 @@
-//! Shapes as data: what they are and where they lie. How a ray meets them is for students to write.
+//! Shapes as data: sizes and positions. How a ray intersects them is an exercise. The world units of a shape
+//! that a node of a scene contains are those of the node's space.
 
 use crate::aabb::Aabb;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A sphere.
+/// A sphere: all points at the distance `radius` from `center`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sphere {
-    /// Its centre.
+    /// The centre, in world units.
     pub center: Vec3,
-    /// Its radius, above zero.
+    /// The radius in world units, above 0.
     pub radius: f32,
 }
 
-/// An endless plane through `point`, at right angles to `normal`.
+/// An infinite plane through `point`, perpendicular to `normal`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plane {
-    /// Any point of the plane.
+    /// Any point of the plane, in world units.
     pub point: Vec3,
-    /// Its normal, of any length but zero.
+    /// A normal of the plane, of any length but zero.
     pub normal: Vec3,
 }
 
@@ -26,80 +27,82 @@ pub struct Plane {
 /// corners run anticlockwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Triangle {
-    /// First corner.
+    /// The first corner, in world units.
     pub a: Vec3,
-    /// Second corner.
+    /// The second corner, in world units.
     pub b: Vec3,
-    /// Third corner.
+    /// The third corner, in world units.
     pub c: Vec3,
 }
 
-/// A solid box with faces along the axes.
+/// A solid box with faces perpendicular to the axes. It may be flat.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cuboid {
-    /// The corner with the smallest coordinates.
+    /// The corner with the smallest coordinate on each axis, in world units.
     pub min: Vec3,
-    /// The corner with the largest coordinates.
+    /// The corner with the largest coordinate on each axis, in world units.
     pub max: Vec3,
 }
 
-/// A cylinder from `base` to `top`, closed by a disk at either end.
+/// A solid cylinder from `base` to `top`, closed by a disk at each end.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cylinder {
-    /// Centre of one end.
+    /// The centre of one end, in world units.
     pub base: Vec3,
-    /// Centre of the other end.
+    /// The centre of the other end, in world units; it differs from `base`.
     pub top: Vec3,
-    /// Its radius, above zero.
+    /// The radius in world units, above 0.
     pub radius: f32,
 }
 
-/// A cone from the disk around `base` to the point `apex`, closed by that disk.
+/// A solid cone from the disk around `base` to the point `apex`, closed by that disk.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cone {
-    /// Centre of the disk.
+    /// The centre of the base disk, in world units.
     pub base: Vec3,
-    /// The tip.
+    /// The tip of the cone, in world units; it differs from `base`.
     pub apex: Vec3,
-    /// Radius of the disk, above zero.
+    /// The radius of the base disk in world units, above 0.
     pub radius: f32,
 }
 
-/// A flat disk.
+/// A flat disk, which is hit from either side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Disk {
-    /// Its centre.
+    /// The centre, in world units.
     pub center: Vec3,
-    /// Its normal, of any length but zero.
+    /// A normal of the disk, of any length but zero.
     pub normal: Vec3,
-    /// Its radius, above zero.
+    /// The radius in world units, above 0.
     pub radius: f32,
 }
 
-/// A flat convex polygon; its corners run around it in order.
+/// A flat convex polygon, which is hit from either side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polygon {
-    /// Three corners or more.
+    /// Three or more corners in order around the polygon, in world units.
     pub corners: Vec<Vec3>,
 }
 
-/// A bicubic Bézier patch: the surface that a net of four by four points pulls towards itself.
+/// A bicubic Bézier patch: a curved surface that is defined by a control net of four by four points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BezierPatch {
-    /// The net. `rows[0][0]`, `rows[0][3]`, `rows[3][3]` and `rows[3][0]` are its corners, on the surface.
+    /// The control net, in world units: `u` runs along a row and `v` from row to row. The surface passes
+    /// through its corners `rows[0][0]`, `rows[0][3]`, `rows[3][3]` and `rows[3][0]`, and in general through
+    /// no other of its points.
     pub rows: [[Vec3; 4]; 4],
 }
 
-/// Any shape of a scene, in the space of the node that holds it.
+/// A shape of a scene, in the space of the node that contains it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
-    /// A sphere.
+    /// The surface of a sphere.
     Sphere(Sphere),
-    /// An endless plane.
+    /// An infinite plane.
     Plane(Plane),
-    /// One triangle.
+    /// A single triangle.
     Triangle(Triangle),
-    /// A box along the axes.
+    /// A solid box with faces perpendicular to the axes.
     Cuboid(Cuboid),
     /// A closed cylinder.
     Cylinder(Cylinder),
@@ -109,11 +112,11 @@ pub enum Shape {
     Disk(Disk),
     /// A flat convex polygon.
     Polygon(Polygon),
-    /// A curved surface, made of triangles before anything is traced.
+    /// A Bézier patch, which is divided into triangles before rendering.
     Bezier {
-        /// The surface.
+        /// The patch itself.
         patch: Box<BezierPatch>,
-        /// Squares of two triangles along either side, at least 1.
+        /// The number of squares along each side, at least 1; each square becomes two triangles.
         steps: u32,
     },
     /// An instance of the mesh with this index in [`crate::scene::Scene::meshes`].
@@ -121,9 +124,15 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// A box around the shape, given the meshes that instances name. `None` for a plane, which has no end.
+    /// A box around the shape in the shape's own space; `meshes` are those that instances refer to. `None`
+    /// for an infinite plane.
     ///
-    /// Rounded to nearest: a box that must not lose a point of a curved shape needs a little room on top.
+    /// The box is rounded to nearest. So a point of a curved shape can lie outside by a rounding error; add a
+    /// margin where that matters.
+    ///
+    /// # Panics
+    ///
+    /// If the shape is a mesh whose index is not in `meshes`.
     pub fn bounds(&self, meshes: &[crate::scene::SceneMesh]) -> Option<Aabb> {
         Some(match self {
             Shape::Plane(_) => return None,
@@ -144,13 +153,13 @@ impl Shape {
     }
 }
 
-/// How far a disk with this normal reaches along each axis: `r sin` of the angle between normal and axis.
+/// Half the extent of a disk along each axis: `r sin` of the angle between normal and axis.
 fn disk_reach(normal: Vec3, radius: f32) -> Vec3 {
     let n = normal.normalize_or_zero();
     radius * (Vec3::ONE - n * n).max(Vec3::ZERO).map(f32::sqrt)
 }
 
-/// The box around boxes given by centre and reach.
+/// The box around boxes that are given by their centres and half extents.
 fn around<const N: usize>(centers: [Vec3; N], reaches: [Vec3; N]) -> Aabb {
     let corners: Vec<Vec3> = centers.iter().zip(reaches).flat_map(|(&c, r)| [c - r, c + r]).collect();
     bounds_of_points(&corners)

@@ -1,7 +1,8 @@
-//! The worker: a process that holds a kit and answers requests, one after the other, until the pipe closes.
+//! The worker: a process that contains a kit and answers requests, one after the other, until the pipe
+//! closes.
 //!
-//! Messages are `postcard` bytes behind a four-byte length. On Unix both directions run through the socket that the
-//! other side passes as standard input, so that nothing that student code prints can get between two messages;
+//! Messages are `postcard` bytes after a length of four bytes. On Unix both directions use the socket that
+//! the other side passes as standard input, so nothing that student code prints can get between two messages;
 //! elsewhere requests come through standard input and replies leave through standard output.
 
 use crate::frame::Watch;
@@ -10,36 +11,43 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{self, Read, Write};
 use std::sync::Mutex;
 
-/// Longer messages are refused: nothing that a check or a scene needs comes near.
+/// The longest message that [`receive`] accepts, in bytes (1 GiB).
 pub const LONGEST_MESSAGE: usize = 1 << 30;
 
-/// Room for the recursion of student code: depth 100,000 at a few hundred bytes a call.
+/// The stack of the thread that runs student code, in bytes (64 MiB): enough for a recursion of depth 100,000
+/// at a few hundred bytes per call.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// What a worker says.
+/// A message from a worker: progress, an answer, or the reason why there is no answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
-    /// A frame has got this far; the answer is still to come.
+    /// The progress of a frame; the answer follows later.
     Progress {
-        /// Finished pixels.
+        /// The number of finished pixels.
         done: u64,
-        /// All pixels.
+        /// The number of all pixels.
         total: u64,
     },
-    /// What a frame needs before its first pixel has got this far.
+    /// The progress of building the structure of a frame, before its first pixel.
     Building {
-        /// Primitives that are in leaves.
+        /// The number of primitives that are in leaves.
         placed: u64,
-        /// All primitives.
+        /// The number of all primitives.
         total: u64,
     },
-    /// The answer.
+    /// The answer to the request.
     Answer(Box<Answer>),
-    /// There is none.
+    /// The reason why there is no answer.
     Mishap(Mishap),
 }
 
-/// Writes one message.
+/// Writes one message to the pipe: four bytes of length, little-endian, then the message itself. Flushes the
+/// pipe.
+///
+/// # Errors
+///
+/// If the message cannot be serialised, if it is longer than `u32::MAX` bytes, or if the pipe cannot be
+/// written.
 pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
     let length = u32::try_from(bytes.len()).map_err(io::Error::other)?;
@@ -48,14 +56,24 @@ pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<()> 
     pipe.flush()
 }
 
-/// Reads one message; fails with [`io::ErrorKind::UnexpectedEof`] when the other side has closed the pipe.
+/// Reads one message of at most [`LONGEST_MESSAGE`] bytes, and waits for it if necessary.
 ///
-/// What is not a message fails with [`io::ErrorKind::Other`].
+/// # Errors
+///
+/// - [`io::ErrorKind::UnexpectedEof`] if the other side has closed the pipe, between two messages or within
+///   one.
+/// - [`io::ErrorKind::Other`] if the message is too long or malformed.
+/// - Any error of reading the pipe.
 pub fn receive<T: DeserializeOwned>(pipe: &mut impl Read) -> io::Result<T> {
     receive_up_to(pipe, LONGEST_MESSAGE)
 }
 
-/// The same, of at most `longest` bytes.
+/// Reads one message of at most `longest` bytes, and waits for it if necessary. Memory grows with the bytes
+/// that arrive, not with the announced length.
+///
+/// # Errors
+///
+/// The same as those of [`receive`].
 pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) -> io::Result<T> {
     let mut length = [0; 4];
     pipe.read_exact(&mut length)?;
@@ -72,13 +90,15 @@ pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) 
     postcard::from_bytes(&bytes).map_err(|error| io::Error::other(format!("no message: {error}")))
 }
 
-/// Answers requests with the functions of a crate until the pipe closes. The whole of a worker's `main`.
+/// Answers requests with the functions of a crate until the pipe closes: the complete `main` of a worker.
+/// Other errors of the pipe are reported on standard error.
 pub fn serve(functions: impl StudentKit) {
     let kit = functions.door();
     serve_with(&|request, watch| request.answer(&*kit, watch));
 }
 
-/// The same with any function in place of a kit.
+/// Answers requests with any function in place of a kit, until the pipe closes. A panic of `answer` is caught
+/// and sent as [`Reply::Mishap`].
 pub fn serve_with(answer: &Answering<'_>) {
     let work = || {
         let (reader, writer) = pipes()?;
@@ -102,7 +122,7 @@ pub fn serve_with(answer: &Answering<'_>) {
     }
 }
 
-/// Something that answers requests.
+/// A function that answers a request and reports its progress.
 pub type Answering<'a> = dyn Fn(&Request, &dyn Watch) -> Answer + Sync + 'a;
 
 fn answer_all(answer: &Answering<'_>, mut reader: impl Read, writer: impl Write + Send) -> io::Result<()> {

@@ -1,4 +1,5 @@
-//! From the static trait to the door: a kit whose functions are linked into this program.
+//! Adapters from the static trait to the traits of the [door](super::door): a kit whose functions are linked
+//! into this program.
 
 use super::functions::StudentFunctions;
 use super::types::*;
@@ -7,21 +8,21 @@ use crate::bvh::PrimitiveHit;
 use crate::frame::Watch;
 use std::sync::Arc;
 
-/// The functions of a crate behind the door.
+/// The functions of a crate as a [`Kit`], called directly in this process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Linked<F>(pub F);
 
-/// What the crate of a student provides: its functions behind the door, compiled in that crate, once.
+/// What the crate of a student provides: its functions as a [`Kit`], compiled in that crate, once.
 pub trait StudentKit: StudentFunctions + Copy + Send {
-    /// All functions behind the door.
+    /// The functions as a [`Kit`] that can be shared by threads.
     fn door(self) -> Arc<dyn Kit + Send + Sync>;
 
-    /// What renders with the functions, if the crate was built with the feature `frames`.
+    /// The renderer that uses the functions; `None` if the crate was built without the feature `frames`.
     fn renderer() -> Option<&'static dyn Frames>;
 }
 
-/// A plain loop: iterators that are mapped and collected the compiler would have to write out for each of a hundred
-/// functions, and it compiles them for every submission that is graded.
+/// The answer to each query, in order. It is a plain loop: mapped and collected iterators would be compiled
+/// for each of a hundred functions, and again for every submission that is graded.
 fn each<Q, A>(queries: &[Q], mut answer: impl FnMut(&Q) -> A) -> Vec<A> {
     let mut answers = Vec::with_capacity(queries.len());
     for query in queries {
@@ -30,7 +31,7 @@ fn each<Q, A>(queries: &[Q], mut answer: impl FnMut(&Q) -> A) -> Vec<A> {
     answers
 }
 
-/// Runs a search on a table; gives its answer with what it asked.
+/// Runs a search on the table of a query; returns its hit and the counts of its calls.
 pub(super) fn search(
     query: &SearchQuery,
     find: impl FnOnce(&mut TableProbe<'_>) -> Option<PrimitiveHit>,
@@ -40,7 +41,7 @@ pub(super) fn search(
     probe.answer(hit)
 }
 
-/// Runs a search of cells on a table; gives its answer with what it did.
+/// Runs a search of cells on the table of a query; returns its hit and the lists of its calls.
 pub(super) fn look<S>(
     query: &CellsQuery<S>,
     find: impl FnOnce(&mut CellsProbe<'_>) -> Option<PrimitiveHit>,
@@ -50,7 +51,8 @@ pub(super) fn look<S>(
     CellsAnswer { hit, ..probe.answer }
 }
 
-/// Divides a copy of `primitives`; gives their new order.
+/// Divides a copy of `primitives` by `split`; returns their new order and the index at which the right side
+/// begins.
 pub(super) fn divide(
     primitives: &[PrimitiveRef],
     split: impl FnOnce(&mut [PrimitiveRef]) -> Option<usize>,

@@ -1,4 +1,4 @@
-//! Stage 6 in plain data.
+//! Stage 6, distributed ray tracing: queries and answers.
 
 use crate::camera::{Camera, Lens, Shutter};
 use crate::ray::Ray;
@@ -6,75 +6,75 @@ use crate::shape::Sphere;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How far a Gaussian pixel reaches from its centre along x and y, in pixels.
+/// The radius of the Gaussian pixel filter along x and along y, in pixels.
 pub const FILTER_RADIUS: f32 = 1.5;
 
-/// What one sample of a pixel found.
+/// The colour of a sample and its weight in the pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WeightedColor {
-    /// In linear light.
+    /// The colour of the sample, in linear radiance.
     pub color: Vec3,
-    /// How much it counts among the samples of its pixel.
+    /// The weight of the sample among those of its pixel, at least 0.
     pub weight: f32,
 }
 
-/// Which ray leaves the lens here?
+/// Asks which ray leaves a point of the lens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LensQuery {
-    /// The camera.
+    /// The camera, whose `right` and `up` span the lens.
     pub camera: Camera,
-    /// The ray through the middle of the lens.
+    /// The ray through the centre of the lens, of unit direction.
     pub pinhole: Ray,
-    /// The lens.
+    /// The lens, with its aperture and focal distance in world units.
     pub lens: Lens,
-    /// A place on a disk of radius 1.
+    /// A point of the disk of radius 1, which stands for the aperture.
     pub on_lens: Vec2,
 }
 
-/// Which point of a rectangle?
+/// Asks which point of a rectangle two random numbers sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RectangleQuery {
-    /// One corner.
+    /// A corner, in world units.
     pub corner: Vec3,
-    /// The two edges that leave it.
+    /// The two edges from that corner, in world units.
     pub edges: (Vec3, Vec3),
-    /// Two random numbers.
+    /// Two random numbers, `0 <= u < 1` each.
     pub u: Vec2,
 }
 
-/// Which way to a ball?
+/// Asks which direction towards a sphere two random numbers sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallQuery {
-    /// The ball.
+    /// The sphere to which the direction leads.
     pub ball: Sphere,
-    /// From where.
+    /// The point from which the sphere is seen, in world units.
     pub from: Vec3,
-    /// Two random numbers.
+    /// Two random numbers, `0 <= u < 1` each.
     pub u: Vec2,
 }
 
-/// Which way off or through a rough surface?
+/// Asks which direction of a glossy reflection or refraction two random numbers sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GlossQuery {
-    /// Where a smooth surface would send the ray; unit length.
+    /// The direction in which a perfectly smooth surface would send the ray, of unit length.
     pub ideal: Vec3,
-    /// Unit normal on the side on which the ray goes on.
+    /// The unit normal on the side of the surface on which the secondary ray continues.
     pub normal: Vec3,
-    /// 0 is sharp, 1 is as blurred as can be.
+    /// The roughness of the surface, `0..=1`: 0 is perfectly smooth, 1 spreads the directions most.
     pub roughness: f32,
-    /// Two random numbers.
+    /// Two random numbers, `0 <= u < 1` each.
     pub u: Vec2,
 }
 
-/// When, while the shutter is open?
+/// Asks at which time a ray is traced, while the shutter is open.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimeQuery {
-    /// The shutter.
+    /// The interval of time in which the shutter is open.
     pub shutter: Shutter,
-    /// Which of the slots, from 1.
+    /// The number of the time slot, `1..=slots`.
     pub slot: u32,
-    /// Into how many slots of equal length the time is divided.
+    /// The number of slots of equal length into which the interval is divided, at least 1.
     pub slots: u32,
-    /// Where in the slot: a random number.
+    /// The position in the slot: a random number, `0 <= u < 1`.
     pub u: f32,
 }

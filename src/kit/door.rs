@@ -1,5 +1,5 @@
-//! The traits of the door, and the same calls as messages, both generated from the list of student functions
-//! (`list.rs`).
+//! The traits that tests, renderer and grader call, and the same calls as messages. Both are generated from
+//! the list of student functions (`list.rs`).
 
 use super::*;
 use crate::aabb::Aabb;
@@ -15,19 +15,23 @@ use crate::scene::{Sampler, Scene, Split};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 
-/// Carries a request to where the student's code lives and brings the answer back.
+/// Carries a request to the process that contains the student's code, and brings back the answer.
 ///
-/// A call that cannot be answered (student code that panics, loops or crashes) unwinds with a [`Mishap`], as a panic
-/// of linked student code does; [`mishap::catch`] catches both.
+/// A call without an answer (student code that panics, loops or crashes) unwinds with a [`Mishap`], as a
+/// panic of linked student code does; [`mishap::catch`] catches both.
 pub trait Transport: Sync {
-    /// Asks.
+    /// Sends `request` and waits for its answer. `watch` receives the progress of a frame, and can cancel it.
+    ///
+    /// # Panics
+    ///
+    /// Unwinds with a [`Mishap`] if there is no answer.
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer;
 }
 
-/// A kit at the other end of a transport.
+/// A [`Kit`] whose functions run at the other end of a transport.
 pub struct Door<T>(pub T);
 
-/// Everything that students write.
+/// All functions that students write, by stage, and the frames that are rendered with them.
 pub trait Kit:
     Shapes
     + Triangles
@@ -59,21 +63,28 @@ impl<T> Kit for T where
 {
 }
 
-/// Whole frames, rendered where the student's code lives, so that no ray crosses a process boundary.
+/// Whole frames, rendered in the process that contains the student's code, so that no single ray crosses a
+/// process boundary.
+///
+/// # Panics
+///
+/// Every function unwinds with a [`Mishap`] if student code panics, if its process ends, or if the kit was
+/// built without frames.
 pub trait Frames {
-    /// Renders `job`. `None` if `watch` cancelled it.
+    /// Renders `job`; returns `None` if `watch` cancelled it.
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering>;
 
-    /// The rays behind the first sample of the pixel in column `x` and row `y` of `job`, the very ones that a frame
-    /// traces, parents before children.
+    /// The rays of the first sample of the pixel in column `x` (from the left) and row `y` (from the top) of
+    /// `job`, exactly those that a frame traces. A parent has a smaller index than its secondary rays.
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay>;
 
-    /// The edges of the boxes or cells of the structure over the scene at this depth, the root being at depth 0, and of
-    /// the leaves above it.
+    /// The line segments, in world units, that outline the boxes or cells at `depth` (the root has depth 0)
+    /// of the structure over the scene, and the leaves above that depth.
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]>;
 
-    /// What each ray meets first in [`World::plain`](crate::world::World::plain) of the scene of `job`, found as its
-    /// quality says. Primitives have their numbers there; planes are counted after them.
+    /// The first hit of each ray in [`World::plain`](crate::world::World::plain) of the scene of `job`, found
+    /// as the scene's quality says; `None` for a ray that hits nothing. Primitives have their numbers in that
+    /// world; infinite planes are numbered after them.
     fn first_hits(&self, job: &RenderJob, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>;
 }
 
@@ -86,36 +97,40 @@ macro_rules! door {
             $($(#[$doc])* fn $name(&self, queries: &[$Query]) -> Vec<$Answer>;)*
         })*
 
-        /// A call as a message.
+        /// A call of a student function, or for a frame, as a message to a worker.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Request {
             $($($(#[$doc])* $Message(Vec<$Query>),)*)*
-            /// A whole frame.
+            /// Renders a whole frame.
             Render(Box<RenderJob>),
-            /// The rays behind a pixel, by column and row.
+            /// Asks for the rays of a pixel, by column and row.
             Trace(Box<RenderJob>, u32, u32),
-            /// Edges of the structure at a depth.
+            /// Asks for the outlines of the structure at a depth.
             Outlines(Box<RenderJob>, u32),
-            /// What rays meet first in a scene.
+            /// Asks for the first hit of each ray in a scene.
             FirstHits(Box<RenderJob>, Vec<Ray>),
         }
 
-        /// An answer as a message.
+        /// The answer to a [`Request`] as a message: one answer per query, in the same order.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         pub enum Answer {
             $($($(#[$doc])* $Message(Vec<$Answer>),)*)*
-            /// A whole frame; `None` when it was cancelled.
+            /// A whole frame; `None` if it was cancelled.
             Render(Option<Box<Rendering>>),
-            /// The rays behind a pixel.
+            /// The rays of a pixel.
             Trace(Vec<TracedRay>),
-            /// Edges of the structure at a depth.
+            /// The two ends of each line segment that outlines the structure at a depth.
             Outlines(Vec<[Vec3; 2]>),
-            /// What rays meet first in a scene.
+            /// The first hit of each ray in a scene.
             FirstHits(Vec<Option<PrimitiveHit>>),
         }
 
         impl Request {
-            /// Has `kit` answer.
+            /// Calls the function of `kit` that this request names. `watch` receives the progress of a frame.
+            ///
+            /// # Panics
+            ///
+            /// If the function panics.
             pub fn answer(&self, kit: &dyn Kit, watch: &dyn Watch) -> Answer {
                 match self {
                     $($(Request::$Message(queries) => Answer::$Message(kit.$name(queries)),)*)*
@@ -141,7 +156,11 @@ macro_rules! door {
 crate::student_functions! { door }
 
 impl dyn Kit + '_ {
-    /// Divides the primitives of each query by its rule: one of the three functions that split.
+    /// Divides the primitives of each query by the query's rule, with one of the three splitting functions.
+    ///
+    /// # Panics
+    ///
+    /// If that function panics.
     pub fn split(&self, queries: &[SplitQuery]) -> Vec<SplitAnswer> {
         let divide = |query: &SplitQuery| {
             let primitives = [query.primitives.clone()];

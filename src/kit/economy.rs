@@ -1,4 +1,4 @@
-//! Stage 7 in plain data.
+//! Stage 7, the effects analysis: queries and answers.
 
 use crate::effects::Effects;
 use crate::material::{Light, Material, Texture, Wrap};
@@ -6,86 +6,88 @@ use crate::scene::{Quality, Scene};
 use glam::Vec2;
 use serde::{Deserialize, Serialize};
 
-/// What does this light take?
+/// Asks what a light needs; the answer is its [`LightEffects`](crate::effects::LightEffects).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightQuery {
-    /// The light.
+    /// The light that is analysed.
     pub light: Light,
-    /// The knobs.
+    /// The quality parameters of the scene.
     pub quality: Quality,
 }
 
-/// What does this material take?
+/// Asks what a material needs; the answer is its [`MaterialEffects`](crate::effects::MaterialEffects).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MaterialQuery {
-    /// The material.
+    /// The material that is analysed.
     pub material: Material,
-    /// All lights of the scene.
+    /// All lights of the scene, by index.
     pub lights: Vec<Light>,
-    /// The knobs.
+    /// The quality parameters of the scene.
     pub quality: Quality,
 }
 
-/// Rays by kind.
+/// The number of rays of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RayCounts {
-    /// From the camera.
+    /// The number of rays from the camera.
     pub primary: u64,
-    /// To lights.
+    /// The number of shadow rays.
     pub shadow: u64,
-    /// Off mirrors.
+    /// The number of reflected rays.
     pub reflection: u64,
-    /// Through surfaces.
+    /// The number of refracted rays.
     pub transmission: u64,
 }
 
-/// How many rays can a scene take at most?
+/// Asks how many rays a scene can need at most; the answer is [`RayCounts`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundQuery {
-    /// The scene.
+    /// The scene that is analysed.
     pub scene: Scene,
-    /// What it calls for.
+    /// The effects that the scene needs.
     pub effects: Effects,
 }
 
-/// Hits on one material.
+/// The hits of rays with surfaces of one material.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MaterialHits {
-    /// Index of the material.
+    /// The index of the material.
     pub material: usize,
-    /// How many rays hit it.
+    /// The number of rays that hit the material.
     pub hits: u64,
-    /// For each light: how many places on the lamp, over all hits, lie on the lit side of the surface.
+    /// For each light of the scene: the number of sampled points of the light, over all hits, that lie in
+    /// front of the surface.
     pub in_front: Vec<u64>,
 }
 
-/// Which rays do these hits send on?
+/// Asks how many rays of each kind these hits need; the answer is [`RayCounts`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HitsQuery {
-    /// What was hit.
+    /// The hits, by material.
     pub hits: Vec<MaterialHits>,
-    /// What the scene calls for.
+    /// The effects that the scene needs.
     pub effects: Effects,
-    /// The knobs.
+    /// The quality parameters of the scene.
     pub quality: Quality,
 }
 
-/// Which column or row of an image?
+/// Asks which column or row of an image is shown at an index that may lie outside of the image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TexelQuery {
-    /// Counted from the first one, and past either end.
+    /// The column or row, any number; those of the image are `0 <= index < size`.
     pub index: i64,
-    /// How many there are, at least 1.
+    /// The number of columns or rows of the image, at least 1.
     pub size: u32,
-    /// What lies outside.
+    /// What the image shows outside of its borders.
     pub wrap: Wrap,
 }
 
-/// Which colour?
+/// Asks which colour an image has at a texture coordinate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TextureQuery {
-    /// The image.
+    /// The image, in linear light.
     pub texture: Texture,
-    /// `(0, 0)` is the lower left corner of the image, `(1, 1)` the upper right one.
+    /// The texture coordinate: `(0, 0)` is the lower left corner of the image and `(1, 1)` the upper right
+    /// one. Any number is allowed, NaN and infinity included.
     pub uv: Vec2,
 }

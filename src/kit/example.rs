@@ -1,4 +1,4 @@
-//! The simplest question of each kind: asked to find out whether a function is written.
+//! The simplest query of each kind: it is used to find out whether a function is written.
 
 use super::types::*;
 use crate::material::{Emitter, Falloff};
@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// A type with a simplest value.
 pub(super) trait Example: Sized {
-    /// That value.
+    /// The simplest value of the type.
     fn example() -> Self;
 }
 

@@ -1,5 +1,5 @@
-//! The student's functions as code that can be called: the static trait, the names of the functions, and whether each is
-//! written. All three are generated from the list (`list.rs`).
+//! The student's functions as code that can be called: the static trait, the names of the functions, and
+//! whether each is written. All three are generated from the list (`list.rs`).
 
 use super::adapters::{divide, look, search};
 use super::example::Example;
@@ -8,14 +8,15 @@ use super::{Mishap, mishap};
 use std::cell::Cell as Local;
 use std::fmt;
 
-/// Calls a function of the student; if it unwinds, its name is kept for [`take_unwound`].
+/// A guard around a call of a student function; if the call unwinds, the name of the function is kept for
+/// [`take_unwound`].
 ///
 /// The guard costs nothing where nothing panics: it is forgotten before it is dropped.
 #[doc(hidden)]
 pub struct Running(pub Function);
 
 impl Running {
-    /// The function has come back.
+    /// Ends the guard after the function has returned.
     #[inline(always)]
     pub fn finished(self) {
         std::mem::forget(self);
@@ -34,12 +35,13 @@ thread_local! {
     static UNWOUND: Local<Option<Function>> = const { Local::new(None) };
 }
 
-/// The function of the student that unwound on this thread since this was last asked, if any did.
+/// The student function that unwound on this thread since the last call of `take_unwound`; `None` if there
+/// was none. Of nested functions it is the innermost one.
 pub fn take_unwound() -> Option<Function> {
     UNWOUND.take()
 }
 
-/// Says on this thread what [`take_unwound`] said on another.
+/// Sets on this thread what [`take_unwound`] returned on another thread.
 pub(crate) fn note_unwound(function: Option<Function>) {
     UNWOUND.set(function);
 }
@@ -49,7 +51,8 @@ macro_rules! functions {
         $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
             -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
     })*) => {
-        /// All student functions, called directly: what the renderer and the adapters of [`Linked`](super::Linked) use.
+        /// All student functions for direct calls: the renderer and the adapters of [`Linked`](super::Linked)
+        /// are generic over it.
         ///
         /// [`student_kit!`](crate::student_kit) implements it for the functions of a crate.
         pub trait StudentFunctions: Sync + 'static {
@@ -57,7 +60,7 @@ macro_rules! functions {
             fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return;)*)*
         }
 
-        /// The name of a student function, as the list has it.
+        /// The name of a student function, as in the list.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Function {
@@ -65,24 +68,24 @@ macro_rules! functions {
         }
 
         impl Function {
-            /// All of them, in the order of the stages.
+            /// All student functions, in the order of the stages.
             pub const ALL: &'static [Function] = &[$($(Function::$name),*),*];
 
-            /// The stage that asks for it.
+            /// The number of the stage to which the function belongs, `1..=10`.
             pub fn stage(self) -> u8 {
                 match self {
                     $($(Function::$name)|* => $stage,)*
                 }
             }
 
-            /// Its own name in the file of the student.
+            /// The name of the function in the student's file.
             pub fn name(self) -> &'static str {
                 match self {
                     $($(Function::$name => stringify!($function),)*)*
                 }
             }
 
-            /// The file that holds it, without `.rs`.
+            /// The name of the student's file that contains the function, without `.rs`.
             pub fn file(self) -> &'static str {
                 match self {
                     $($(Function::$name => stringify!($file),)*)*
@@ -90,8 +93,9 @@ macro_rules! functions {
             }
         }
 
-        /// Whether `function` does more than say `todo!` when it is asked about the simplest input there is. A `todo!`
-        /// that only other inputs reach is found when a frame reaches it.
+        /// Whether `function` is written: calls it with the simplest input of its kind, and returns `false`
+        /// if it reaches a `todo!`. Any other panic counts as written. A `todo!` that only other inputs reach
+        /// is found when a frame reaches it.
         pub fn is_written<F: StudentFunctions>(function: Function) -> bool {
             let call: fn() = match function {
                 $($(Function::$name => || {
@@ -137,14 +141,15 @@ macro_rules! implement_student_functions {
     };
 }
 
-/// Makes a kit of the functions of a crate: `pub struct Kit`, which tests, workers and frames use.
+/// Defines `pub struct Kit`, a kit of the functions of the crate that calls the macro. Tests, workers and
+/// frames use it.
 ///
-/// The crate declares one module per file that the list names. With its feature `frames` the kit renders; without it, a
-/// kit answers checks and nothing else, and compiles in a fraction of the time.
+/// The crate declares one module per file that the list names. With its feature `frames` the kit renders
+/// frames. Without it the kit answers checks only, and compiles in a fraction of the time.
 #[macro_export]
 macro_rules! student_kit {
     () => {
-        /// The functions of this crate, as the kit calls them.
+        /// The functions of this crate as a kit.
         #[derive(Clone, Copy, Debug, Default)]
         pub struct Kit;
 

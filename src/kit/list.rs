@@ -1,96 +1,116 @@
-//! The list of student functions: every exercise once, with its signature, the file that holds it, the question that
-//! tests and the worker protocol ask about it, and how an answer is put together from the function.
+//! The list of student functions: every exercise once, with its signature, the file that contains it, the
+//! query that tests and the worker protocol use, and the expression that answers a query by the function.
 //!
 //! Everything that has to name all functions is generated from this list: the trait that the renderer calls
 //! ([`StudentFunctions`](super::StudentFunctions)), its implementation in a student's crate
-//! ([`student_kit!`](crate::student_kit)), the names ([`Function`](super::Function)) and whether each is written
-//! ([`is_written`](super::is_written)), the traits of the door and the messages to a worker ([`super::door`]), and the
-//! adapters from functions to the door ([`Linked`](super::Linked)).
+//! ([`student_kit!`](crate::student_kit)), the names ([`Function`](super::Function)) and whether each is
+//! written ([`is_written`](super::is_written)), the traits of the door and the messages to a worker
+//! ([`super::door`]), and the adapters from functions to the door ([`Linked`](super::Linked)). The comment of
+//! an entry documents the function in all of them.
 //!
-//! An entry reads: the name of the message, the name of the function in the list with its generic parameters in brackets,
-//! its signature, `=` the function in the student's crate, and the question with the expression that answers it. In that
-//! expression `F` is the student's code.
+//! An entry consists of the name of the message, the name of the function in the list with its generic
+//! parameters in brackets, its signature, `=` the function in the student's crate, and the query with the
+//! expression that answers it. In that expression `F` is the student's code.
 
-/// Hands the list to another macro.
+/// Passes the list to another macro.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! student_functions {
     ($($receiver:tt)*) => {
         $($receiver)*! {
-            /// Stage 1: spheres and planes.
+            /// Stage 1: spheres and planes. Each function gives one answer per query, in the same order, and
+            /// panics if the student's function does.
             1 trait Shapes {
-                /// The first of two roots that counts for a ray.
+                /// The smaller of two roots that is in the range of `ray`, `t_min < t < t_max`; `None` if
+                /// neither is. The roots come in any order, and either may be NaN.
                 NearestRoot fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32>
                     = stage1_shapes::nearest_root;
                 |q: RootQuery| -> Option<f32> { F::nearest_root(q.roots, &q.ray) }
-                /// Ray against sphere by the quadratic formula.
+                /// The `t` of the nearest hit with a sphere in the range of the ray, by the quadratic
+                /// formula; `None` if there is none. `center` and `radius` are in world units.
                 SphereAlgebraic fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage1_shapes::sphere_algebraic;
                 |q: SphereQuery| -> Option<f32> { F::sphere_algebraic(&q.ray, q.sphere.center, q.sphere.radius) }
-                /// Ray against sphere by right triangles.
+                /// The `t` of the nearest hit with a sphere in the range of the ray, by right triangles;
+                /// `None` if there is none. `center` and `radius` are in world units.
                 SphereGeometric fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage1_shapes::sphere_geometric;
                 |q: SphereQuery| -> Option<f32> { F::sphere_geometric(&q.ray, q.sphere.center, q.sphere.radius) }
-                /// The outward unit normal of a sphere at a point of it.
+                /// The outward unit normal of a sphere at `point`, which lies on its surface.
                 SphereNormal fn sphere_normal(center: Vec3, point: Vec3) -> Vec3
                     = stage1_shapes::sphere_normal;
                 |(sphere, point): (Sphere, Vec3)| -> Vec3 { F::sphere_normal(sphere.center, *point) }
-                /// Ray against plane.
+                /// The `t` of the hit with an infinite plane in the range of the ray; `None` if there is
+                /// none, in particular for a ray that is parallel to the plane. `normal` has any length but
+                /// zero.
                 Plane fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32>
                     = stage1_shapes::plane;
                 |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) }
-                /// A normal, turned to the side that a ray with this direction comes from.
+                /// `normal`, negated if necessary, so that it points to the side from which a ray of
+                /// direction `dir` comes.
                 FaceViewer fn face_viewer(normal: Vec3, dir: Vec3) -> Vec3
                     = stage1_shapes::face_viewer;
                 |(normal, dir): (Vec3, Vec3)| -> Vec3 { F::face_viewer(*normal, *dir) }
             }
 
-            /// Stage 2: triangles and meshes.
+            /// Stage 2: triangles and meshes. Each function gives one answer per query, in the same order,
+            /// and panics if the student's function does.
             2 trait Triangles {
-                /// Ray against triangle by Cramer's rule.
+                /// The hit with a triangle in the range of the ray, by Cramer's rule; `None` if there is
+                /// none. Edges and corners belong to the triangle, and both sides can be hit.
                 TriangleCramer fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage2_triangles::triangle_cramer;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_cramer(&q.ray, &q.triangle) }
-                /// The four scalars of the Gram method.
+                /// The four scalars of a triangle that the Gram method computes once.
                 GramScalars fn gram_scalars(triangle: &Triangle) -> GramScalars
                     = stage2_triangles::gram_scalars;
                 |q: Triangle| -> GramScalars { F::gram_scalars(q) }
-                /// Ray against triangle by plane and Gram matrix.
+                /// The hit with a triangle in the range of the ray, by the hit with its plane and the Gram
+                /// matrix; `None` if there is none. Edges and corners belong to the triangle, and both sides
+                /// can be hit.
                 TriangleGram fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit>
                     = stage2_triangles::triangle_gram;
                 |q: TriangleQuery| -> Option<TriangleHit> {
                     let scalars = F::gram_scalars(&q.triangle);
                     F::triangle_gram(&q.ray, &q.triangle, &scalars)
                 }
-                /// Ray against triangle by a method of the student's choice; the reference is watertight.
+                /// The hit with a triangle in the range of the ray, by a method of the student's choice;
+                /// `None` if there is none. The reference is watertight (Woop, Benthin and Wald, "Watertight
+                /// Ray/Triangle Intersection", JCGT 2013).
                 TriangleChoice fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage2_triangles::triangle_choice;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_choice(&q.ray, &q.triangle) }
-                /// Inside test I: planes through the ray's origin and each side.
+                /// Inside test I: whether `point` is on the same side of the three planes through the ray's
+                /// origin and each edge. A point on a plane is inside.
                 InsideByPlanes fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool
                     = stage2_triangles::inside_by_planes;
                 |q: InsideQuery| -> bool { F::inside_by_planes(&q.ray, q.point, &q.triangle) }
-                /// Inside test II: the ray's direction against each side.
+                /// Inside test II: whether `point` is on the same side of all three edges as seen along the
+                /// ray's direction.
                 InsideByDirection fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool
                     = stage2_triangles::inside_by_direction;
                 |q: InsideQuery| -> bool { F::inside_by_direction(&q.ray, q.point, &q.triangle) }
-                /// Inside test III: areas; `(α, β, γ)` if inside.
+                /// Inside test III: the barycentric coordinates `(α, β, γ)` of `point` as ratios of signed
+                /// areas; `None` if it is outside.
                 InsideByAreas fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3>
                     = stage2_triangles::inside_by_areas;
                 |q: InsideQuery| -> Option<Vec3> { F::inside_by_areas(q.point, &q.triangle) }
-                /// A value between three corners.
+                /// The value at the barycentric coordinates `(α, β, γ)` between the values at three corners.
                 Interpolate fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3
                     = stage2_triangles::interpolate;
                 |q: InterpolateQuery| -> Vec3 { F::interpolate(q.weights, q.corners) }
-                /// The unit normal of a triangle, if it has one.
+                /// The unit normal of a triangle with the direction of `(b - a) × (c - a)`; `None` if the
+                /// triangle has no area.
                 FaceNormal fn face_normal(triangle: &Triangle) -> Option<Vec3>
                     = stage2_triangles::face_normal;
                 |q: Triangle| -> Option<Vec3> { F::face_normal(q) }
-                /// One unit normal a vertex: the average of the faces around it.
+                /// One unit normal per vertex of a mesh: the normalised average of the normals of the
+                /// triangles around it.
                 VertexNormals fn vertex_normals(mesh: &Mesh) -> Vec<Vec3>
                     = stage2_triangles::vertex_normals;
                 |q: Mesh| -> Vec<Vec3> { F::vertex_normals(q) }
-                /// The closest hit among all primitives of the table.
+                /// The closest hit among primitives `0..n_primitives`, by a test of each; `None` if nothing
+                /// is hit. Of two hits at the same `t` the smaller primitive number wins.
                 BruteForce fn brute_force[P: Probe](n_primitives: u32, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage2_triangles::brute_force;
                 |q: SearchQuery| -> SearchAnswer {
@@ -99,61 +119,75 @@ macro_rules! student_functions {
                 }
             }
 
-            /// Stage 3: bounding volume hierarchies.
+            /// Stage 3: bounding volume hierarchies. Each function gives one answer per query, in the same
+            /// order, and panics if the student's function does.
             3 trait Hierarchies {
-                /// The box around a triangle.
+                /// The smallest closed box around a triangle, in world units, without padding.
                 TriangleBounds fn triangle_bounds(triangle: &Triangle) -> Aabb
                     = stage3_bvh::triangle_bounds;
                 |q: Triangle| -> Aabb { F::triangle_bounds(q) }
-                /// The box around a sphere.
+                /// A closed box around a sphere, in world units, tight except for rounding.
                 SphereBounds fn sphere_bounds(sphere: &Sphere) -> Aabb
                     = stage3_bvh::sphere_bounds;
                 |q: Sphere| -> Aabb { F::sphere_bounds(q) }
-                /// The smallest box around two boxes.
+                /// The smallest box that contains two boxes. The union with an empty box changes nothing.
                 Union fn union(first: &Aabb, second: &Aabb) -> Aabb
                     = stage3_bvh::union;
                 |(first, second): (Aabb, Aabb)| -> Aabb { F::union(first, second) }
-                /// The middle of a box.
+                /// The centre of a box, in world units.
                 Centroid fn centroid(bounds: &Aabb) -> Vec3
                     = stage3_bvh::centroid;
                 |q: Aabb| -> Vec3 { F::centroid(q) }
-                /// The surface area of a box.
+                /// The area of the six faces of a box, in square world units; 0 for the empty box.
                 SurfaceArea fn surface_area(bounds: &Aabb) -> f32
                     = stage3_bvh::surface_area;
                 |q: Aabb| -> f32 { F::surface_area(q) }
-                /// Where a ray enters and leaves a box, within its range.
+                /// The `t` at which a ray enters and leaves a closed box, both in `[t_min, t_max]`; `None` if
+                /// it misses. A ray that starts inside enters at `t_min`. `inverse_dir` is `1 / ray.dir`,
+                /// infinite where the direction is 0.
                 Slab fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage3_bvh::slab;
                 |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.dir.recip(), &q.bounds) }
-                /// Half of the primitives on either side.
+                /// Object median: reorders two or more primitives along the longest axis of their box, so
+                /// that half of them come first, and returns the index at which the second half begins.
+                /// Neither side is empty.
                 SplitObjectMedian fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize
                     = stage3_bvh::split_object_median;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_object_median(primitives)))
                 }
-                /// Half of the box on either side.
+                /// Spatial median: cuts the box of two or more primitives in the middle of its longest axis,
+                /// reorders the primitives by the side of their centroid, and returns the index at which the
+                /// second side begins. Neither side is empty.
                 SplitSpatialMedian fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize
                     = stage3_bvh::split_spatial_median;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_spatial_median(primitives)))
                 }
-                /// The cut that costs least, if it costs less than a leaf.
+                /// Surface area heuristic: reorders two or more primitives by the cheapest division, and
+                /// returns the index at which the second side begins; `None` if a leaf is not more expensive.
                 SplitSurfaceArea fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize>
                     = stage3_bvh::split_surface_area;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer { divide(primitives, F::split_surface_area) }
-                /// A hierarchy over boxes.
+                /// A hierarchy over primitives with these boxes, with at most `leaf_size` primitives per
+                /// leaf, which is at least 1.
                 Build fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh
                     = stage3_bvh::build;
                 |q: BuildQuery| -> Bvh { F::build(&q.bounds, q.split, q.leaf_size) }
-                /// The closest hit, visiting both children always.
+                /// The closest hit in a hierarchy, by a visit of both children of every node that the ray
+                /// enters; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive number
+                /// wins.
                 ClosestHitBoth fn closest_hit_both[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage3_bvh::closest_hit_both;
                 |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit_both(&q.bvh, probe, &q.ray)) }
-                /// The closest hit, nearer child first, skipping what lies beyond the best hit.
+                /// The closest hit in a hierarchy, nearer child first, without the nodes beyond the closest
+                /// hit so far; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive
+                /// number wins.
                 ClosestHit fn closest_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage3_bvh::closest_hit;
                 |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit(&q.bvh, probe, &q.ray)) }
-                /// Whether there is any hit.
+                /// Whether the ray hits any primitive in its range. The search ends at the first hit (shadow
+                /// rays).
                 AnyHit fn any_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> bool
                     = stage3_bvh::any_hit;
                 |q: SearchQuery| -> (bool, SearchAnswer) {
@@ -166,25 +200,33 @@ macro_rules! student_functions {
                 }
             }
 
-            /// Stage 4: light and shade.
+            /// Stage 4: shading and shadows. Each function gives one answer per query, in the same order, and
+            /// panics if the student's function does.
             4 trait Shading {
-                /// The cosine term of diffuse light.
+                /// The cosine of the angle between the unit normal and the unit direction to the light, the
+                /// diffuse term of the Phong model; 0 for a light behind the surface.
                 DiffuseTerm fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32
                     = stage4_shading::diffuse_term;
                 |q: TermQuery| -> f32 { F::diffuse_term(q.normal, q.to_light) }
-                /// The highlight.
+                /// The specular term of the Phong model: `cosⁿ φ` between the reflected light and the viewer;
+                /// 0 if that cosine is negative or the light is behind the surface. All directions have unit
+                /// length, and `exponent >= 0`.
                 SpecularTerm fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32
                     = stage4_shading::specular_term;
                 |q: TermQuery| -> f32 { F::specular_term(q.normal, q.to_light, q.to_viewer, q.exponent) }
-                /// The ray that asks whether a light is visible, if the light can matter.
+                /// The shadow ray from a surface to a light, which starts off the surface and ends before the
+                /// light; `None` if the light is behind the surface or has no light to give.
                 ShadowRay fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray>
                     = stage4_shading::shadow_ray;
                 |q: ShadowQuery| -> Option<Ray> { F::shadow_ray(&q.surface, &q.light) }
-                /// The normal to shade with: `(geometric, interpolated, ray direction)`.
+                /// The unit normal for shading on the side from which a ray of direction `dir` comes: the
+                /// interpolated one if it has a direction, and the geometric one otherwise.
                 ShadingNormal fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, dir: Vec3) -> Vec3
                     = stage4_shading::shading_normal;
                 |(geometric, smooth, dir): (Vec3, Option<Vec3>, Vec3)| -> Vec3 { F::shading_normal(*geometric, *smooth, *dir) }
-                /// The colour of a point.
+                /// The colour of a point in linear light, by the Phong model. `visible(i, ray)` says whether
+                /// shadow ray `ray` to light `i` is not occluded; it is called only where the answer can
+                /// matter.
                 Shade fn shade[V: FnMut(usize, &Ray) -> bool](
                     surface: &Surface, to_viewer: Vec3, material: &Material, ambient: Vec3, lights: &[LightSample], visible: V
                 ) -> Vec3
@@ -199,35 +241,45 @@ macro_rules! student_functions {
                         F::shade(&q.surface, q.to_viewer, &q.material, q.ambient, &q.lights, visible);
                     ShadeAnswer { color, traced }
                 }
-                /// Linear light to a byte with gamma 2.
+                /// The byte `0..=255` for a component of linear light with gamma 2, rounded to nearest. Input
+                /// is clamped to `0..=1`.
                 EncodeGamma fn encode_gamma(linear: f32) -> u8
                     = stage4_shading::encode_gamma;
                 |linear: f32| -> u8 { F::encode_gamma(*linear) }
-                /// A byte to linear light with gamma 2.
+                /// The component of linear light, `0..=1`, for a byte with gamma 2.
                 DecodeGamma fn decode_gamma(byte: u8) -> f32
                     = stage4_shading::decode_gamma;
                 |byte: u8| -> f32 { F::decode_gamma(*byte) }
             }
 
-            /// Stage 5: mirrors and glass.
+            /// Stage 5: reflection and refraction. Each function gives one answer per query, in the same
+            /// order, and panics if the student's function does.
             5 trait Recursion {
-                /// The mirrored direction: `(direction, normal)`.
+                /// The unit direction of the reflected ray, for the unit direction of a ray and a unit
+                /// normal.
                 Mirror fn mirror(dir: Vec3, normal: Vec3) -> Vec3
                     = stage5_recursion::mirror;
                 |(dir, normal): (Vec3, Vec3)| -> Vec3 { F::mirror(*dir, *normal) }
-                /// The refracted direction, unless all light is mirrored.
+                /// The unit direction of the refracted ray by Snell's law; `None` in the case of total
+                /// internal reflection. The unit normal is on the side that the ray comes from, in the medium
+                /// of index `n1`.
                 Refract fn refract(dir: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3>
                     = stage5_recursion::refract;
                 |q: RefractQuery| -> Option<Vec3> { F::refract(q.dir, q.normal, q.n1, q.n2) }
-                /// The mirrored share by Schlick's formula.
+                /// The Fresnel reflectance, `0..=1`, by Schlick's approximation; 1 in the case of total
+                /// internal reflection. `cos_theta` is the cosine of the angle of incidence, `0..=1`.
                 FresnelSchlick fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32
                     = stage5_recursion::fresnel_schlick;
                 |q: FresnelQuery| -> f32 { F::fresnel_schlick(q.cos_theta, q.n1, q.n2) }
-                /// The mirrored share by Fresnel's equations.
+                /// The Fresnel reflectance of unpolarised light, `0..=1`, by Fresnel's equations; 1 in the
+                /// case of total internal reflection. `cos_theta` is the cosine of the angle of incidence,
+                /// `0..=1`.
                 FresnelExact fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32
                     = stage5_recursion::fresnel_exact;
                 |q: FresnelQuery| -> f32 { F::fresnel_exact(q.cos_theta, q.n1, q.n2) }
-                /// The rays that go on from a surface.
+                /// The secondary rays that leave a surface, each with its weight. A ray is left out if its
+                /// weight is 0 or below `limits.min_contribution` in every channel, or if
+                /// `depth >= limits.max_depth`.
                 Children fn children(
                     dir: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
                 ) -> Vec<Child>
@@ -235,135 +287,164 @@ macro_rules! student_functions {
                 |q: ChildrenQuery| -> Vec<Child> {
                     F::children(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
                 }
-                /// The ray that follows a child, off the surface.
+                /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
+                /// the side to which it goes.
                 Leave fn leave(surface: &Surface, child: &Child) -> Ray
                     = stage5_recursion::leave;
                 |(surface, child): (Surface, Child)| -> Ray { F::leave(surface, child) }
             }
 
-            /// Stage 6: distributed ray tracing.
+            /// Stage 6: distributed ray tracing. Each function gives one answer per query, in the same order,
+            /// and panics if the student's function does. Random numbers come as arguments, `0 <= u < 1`.
             6 trait Distribution {
-                /// Where in its cell a sample lies.
+                /// The position of a stratified sample in the unit square, `0 <= x < 1` and `0 <= y < 1`:
+                /// `(cell + u) / grid`.
                 Jittered fn jittered(stratum: &Stratum) -> Vec2
                     = stage6_distribution::jittered;
                 |q: Stratum| -> Vec2 { F::jittered(q) }
-                /// Where in or around its pixel a sample lies.
+                /// The position of a sample in pixels, relative to the upper left corner of its pixel. With
+                /// the Gaussian sampler it may lie outside of the pixel, up to `FILTER_RADIUS` from its
+                /// centre along x and y.
                 PixelPosition fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2
                     = stage6_distribution::pixel_position;
                 |(sampler, stratum): (Sampler, Stratum)| -> Vec2 { F::pixel_position(*sampler, stratum) }
-                /// The weight of a sample at this distance from the centre of its pixel.
+                /// The weight of a sample at `offset` from the centre of its pixel, in pixels; 0 beyond
+                /// `FILTER_RADIUS` along x or y.
                 GaussianWeight fn gaussian_weight(offset: Vec2) -> f32
                     = stage6_distribution::gaussian_weight;
                 |offset: Vec2| -> f32 { F::gaussian_weight(*offset) }
-                /// The colour of a pixel from its samples.
+                /// The colour of a pixel in linear light: the weighted mean of its samples, black if the sum
+                /// of the weights is 0.
                 Develop fn develop(samples: &[WeightedColor]) -> Vec3
                     = stage6_distribution::develop;
                 |samples: Vec<WeightedColor>| -> Vec3 { F::develop(samples) }
-                /// A place on a disk of radius 1.
+                /// A uniformly distributed point of the disk of radius 1 around the origin.
                 OnDisk fn on_disk(u: Vec2) -> Vec2
                     = stage6_distribution::on_disk;
                 |u: Vec2| -> Vec2 { F::on_disk(*u) }
-                /// The ray from a place on the lens.
+                /// The ray, of unit direction, that leaves the lens at `on_lens` (a point of the disk of
+                /// radius 1) and meets the pinhole ray on the focal plane.
                 LensRay fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray
                     = stage6_distribution::lens_ray;
                 |q: LensQuery| -> Ray { F::lens_ray(&q.camera, &q.pinhole, &q.lens, q.on_lens) }
-                /// A point of a rectangular lamp.
+                /// A uniformly distributed point of a rectangle, in world units.
                 OnRectangle fn on_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3
                     = stage6_distribution::on_rectangle;
                 |q: RectangleQuery| -> Vec3 { F::on_rectangle(q.corner, q.edges, q.u) }
-                /// A point of a round flat lamp.
+                /// A uniformly distributed point of a disk, in world units.
                 OnLampDisk fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3
                     = stage6_distribution::on_lamp_disk;
                 |(disk, u): (Disk, Vec2)| -> Vec3 { F::on_lamp_disk(disk, *u) }
-                /// A direction to a ball.
+                /// A unit direction from `from` to a sphere, uniformly distributed over the solid angle of
+                /// the sphere; from inside the sphere, over all directions.
                 TowardBall fn toward_ball(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3
                     = stage6_distribution::toward_ball;
                 |q: BallQuery| -> Vec3 { F::toward_ball(&q.ball, q.from, q.u) }
-                /// A direction off or through a rough surface.
+                /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
+                /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
                 Gloss fn gloss(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
                     = stage6_distribution::gloss;
                 |q: GlossQuery| -> Vec3 { F::gloss(q.ideal, q.normal, q.roughness, q.u) }
-                /// The slot in time of the cell in column x and row y.
+                /// The time slot, `1..=16`, of the cell in column `x` and row `y`, by the table of the
+                /// lecture.
                 TemporalSlot fn temporal_slot(x: u32, y: u32) -> u32
                     = stage6_distribution::temporal_slot;
                 |(x, y): (u32, u32)| -> u32 { F::temporal_slot(*x, *y) }
-                /// A moment while the shutter is open.
+                /// The time at position `u` of slot `slot` (from 1) of `slots` equal slots of the shutter's
+                /// interval; it is in `[shutter.open, shutter.close]`.
                 TimeInShutter fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32
                     = stage6_distribution::time_in_shutter;
                 |q: TimeQuery| -> f32 { F::time_in_shutter(&q.shutter, q.slot, q.slots, q.u) }
-                /// Where a point is that moves from the first to the second in time 0 to 1.
+                /// Linear interpolation (`lerp`) of a point from `start` at time 0 to `end` at time 1, exact
+                /// at both ends.
                 Between fn between(start: Vec3, end: Vec3, time: f32) -> Vec3
                     = stage6_distribution::between;
                 |(start, end, time): (Vec3, Vec3, f32)| -> Vec3 { F::between(*start, *end, *time) }
-                /// The box around all that moves from the first box to the second.
+                /// The box around everything that moves linearly from box `start` to box `end` (motion
+                /// bounds).
                 Sweep fn sweep(start: &Aabb, end: &Aabb) -> Aabb
                     = stage6_distribution::sweep;
                 |(start, end): (Aabb, Aabb)| -> Aabb { F::sweep(start, end) }
             }
 
-            /// Stage 7: only what the scene calls for.
+            /// Stage 7: the effects analysis, which computes only what a scene needs. Each function gives one
+            /// answer per query, in the same order, and panics if the student's function does.
             7 trait Economy {
-                /// What a light takes.
+                /// What a light needs: the number of samples, and whether it is an area light and casts
+                /// shadows. A light that emits nothing needs nothing.
                 LightEffects fn light_effects(light: &Light, quality: &Quality) -> LightEffects
                     = stage7_effects::light_effects;
                 |q: LightQuery| -> LightEffects { F::light_effects(&q.light, &q.quality) }
-                /// What a material takes.
+                /// What a material needs: the lights that can make it brighter, secondary rays, glossy
+                /// reflection and images.
                 MaterialEffects fn material_effects(material: &Material, lights: &[Light], quality: &Quality) -> MaterialEffects
                     = stage7_effects::material_effects;
                 |q: MaterialQuery| -> MaterialEffects { F::material_effects(&q.material, &q.lights, &q.quality) }
-                /// What a scene takes.
+                /// What a scene needs. Materials and meshes that no shape of the scene has need nothing.
                 Effects fn effects(scene: &Scene) -> Effects
                     = stage7_effects::effects;
                 |q: Scene| -> Effects { F::effects(q) }
-                /// The most rays that a scene can take.
+                /// An upper bound of the number of rays of each kind that a scene can need; `u64::MAX` where
+                /// it does not fit.
                 MostRays fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts
                     = stage7_effects::most_rays;
                 |q: BoundQuery| -> RayCounts { F::most_rays(&q.scene, &q.effects) }
-                /// The rays that hits send on.
+                /// The exact number of rays of each kind that these hits need, for the given effects and
+                /// quality.
                 RaysOfHits fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts
                     = stage7_effects::rays_of_hits;
                 |q: HitsQuery| -> RayCounts { F::rays_of_hits(&q.hits, &q.effects, &q.quality) }
-                /// How many samples it takes for an error: `(standard deviation of one, error of the mean)`.
+                /// The smallest number of samples, at least 1, with `deviation / √n <= error`, where
+                /// `deviation` is the standard deviation of one sample; `u32::MAX` if no number is enough.
                 SamplesForError fn samples_for_error(deviation: f32, error: f32) -> u32
                     = stage7_effects::samples_for_error;
                 |(deviation, error): (f32, f32)| -> u32 { F::samples_for_error(*deviation, *error) }
-                /// The column or row of an image that stands for this one.
+                /// The column or row, `0 <= texel < size`, that an image shows at `index`, which may lie
+                /// outside of the image.
                 Texel fn texel(index: i64, size: u32, wrap: Wrap) -> u32
                     = stage7_effects::texel;
                 |q: TexelQuery| -> u32 { F::texel(q.index, q.size, q.wrap) }
-                /// The colour of an image.
+                /// The colour of an image at `uv` in linear light, by bilinear interpolation. `(0, 0)` is the
+                /// lower left corner of the image and `(1, 1)` the upper right one; NaN and infinity count as
+                /// 0.
                 TextureColor fn texture_color(texture: &Texture, uv: Vec2) -> Vec3
                     = stage7_effects::texture_color;
                 |q: TextureQuery| -> Vec3 { F::texture_color(&q.texture, q.uv) }
             }
 
-            /// Stage 8: every shape in a space of its own.
+            /// Stage 8: the scene graph, with every shape in a space of its own. Each function gives one
+            /// answer per query, in the same order, and panics if the student's function does.
             8 trait SceneGraph {
-                /// The ray in the space of an object.
+                /// The ray in the space of an object, with the same `t` for every point as in the world.
                 RayToObject fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray
                     = stage8_scene_graph::ray_to_object;
                 |q: ObjectRayQuery| -> Ray { F::ray_to_object(&q.ray, &q.to_object) }
-                /// The normal of an object in the world.
+                /// The unit normal in the world for a normal in the space of an object, by the transpose of
+                /// `to_object`.
                 NormalToWorld fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3
                     = stage8_scene_graph::normal_to_world;
                 |q: NormalQuery| -> Vec3 { F::normal_to_world(q.normal, &q.to_object) }
-                /// The way of a node to the world and back, for the transforms from the root down.
+                /// The transforms of a node to the world and back, for the transforms of its ancestors and
+                /// itself from the root down; `None` if one of them has no inverse.
                 Place fn placement(path: &[Affine3A]) -> Option<Placement>
                     = stage8_scene_graph::placement;
                 |path: Vec<Affine3A>| -> Option<Placement> { F::placement(path) }
-                /// The box around a transformed box.
+                /// A box in the world around the transformed box, rounded outwards. The empty box remains
+                /// empty.
                 BoundsToWorld fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb
                     = stage8_scene_graph::bounds_to_world;
                 |q: BoundsQuery| -> Aabb { F::bounds_to_world(&q.to_world, &q.bounds) }
-                /// A ball around points.
+                /// A bounding sphere of one or more points, with at most twice the smallest possible radius.
                 BoundingBall fn bounding_ball(points: &[Vec3]) -> Sphere
                     = stage8_scene_graph::bounding_ball;
                 |points: Vec<Vec3>| -> Sphere { F::bounding_ball(points) }
-                /// Where a ray enters a ball.
+                /// The `t`, in `[t_min, t_max]`, at which a ray enters a bounding sphere: `t_min` if it
+                /// starts inside; `None` if it misses.
                 EnterBall fn enter_ball(ray: &Ray, ball: &Sphere) -> Option<f32>
                     = stage8_scene_graph::enter_ball;
                 |q: BallEntryQuery| -> Option<f32> { F::enter_ball(&q.ray, &q.ball) }
-                /// The closest hit in a scene graph.
+                /// The closest hit in a scene graph, with the given optimisations; `None` if nothing is hit.
+                /// Of two hits at the same `t` the smaller primitive number wins.
                 GraphHit fn closest_hit_in_graph[P: Probe](graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings) -> Option<PrimitiveHit>
                     = stage8_scene_graph::closest_hit_in_graph;
                 |q: GraphQuery| -> GraphAnswer {
@@ -371,83 +452,100 @@ macro_rules! student_functions {
                     let hit = F::closest_hit_in_graph(&q.graph, &mut probe, &q.ray, q.savings);
                     GraphAnswer { search: probe.answer(hit), asked: probe.asked }
                 }
-                /// Ray against box.
+                /// The nearest hit with the surface of a solid box in the range of the ray, with the outward
+                /// normal; `None` if there is none.
                 Cuboid fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit>
                     = stage8_solids::cuboid;
                 |q: SolidQuery<Cuboid>| -> Option<SolidHit> { F::cuboid(&q.ray, &q.solid) }
-                /// Ray against closed cylinder.
+                /// The nearest hit with the surface of a closed cylinder in the range of the ray, with the
+                /// outward normal; `None` if there is none.
                 Cylinder fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit>
                     = stage8_solids::cylinder;
                 |q: SolidQuery<Cylinder>| -> Option<SolidHit> { F::cylinder(&q.ray, &q.solid) }
-                /// Ray against closed cone.
+                /// The nearest hit with the surface of a closed cone in the range of the ray, with the
+                /// outward normal; `None` if there is none.
                 Cone fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit>
                     = stage8_solids::cone;
                 |q: SolidQuery<Cone>| -> Option<SolidHit> { F::cone(&q.ray, &q.solid) }
-                /// Ray against disk.
+                /// The hit with a flat disk, from either side, in the range of the ray; `None` if there is
+                /// none. The rim belongs to it.
                 Disk fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit>
                     = stage8_solids::disk;
                 |q: SolidQuery<Disk>| -> Option<SolidHit> { F::disk(&q.ray, &q.solid) }
-                /// Ray against convex polygon.
+                /// The hit with a flat convex polygon, from either side, in the range of the ray; `None` if
+                /// there is none. Its edges and corners belong to it.
                 Polygon fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit>
                     = stage8_solids::polygon;
                 |q: SolidQuery<Polygon>| -> Option<SolidHit> { F::polygon(&q.ray, &q.solid) }
-                /// A point of a Bézier patch.
+                /// The point of a bicubic Bézier patch at the parameters `uv`, `0..=1` each, by de
+                /// Casteljau's algorithm.
                 BezierPoint fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3
                     = stage8_surfaces::bezier_point;
                 |q: PatchQuery| -> Vec3 { F::bezier_point(&q.patch, q.uv) }
-                /// A mesh with four triangles for each.
+                /// A mesh after one step of Loop subdivision, with four triangles for each one (Loop, "Smooth
+                /// Subdivision Surfaces Based on Triangles", 1987).
                 LoopSubdivide fn loop_subdivide(mesh: &Mesh) -> Mesh
                     = stage8_surfaces::loop_subdivide;
                 |q: Mesh| -> Mesh { F::loop_subdivide(q) }
             }
 
-            /// Stage 9: cells of space.
+            /// Stage 9: partitions of space and coherent rays. Each function gives one answer per query, in
+            /// the same order, and panics if the student's function does.
             9 trait Partitions {
-                /// Where a ray is in a cell, in double precision.
+                /// The interval of `t` in which a ray is in a closed cell, in double precision and within the
+                /// ray's range, with room for rounding errors; `None` if it misses.
                 CellSpan fn cell_span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)>
                     = stage9_cells::span;
                 |q: SlabQuery| -> Option<(f64, f64)> { F::cell_span(&q.ray, &Cell::new(&q.bounds)) }
-                /// How many cells a grid should have along each axis.
+                /// The number of cells of a grid along each axis, `1..=256`, which makes about
+                /// `density · n_primitives` cells that are nearly cubes.
                 GridResolution fn grid_resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3
                     = stage9_grid::resolution;
                 |q: ResolutionQuery| -> UVec3 { F::grid_resolution(&q.bounds, q.n_primitives, q.density) }
-                /// A grid over boxes.
+                /// A uniform grid over primitives with these boxes. Each primitive is listed in every cell
+                /// that its box touches.
                 GridBuild fn grid_build(bounds: &[Aabb], resolution: UVec3) -> Grid
                     = stage9_grid::build;
                 |q: GridQuery| -> Grid { F::grid_build(&q.bounds, q.resolution) }
-                /// The closest hit in a grid.
+                /// The closest hit in a uniform grid, from cell to cell along the ray; `None` if nothing is
+                /// hit.
                 GridSearch fn grid_search[P: Cells](grid: &Grid, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_grid::closest_hit;
                 |q: CellsQuery<Grid>| -> CellsAnswer { look(q, |probe| F::grid_search(&q.cells, probe, &q.ray)) }
-                /// An octree over boxes.
+                /// An octree over primitives with these boxes: nodes with more than `leaf_size` primitives
+                /// are divided where that helps, down to `max_depth`.
                 OctreeBuild fn octree_build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree
                     = stage9_octree::build;
                 |q: OctreeQuery| -> Octree { F::octree_build(&q.bounds, q.leaf_size, q.max_depth) }
-                /// The closest hit in an octree, from cell to cell.
+                /// The closest hit in an octree, from leaf to leaf along the ray; `None` if nothing is hit.
                 OctreeByCells fn octree_by_cells[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit_by_cells;
                 |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_by_cells(&q.cells, probe, &q.ray)) }
-                /// The closest hit in an octree, from the root down.
+                /// The closest hit in an octree, from the root down and nearest octant first; `None` if
+                /// nothing is hit.
                 OctreeSearch fn octree_search[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit;
                 |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_search(&q.cells, probe, &q.ray)) }
-                /// A kd-tree over boxes.
+                /// A kd-tree over primitives with these boxes, by the given heuristics; nodes with more than
+                /// `leaf_size` primitives are divided.
                 KdBuild fn kd_build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree
                     = stage9_kd_tree::build;
                 |q: KdQuery| -> KdTree { F::kd_build(&q.bounds, &q.heuristics, q.leaf_size) }
-                /// The closest hit in a kd-tree.
+                /// The closest hit in a kd-tree, nearer side of each plane first; `None` if nothing is hit.
                 KdSearch fn kd_search[P: Cells](tree: &KdTree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_kd_tree::closest_hit;
                 |q: CellsQuery<KdTree>| -> CellsAnswer { look(q, |probe| F::kd_search(&q.cells, probe, &q.ray)) }
-                /// A BSP tree over hulls.
+                /// A BSP tree over the hulls of primitives: nodes with more than `leaf_size` primitives are
+                /// divided where that helps, down to `max_depth`.
                 BspBuild fn bsp_build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp
                     = stage9_bsp::build;
                 |q: BspQuery| -> Bsp { F::bsp_build(&q.hulls, q.leaf_size, q.max_depth) }
-                /// The closest hit in a BSP tree.
+                /// The closest hit in a BSP tree, nearer side of each plane first; `None` if nothing is hit.
                 BspSearch fn bsp_search[P: Cells](bsp: &Bsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_bsp::closest_hit;
                 |q: CellsQuery<Bsp>| -> CellsAnswer { look(q, |probe| F::bsp_search(&q.cells, probe, &q.ray)) }
-                /// The closest hit, knowing what the ray before hit.
+                /// The closest hit by `search`, after a test of the primitive `last` that the previous ray
+                /// hit; `None` if nothing is hit. The result is the same as that of `search` alone.
                 CachedSearch fn cached_search[P: Cells, S: FnOnce(&mut P, &Ray) -> Option<PrimitiveHit>](
                     last: Option<u32>, probe: &mut P, ray: &Ray, search: S
                 ) -> Option<PrimitiveHit>
@@ -458,7 +556,8 @@ macro_rules! student_functions {
                     let hit = F::cached_search(q.last, &mut probe, &q.ray, search);
                     CellsAnswer { hit, ..probe.answer }
                 }
-                /// The closest hits of several rays.
+                /// The closest hit of each ray, by a traversal of the hierarchy with several rays at once;
+                /// `None` for a ray that hits nothing.
                 PacketSearch fn packet_search[P: Probe](bvh: &Bvh, probe: &mut P, rays: &[Ray]) -> Vec<Option<PrimitiveHit>>
                     = stage9_coherence::closest_hit_packet;
                 |q: PacketQuery| -> PacketAnswer {
@@ -468,33 +567,42 @@ macro_rules! student_functions {
                 }
             }
 
-            /// Stage 10: answers that survive rounding.
+            /// Stage 10: numerical stability. Each function gives one answer per query, in the same order,
+            /// and panics if the student's function does.
             10 trait Stability {
-                /// The roots of `a t² + b t + c`, for `[a, b, c]`.
+                /// The real roots of `a t² + b t + c = 0`, the smaller one first; a double root is there
+                /// twice. `None` if there is none, if `a` is 0, or if a coefficient is NaN or infinite.
                 StableRoots fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]>
                     = stage10_stability::stable_roots;
                 |[a, b, c]: [f32; 3]| -> Option<[f32; 2]> { F::stable_roots(*a, *b, *c) }
-                /// Ray against triangle, without leaks between neighbours.
+                /// The hit with a triangle in the range of the ray, without gaps between triangles that share
+                /// an edge or a corner; `None` if there is none.
                 Watertight fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage10_stability::watertight;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::watertight(&q.ray, &q.triangle) }
-                /// Ray against box, without a miss of what is met.
+                /// The `t` at which a ray enters and leaves a closed box, as in stage 3, but never `None` for
+                /// a box that the ray meets exactly.
                 ConservativeSlab fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage10_stability::conservative_slab;
                 |q: SlabQuery| -> Option<(f32, f32)> { F::conservative_slab(&q.ray, q.ray.dir.recip(), &q.bounds) }
-                /// Where a ray starts that leaves a surface.
+                /// The origin of a ray that leaves a surface whose true position is within `error` of `point`
+                /// along each axis: off the surface, on the side to which `direction` goes (the ray offset
+                /// that avoids shadow acne).
                 OffsetOrigin fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3
                     = stage10_stability::offset_origin;
                 |q: OffsetQuery| -> Vec3 { F::offset_origin(q.point, q.error, q.normal, q.direction) }
-                /// The unit vector along another, if it has a direction.
+                /// The unit vector in the direction of `v`, however short or long `v` is; `None` if `v` is 0,
+                /// NaN or infinite.
                 SafeNormalize fn safe_normalize(v: Vec3) -> Option<Vec3>
                     = stage10_stability::safe_normalize;
                 |v: Vec3| -> Option<Vec3> { F::safe_normalize(*v) }
-                /// Ray against triangle, every number in double precision.
+                /// The hit with a triangle in the range of the ray, by Cramer's rule in double precision;
+                /// only the results are rounded. `None` if there is none.
                 TriangleInDouble fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage10_stability::triangle_in_double;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_in_double(&q.ray, &q.triangle) }
-                /// Ray against sphere, every number in double precision.
+                /// The `t` of the nearest hit with a sphere in the range of the ray, in double precision and
+                /// rounded once; `None` if there is none. A sphere without a radius above 0 is never hit.
                 SphereInDouble fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32>
                     = stage10_stability::sphere_in_double;
                 |q: SphereQuery| -> Option<f32> { F::sphere_in_double(&q.ray, q.sphere.center, q.sphere.radius) }

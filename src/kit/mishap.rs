@@ -1,4 +1,4 @@
-//! When student code does not come back with an answer.
+//! The reasons why student code does not return an answer.
 
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
@@ -6,36 +6,36 @@ use std::fmt;
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Once;
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mishap {
-    /// The code still says `todo!`.
+    /// The code reached a `todo!`.
     NotWritten {
-        /// What is to be written.
+        /// The text of the `todo!`: what is to be written.
         task: String,
-        /// `file:line`.
+        /// The place of the `todo!` as `file:line`.
         place: String,
     },
     /// The code panicked.
     Panicked {
-        /// With these words.
+        /// The message of the panic.
         message: String,
-        /// At this `file:line`.
+        /// The place of the panic as `file:line`.
         place: String,
     },
-    /// The process of the code ended.
+    /// The process that runs the code ended.
     Crashed {
-        /// How, in words.
+        /// A sentence that says how it ended.
         how: String,
     },
-    /// The code did not come back.
+    /// The code did not return in time.
     TimedOut {
-        /// After this many seconds.
+        /// The time after which it was stopped, in seconds.
         seconds: u64,
     },
-    /// The answer was not one to this question.
+    /// The answer does not fit the request: it is of another kind, or has another length.
     Nonsense {
-        /// What came.
+        /// The beginning of the answer, or a sentence that says what is wrong.
         what: String,
     },
 }
@@ -56,12 +56,17 @@ impl fmt::Display for Mishap {
 
 impl std::error::Error for Mishap {}
 
-/// Unwinds with a mishap: what a transport does when it cannot answer.
+/// Unwinds with a mishap, which [`catch`] returns: what a transport does if there is no answer.
+///
+/// # Panics
+///
+/// Always.
 pub fn unwind(mishap: Mishap) -> ! {
     panic::resume_unwind(Box::new(mishap))
 }
 
-/// Says how the answer begins, and writes no more of it than that: it may be very long, on purpose.
+/// Unwinds with [`Mishap::Nonsense`] and the first 200 characters of the answer; a hostile answer may be very
+/// long.
 pub(super) fn wrong_answer(answer: &dyn fmt::Debug) -> ! {
     let mut beginning = Beginning { words: String::new(), room: 200 };
     // It fails when there is no more room.
@@ -89,7 +94,12 @@ thread_local! {
     static CAUGHT: RefCell<Option<Option<(String, String)>>> = const { RefCell::new(None) };
 }
 
-/// Runs `work` and turns its panic into a [`Mishap`], without a word on the terminal.
+/// Runs `work` and returns its result. A panic of `work` on this thread prints nothing.
+///
+/// # Errors
+///
+/// If `work` panics: the [`Mishap`] with which it unwound, [`Mishap::NotWritten`] for a `todo!`, and
+/// [`Mishap::Panicked`] otherwise.
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Mishap> {
     install_hook();
     let outer = CAUGHT.replace(Some(None));

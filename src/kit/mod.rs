@@ -1,8 +1,8 @@
-//! The door: the complete list of what students write, each with plain data in and plain data out.
+//! The complete list of the functions that students write, each with plain data as input and output.
 //!
-//! Tests, renderer and grader talk to a `&dyn Kit` and never know whose code answers, nor whether it is linked into
-//! the same process or sits in a worker at the other end of a pipe. Every call takes a batch, so that a check with
-//! thousands of cases crosses the pipe once.
+//! Tests, renderer and grader call a `&dyn Kit`. It makes no difference to them whose code answers, or
+//! whether that code is linked into the same process or runs in a worker at the other end of a pipe. Every
+//! call takes a batch of queries, so that a check with thousands of cases needs one message to the worker.
 
 mod adapters;
 mod distribution;
@@ -63,36 +63,37 @@ use crate::film::Film;
 use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// What a picture shows.
+/// What the pixels of a picture show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum View {
-    /// Light.
+    /// The light that arrives at the camera, in linear radiance.
     #[default]
     Shaded,
-    /// The normals of the surfaces, as colours.
+    /// The shading normals of the surfaces as colours, `0.5 * normal + 0.5`; the background where there is no
+    /// surface.
     Normals,
-    /// What a pixel cost: node visits, box tests and primitive tests of all its rays, a sample, in place of red, green and
-    /// blue.
+    /// The cost of a pixel: node visits, box tests and primitive tests of all its rays, per sample, in place
+    /// of red, green and blue.
     Work,
 }
 
-/// A whole frame to render where the student's code lives.
+/// A request to render a whole frame in the process that contains the student's code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RenderJob {
-    /// What to render; its own film size and quality apply.
+    /// The scene, with the size of the film and the quality of the picture.
     pub scene: Scene,
-    /// What to show of it.
+    /// What the pixels show.
     pub view: View,
-    /// Picks the random numbers.
+    /// The seed of the random numbers: equal seeds give equal pictures.
     pub seed: u64,
-    /// 0 takes one thread a core.
+    /// The number of threads; 0 takes one per core.
     pub threads: usize,
     /// Whether work is counted. Rays and pixels are the same either way.
     pub count: bool,
 }
 
 impl RenderJob {
-    /// Whether a picture has the size that was asked for.
+    /// Whether a picture has the size of the job's film.
     fn fits(&self, film: &Film) -> bool {
         let asked = &self.scene.film;
         let pixels = u64::from(asked.width) * u64::from(asked.height);
@@ -100,36 +101,37 @@ impl RenderJob {
     }
 }
 
-/// How large a structure is.
+/// The size of an acceleration structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StructureSize {
-    /// Nodes or cells.
+    /// The number of nodes, or of cells of a grid.
     pub nodes: u64,
-    /// Nodes on the longest way down, the root counted.
+    /// The number of nodes on the longest path from the root to a leaf, both counted; 1 for a grid.
     pub levels: u64,
-    /// How often primitives are listed, all together.
+    /// The number of references to primitives in all leaves together.
     pub references: u64,
-    /// Memory of nodes and lists.
+    /// The memory of nodes and lists, in bytes.
     pub bytes: u64,
 }
 
-/// A rendered frame and what it took.
+/// A rendered frame and its cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rendering {
     /// The picture in linear light.
     pub film: Film,
-    /// Work by kind; zero when the job did not ask for it.
+    /// Work by kind; zero if the job did not ask for counts.
     pub counts: Counts,
-    /// Primitives that the frame was made of.
+    /// The number of primitives in the frame, infinite planes included.
     pub primitives: u64,
-    /// How large the structure over the scene is, if one was built; parts that stand in several places have their own.
+    /// The size of the structure over the scene; `None` if there is none, because every primitive is tested.
+    /// Shared meshes have structures of their own, which are not included.
     pub structure: Option<StructureSize>,
-    /// Bytes of the structures of all parts together.
+    /// The memory of the structures of all shared meshes together, in bytes.
     pub bytes_of_parts: u64,
-    /// Seconds to build the structure.
+    /// The time to prepare the frame and build its structures, in seconds.
     pub build_seconds: f64,
-    /// Seconds to render the pixels.
+    /// The time to render the pixels, in seconds.
     pub render_seconds: f64,
-    /// What the picture lacks and why, one sentence each.
+    /// What is missing in the picture and why, one sentence each.
     pub notes: Vec<String>,
 }

@@ -1,5 +1,5 @@
-//! Stage 9 in plain data. As in stage 3 a search is graded against a table of answers; here the cells themselves are
-//! geometry, so the ray counts as well.
+//! Stage 9, partitions of space: queries and answers. As in stage 3 a search is graded against a table of
+//! answers; here the cells themselves are geometry, so the ray matters as well.
 
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, PrimitiveHit, Probe};
@@ -10,87 +10,87 @@ use crate::ray::Ray;
 use glam::{UVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How fine shall a grid be?
+/// Asks how many cells a grid should have.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResolutionQuery {
-    /// The box to be divided.
+    /// The box that the cells divide, in world units.
     pub bounds: Aabb,
-    /// How many primitives lie in it.
+    /// The number of primitives in the box.
     pub n_primitives: usize,
-    /// How many cells there shall be for each.
+    /// The desired number of cells per primitive, above 0.
     pub density: f32,
 }
 
-/// Put these boxes into a grid.
+/// Asks which grid is built over these boxes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GridQuery {
-    /// One box a primitive.
+    /// One box per primitive, in world units.
     pub bounds: Vec<Aabb>,
-    /// How many cells along each axis.
+    /// The number of cells along each axis, at least 1 each.
     pub resolution: UVec3,
 }
 
-/// Build an octree over these boxes.
+/// Asks which octree is built over these boxes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OctreeQuery {
-    /// One box a primitive.
+    /// One box per primitive, in world units.
     pub bounds: Vec<Aabb>,
-    /// So few primitives are not divided.
+    /// A node with at most this number of primitives is not divided.
     pub leaf_size: usize,
-    /// The depth below which nothing is divided; the root is at depth 0.
+    /// The depth at which nodes are not divided any more; the root has depth 0.
     pub max_depth: usize,
 }
 
-/// Build a kd-tree over these boxes.
+/// Asks which kd-tree is built over these boxes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct KdQuery {
-    /// One box a primitive.
+    /// One box per primitive, in world units.
     pub bounds: Vec<Aabb>,
-    /// By which rules.
+    /// The heuristics that the builder follows.
     pub heuristics: KdHeuristics,
-    /// So few primitives are not divided.
+    /// A node with at most this number of primitives is not divided.
     pub leaf_size: usize,
 }
 
-/// Build a BSP tree over these hulls.
+/// Asks which BSP tree is built over these hulls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BspQuery {
-    /// For each primitive the corners of a polygon, or the eight of a box.
+    /// For each primitive the corners of a polygon or the eight corners of a box, in world units.
     pub hulls: Vec<Vec<Vec3>>,
-    /// So few primitives are not divided.
+    /// A node with at most this number of primitives is not divided.
     pub leaf_size: usize,
-    /// The depth below which nothing is divided; the root is at depth 0.
+    /// The depth at which nodes are not divided any more; the root has depth 0.
     pub max_depth: usize,
 }
 
-/// Find the closest hit in `cells`, given the answers to every question that the search may ask.
+/// Asks for the closest hit in `cells`, with a table that has the answer to every primitive test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellsQuery<S> {
-    /// What is to be searched.
+    /// The grid or the tree that is searched.
     pub cells: S,
-    /// The ray.
+    /// The ray, in world units; its range says which hits count.
     pub ray: Ray,
     /// For each primitive the `t` of its nearest hit; `inf` if there is none.
     pub hits: Vec<f32>,
 }
 
-/// What a search of cells found, and what it did.
+/// The result of a search of cells, and the calls that it made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CellsAnswer {
-    /// The closest hit, if any.
+    /// The closest hit; `None` if nothing is hit.
     pub hit: Option<PrimitiveHit>,
-    /// The nodes or cells that were visited, in order.
+    /// The numbers of the nodes or cells that were visited, in order.
     pub visits: Vec<u32>,
-    /// The primitives that were tested, in order.
+    /// The numbers of the primitives that were tested, in order.
     pub tests: Vec<u32>,
 }
 
-/// Find the closest hit, knowing what the ray before met first.
+/// Asks for the closest hit of a ray, given the first hit of the previous ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CachedQuery {
-    /// The primitive that the ray before met first.
+    /// The number of the primitive that the previous ray hit first; `None` if it hit nothing.
     pub last: Option<u32>,
-    /// The ray.
+    /// The ray; its range says which hits count, and its origin and direction play no role.
     pub ray: Ray,
     /// For each primitive the `t` of its nearest hit; `inf` if there is none.
     pub hits: Vec<f32>,
@@ -99,8 +99,12 @@ pub struct CachedQuery {
 }
 
 impl CachedQuery {
-    /// The search that is made faster: it tests all whose boxes are entered before the ray ends, and visits a box for
-    /// each.
+    /// The search that the cache speeds up: it visits and tests every primitive whose box is entered before
+    /// `ray.t_max`, in ascending order, and returns the closest hit.
+    ///
+    /// # Panics
+    ///
+    /// If `entries` is shorter than `hits`.
     pub fn search(&self, probe: &mut CellsProbe<'_>, ray: &Ray) -> Option<PrimitiveHit> {
         let near =
             (0..self.hits.len() as u32).filter(|&primitive| self.entries[primitive as usize] < ray.t_max);
@@ -112,40 +116,45 @@ impl CachedQuery {
     }
 }
 
-/// Find the closest hits of several rays in one go.
+/// Asks for the closest hits of several rays at once.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PacketQuery {
-    /// The hierarchy to search.
+    /// The hierarchy that is searched.
     pub bvh: Bvh,
-    /// The rays. Where they start and go tells them apart; the tables answer.
+    /// The rays. The probe tells them apart by `origin`, `dir` and `t_min`; all answers come from the tables.
     pub rays: Vec<Ray>,
-    /// The answers, a table a ray.
+    /// The answers: one table per ray, in the same order.
     pub tables: Vec<Table>,
 }
 
-/// What a packet found and what it asked.
+/// The result of a search with a packet of rays, and the calls that it made.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PacketAnswer {
-    /// The closest hit of each ray.
+    /// The closest hit of each ray; `None` if it hits nothing.
     pub hits: Vec<Option<PrimitiveHit>>,
-    /// The nodes that were opened, in order.
+    /// The indices of the nodes that were opened, in order.
     pub opened: Vec<u32>,
-    /// Nodes, boxes and primitives that were asked about.
+    /// The number of node visits, box tests and primitive tests.
     pub counts: Counts,
 }
 
-/// Answers from a table of hits, and keeps what was asked.
+/// Answers a search of cells from a table of hits, and records its calls.
+///
+/// # Panics
+///
+/// `visit` panics after 2²⁰ visits, and `hit` if the table has no such primitive.
 pub struct CellsProbe<'a> {
     hits: &'a [f32],
-    /// The answer so far.
+    /// The calls so far; its `hit` remains `None`.
     pub answer: CellsAnswer,
 }
 
-/// A search that asks more often than this is lost in a loop.
+/// A search with more visits does not end by itself.
 const MOST_VISITS: usize = 1 << 20;
 
 impl<'a> CellsProbe<'a> {
-    /// A probe that answers from `hits`.
+    /// A probe that answers from `hits`: for each primitive the `t` of its nearest hit, `inf` if there is
+    /// none.
     pub fn new(hits: &'a [f32]) -> Self {
         CellsProbe { hits, answer: CellsAnswer::default() }
     }
@@ -168,15 +177,21 @@ impl Cells for CellsProbe<'_> {
     }
 }
 
-/// Answers from the tables of several rays, which it tells apart by where they start and go.
+/// Answers a packet search from the tables of several rays, and counts its calls. A ray is recognised by its
+/// `origin`, `dir` and `t_min`.
+///
+/// # Panics
+///
+/// `enter` and `hit` panic for a ray that is not in the packet, and every call for a node or primitive that
+/// does not exist.
 pub struct PacketProbe<'a> {
     query: &'a PacketQuery,
-    /// The answer so far.
+    /// The calls so far; its `hits` remain empty.
     pub answer: PacketAnswer,
 }
 
 impl<'a> PacketProbe<'a> {
-    /// A probe that answers for `query`.
+    /// A probe that answers from the hierarchy and the tables of `query`.
     pub fn new(query: &'a PacketQuery) -> Self {
         PacketProbe { query, answer: PacketAnswer::default() }
     }

@@ -1,77 +1,78 @@
-//! Stage 5 in plain data.
+//! Stage 5, reflection and refraction: queries and answers.
 
 use crate::material::Material;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Light that crosses from a medium of index `n1` into one of index `n2`.
+/// Asks in which direction light is refracted that crosses from a medium of index `n1` into one of
+/// index `n2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefractQuery {
-    /// Unit direction of the ray.
+    /// The direction of the ray, of unit length.
     pub dir: Vec3,
-    /// Unit normal on the side that the ray comes from.
+    /// The unit normal on the side that the ray comes from.
     pub normal: Vec3,
-    /// Index of refraction of the medium that the ray comes from.
+    /// The index of refraction of the medium that the ray comes from, above 0.
     pub n1: f32,
-    /// Index of refraction of the medium beyond.
+    /// The index of refraction of the medium behind the surface, above 0.
     pub n2: f32,
 }
 
-/// How much of the light is mirrored?
+/// Asks which fraction of the light is reflected (Fresnel reflectance).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FresnelQuery {
-    /// Cosine between the normal and the way back along the ray, `0..=1`.
+    /// The cosine of the angle of incidence, between the normal and the reversed ray, `0..=1`.
     pub cos_theta: f32,
-    /// Index of refraction of the medium that the ray comes from.
+    /// The index of refraction of the medium that the ray comes from, above 0.
     pub n1: f32,
-    /// Index of refraction of the medium beyond.
+    /// The index of refraction of the medium behind the surface, above 0.
     pub n2: f32,
 }
 
-/// When a path ends.
+/// The limits at which a path ends.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
-    /// How often a ray may be mirrored or refracted on its way from the camera.
+    /// The greatest number of reflections and refractions on a path from the camera.
     pub max_depth: u32,
-    /// A ray whose weight is below this in every channel is not traced.
+    /// The smallest weight: a ray whose weight is below it in every channel is not traced.
     pub min_contribution: f32,
 }
 
-/// Which way a ray goes on.
+/// How a secondary ray leaves a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Bounce {
-    /// Off the surface.
+    /// The ray is reflected.
     Reflection,
-    /// Through it.
+    /// The ray is refracted through the surface.
     Transmission,
 }
 
-/// A ray that goes on from a surface.
+/// A secondary ray that leaves a surface: its kind, direction and weight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Child {
-    /// Which way.
+    /// Whether the ray is reflected or refracted.
     pub bounce: Bounce,
-    /// Unit direction.
+    /// The direction of the ray, of unit length.
     pub direction: Vec3,
-    /// What the light that it finds counts in the pixel.
+    /// The factor, per channel, with which the light along the ray contributes to the pixel.
     pub weight: Vec3,
 }
 
-/// Which rays go on from here?
+/// Asks which secondary rays leave a surface; the answer is a list of [`Child`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChildrenQuery {
-    /// Unit direction of the ray that arrived.
+    /// The direction of the incoming ray, of unit length.
     pub dir: Vec3,
-    /// Unit normal on the side that the ray comes from.
+    /// The unit normal on the side that the ray comes from.
     pub normal: Vec3,
-    /// Whether the ray comes from outside.
+    /// Whether the ray comes from outside of the material.
     pub entering: bool,
-    /// What the surface is made of; outside is index 1.
+    /// The material of the surface; the index of refraction outside is 1.
     pub material: Material,
-    /// What the light of this ray counts in the pixel.
+    /// The factor, per channel, with which the light along the incoming ray contributes to the pixel.
     pub weight: Vec3,
-    /// How often it was mirrored or refracted: 0 for a ray from the camera.
+    /// The number of reflections and refractions so far: 0 for a ray from the camera.
     pub depth: u32,
-    /// When the path ends.
+    /// The limits at which the path ends.
     pub limits: Limits,
 }

@@ -1,4 +1,4 @@
-//! Stage 8 in plain data.
+//! Stage 8, the scene graph and other shapes: queries and answers.
 
 use super::{SearchAnswer, Table};
 use crate::aabb::Aabb;
@@ -8,88 +8,91 @@ use crate::shape::{BezierPatch, Sphere};
 use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Carry `ray` into the space of an object.
+/// Asks which ray in the space of an object corresponds to `ray`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ObjectRayQuery {
-    /// The ray in the world.
+    /// The ray in world space, of any direction but zero.
     pub ray: Ray,
-    /// From the world to the space of the object.
+    /// The transform from the world to the space of the object.
     pub to_object: Affine3A,
 }
 
-/// Carry the normal of an object into the world.
+/// Asks which normal in the world corresponds to a normal of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NormalQuery {
-    /// Unit normal in the space of the object.
+    /// The unit normal in the space of the object.
     pub normal: Vec3,
-    /// From the world to the space of the object.
+    /// The transform from the world to the space of the object.
     pub to_object: Affine3A,
 }
 
-/// Which box after a transform?
+/// Asks which box in the world contains a transformed box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoundsQuery {
-    /// From the space of the box to the world.
+    /// The transform from the space of the box to the world.
     pub to_world: Affine3A,
-    /// The box.
+    /// The closed box before the transform; it may be empty.
     pub bounds: Aabb,
 }
 
-/// Where does `ray` meet `solid`?
+/// Asks where `ray` hits `solid`; the answer is a [`SolidHit`] if there is a hit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidQuery<S> {
-    /// The ray, in the space of the solid.
+    /// The ray, in the space of the solid; its range says which hits count.
     pub ray: Ray,
     /// A box, cylinder, cone, disk or polygon.
     pub solid: S,
 }
 
-/// Where a ray meets the surface of a solid.
+/// A hit of a ray with the surface of a solid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolidHit {
-    /// Distance along the ray, in lengths of its direction.
+    /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
-    /// Unit normal there, out of the solid; that of a disk is its own, and that of a polygon points to where its corners
-    /// run anticlockwise.
+    /// The unit normal of the surface at the hit, which points out of the solid. For a disk it has the
+    /// direction of the disk's normal; for a polygon it points to the side from which the corners run
+    /// anticlockwise.
     pub normal: Vec3,
 }
 
-/// Where does `ray` enter the ball?
+/// Asks where `ray` enters a bounding sphere; the answer is a `t` if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BallEntryQuery {
-    /// The ray.
+    /// The ray; its range says where an entry counts.
     pub ray: Ray,
-    /// The ball.
+    /// The bounding sphere, which is closed.
     pub ball: Sphere,
 }
 
-/// Find a hit in `graph`, given the answers to every question that the search may ask.
+/// Asks for the closest hit in `graph`, with a table that has the answer to every call of the search. The
+/// answer is a [`GraphAnswer`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraphQuery {
-    /// What to search.
+    /// The scene graph that is searched.
     pub graph: Graph,
-    /// Which `t` count. Its origin and direction play no part: the table answers.
+    /// The ray, whose range says which hits count. Its origin and direction play no role, because the table
+    /// answers.
     pub ray: Ray,
-    /// What to save.
+    /// The optimisations that the search uses.
     pub savings: Savings,
-    /// The answers; its boxes are the volumes around the nodes.
+    /// The answers to all calls; its boxes are the bounding volumes of the nodes.
     pub table: Table,
 }
 
-/// What the search of a graph found, and in which order it asked.
+/// The result of a search of a scene graph, and the order of its primitive tests.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GraphAnswer {
-    /// The hit and what it cost.
+    /// The hit and the cost of the search.
     pub search: SearchAnswer,
-    /// The primitives in the order in which they were asked about.
+    /// The numbers of the primitives that were tested, in order.
     pub asked: Vec<u32>,
 }
 
-/// Which point of a patch?
+/// Asks which point of a Bézier patch has the parameters `uv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PatchQuery {
-    /// The patch.
+    /// The control net of the patch.
     pub patch: BezierPatch,
-    /// Where on it, `0..=1` along either side.
+    /// The parameters `u` along the rows and `v` along the columns of the net, `0..=1` each.
     pub uv: Vec2,
 }

@@ -1,77 +1,78 @@
-//! Stage 4 in plain data.
+//! Stage 4, shading and shadows: queries and answers.
 
 use crate::material::Material;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A point of a surface that is to be shaded.
+/// A point of a surface that is to be shaded, with its normals and its rounding error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Where it is.
+    /// The point in world units, rounded to single precision.
     pub point: Vec3,
-    /// How far `point` may lie from the true surface, along each axis: a bound on its rounding error.
+    /// A bound on the rounding error of `point` along each axis, in world units, at least 0.
     pub error: Vec3,
-    /// Unit normal of the shape itself, on the viewer's side.
+    /// The unit normal of the shape itself, on the viewer's side.
     pub geometric_normal: Vec3,
-    /// Unit normal to shade with, on the viewer's side; differs from the geometric one on smooth meshes.
+    /// The unit normal for shading, on the viewer's side. It differs from the geometric one on smooth meshes.
     pub shading_normal: Vec3,
 }
 
-/// Light that would arrive at a point if nothing stood in its way.
+/// The light that would arrive at a point from one point of a light, without occlusion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightSample {
-    /// Unit direction from the point to the light.
+    /// The direction from the point to the light, of unit length.
     pub direction: Vec3,
-    /// How far away the light is; infinite for a directional light.
+    /// The distance from the point to the light in world units; infinite for a directional light.
     pub distance: f32,
-    /// Its colour times its intensity, weakened by distance if it weakens.
+    /// The light that arrives, in linear light: the light's colour times its intensity and its falloff with
+    /// distance.
     pub radiance: Vec3,
 }
 
-/// How strong is this term of the illumination?
+/// Asks how large the diffuse or the specular term of the Phong model is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TermQuery {
-    /// Unit normal.
+    /// The unit normal on the viewer's side.
     pub normal: Vec3,
-    /// Unit direction to the light.
+    /// The direction from the surface to the light, of unit length.
     pub to_light: Vec3,
-    /// Unit direction to the viewer.
+    /// The direction from the surface to the viewer, of unit length; the diffuse term does not use it.
     pub to_viewer: Vec3,
-    /// Sharpness of the highlight.
+    /// The Phong exponent, at least 0; the diffuse term does not use it.
     pub exponent: f32,
 }
 
-/// Which shadow ray does this light need, if any?
+/// Asks which shadow ray a light needs, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadowQuery {
-    /// From where.
+    /// The point at which the shadow ray starts.
     pub surface: Surface,
-    /// To which light.
+    /// The light at which the shadow ray ends.
     pub light: LightSample,
 }
 
-/// What colour does the viewer see?
+/// Asks which colour the viewer sees at a point; the answer is a [`ShadeAnswer`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadeQuery {
-    /// The point.
+    /// The point that is shaded.
     pub surface: Surface,
-    /// Unit direction to the viewer.
+    /// The direction from the surface to the viewer, of unit length.
     pub to_viewer: Vec3,
-    /// What the surface does with light.
+    /// The material of the surface.
     pub material: Material,
-    /// `A`, light from everywhere.
+    /// `A`, the ambient light of the scene, in linear light.
     pub ambient: Vec3,
-    /// All lights.
+    /// The light that would arrive from each light without occlusion.
     pub lights: Vec<LightSample>,
-    /// For each light whether a shadow ray finds the way free.
+    /// For each entry of `lights`, whether its shadow ray is not occluded.
     pub visible: Vec<bool>,
 }
 
-/// The colour, and which shadow rays were traced for it.
+/// The colour of a point, and the shadow rays that were traced for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShadeAnswer {
-    /// The colour in linear light.
+    /// The colour that the viewer sees, in linear light.
     pub color: Vec3,
-    /// For each shadow ray the light it went to.
+    /// For each shadow ray that was traced, the index of its light, in order.
     pub traced: Vec<usize>,
 }

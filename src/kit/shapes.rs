@@ -1,32 +1,32 @@
-//! Stage 1 in plain data.
+//! Stage 1, spheres and planes: queries.
 
 use crate::ray::Ray;
 use crate::shape::{Plane, Sphere};
 use serde::{Deserialize, Serialize};
 
-/// Where does `ray` meet `sphere`?
+/// Asks where `ray` hits `sphere`; the answer is the `t` of the nearest hit that counts, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SphereQuery {
-    /// The ray.
+    /// The ray; its range says which hits count.
     pub ray: Ray,
-    /// The sphere.
+    /// The sphere that is intersected.
     pub sphere: Sphere,
 }
 
-/// Where does `ray` meet `plane`?
+/// Asks where `ray` hits `plane`; the answer is the `t` of the hit, if there is one that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlaneQuery {
-    /// The ray.
+    /// The ray; its range says which hits count.
     pub ray: Ray,
-    /// The plane.
+    /// The infinite plane that is intersected.
     pub plane: Plane,
 }
 
-/// Which of two roots is the first that counts for `ray`?
+/// Asks which of two roots is the first that counts for `ray`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RootQuery {
     /// The two roots, in any order; either may be NaN.
     pub roots: [f32; 2],
-    /// The ray whose range decides.
+    /// The ray, whose open range `t_min < t < t_max` decides.
     pub ray: Ray,
 }

@@ -1,17 +1,17 @@
-//! Stage 10 in plain data.
+//! Stage 10, numerical stability: queries.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Where does a ray start that leaves a surface?
+/// Asks where a ray starts that leaves a surface (the ray offset that avoids shadow acne).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OffsetQuery {
-    /// The rounded point on the surface.
+    /// The point on the surface, rounded to single precision, in world units.
     pub point: Vec3,
-    /// How far the true surface may be from it, along each axis.
+    /// The greatest distance of the true surface from `point` along each axis, in world units, at least 0.
     pub error: Vec3,
-    /// Unit normal of the surface, on either side.
+    /// The unit normal of the surface, on either side.
     pub normal: Vec3,
-    /// Where the ray goes.
+    /// The direction of the ray that leaves the surface.
     pub direction: Vec3,
 }

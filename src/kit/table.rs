@@ -1,5 +1,5 @@
-//! Stage 3 in plain data. A search is graded against a table of answers, so that a broken intersection routine of an
-//! earlier stage costs nothing here.
+//! Stage 3, bounding volume hierarchies: queries and answers. A search is graded against a table of answers,
+//! so that a broken intersection test of an earlier stage costs no points here.
 
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, PrimitiveRef, Probe};
@@ -8,117 +8,134 @@ use crate::ray::Ray;
 use crate::scene::Split;
 use serde::{Deserialize, Serialize};
 
-/// Where does `ray` enter and leave `bounds`?
+/// Asks where `ray` enters and leaves `bounds`; the answer is two `t` if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlabQuery {
-    /// The ray.
+    /// The ray; its range limits the answer.
     pub ray: Ray,
-    /// The box.
+    /// The closed box, in world units.
     pub bounds: Aabb,
 }
 
-/// Divide `primitives`.
+/// Asks into which two groups `primitives` are divided; the answer is a [`SplitAnswer`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SplitQuery {
-    /// By which rule.
+    /// The rule by which they are divided.
     pub split: Split,
-    /// What is to be divided, two primitives or more.
+    /// Two or more primitives that are divided.
     pub primitives: Vec<PrimitiveRef>,
 }
 
-/// How primitives were divided.
+/// The two groups into which primitives were divided.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SplitAnswer {
-    /// Ids in their new order.
+    /// The ids of the primitives in their new order.
     pub order: Vec<u32>,
-    /// `order[..middle]` goes left and the rest right; `None` asks for a leaf.
+    /// The primitives `order[..middle]` go left and the others right; `None` asks for a leaf.
     pub middle: Option<usize>,
 }
 
-/// Build a hierarchy over `bounds`.
+/// Asks which hierarchy is built over `bounds`; the answer is a [`Bvh`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BuildQuery {
-    /// One box a primitive.
+    /// One box per primitive, in world units.
     pub bounds: Vec<Aabb>,
-    /// How to divide them.
+    /// The rule by which primitives are divided.
     pub split: Split,
     /// The most primitives in a leaf, at least 1.
     pub leaf_size: usize,
 }
 
-/// What one ray meets: intervals for all boxes and distances for all primitives, worked out beforehand.
+/// The answers to all tests of one ray: the interval of `t` in each box and the nearest hit with each
+/// primitive.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Table {
-    /// For each node the `t` at which the endless ray enters and leaves its box; `(inf, -inf)` if it misses.
+    /// For each node the `t` at which the ray, without limits, enters and leaves its box; `(inf, -inf)` if it
+    /// misses.
     pub boxes: Vec<(f32, f32)>,
     /// For each primitive the `t` of its nearest hit; `inf` if there is none.
     pub primitives: Vec<f32>,
 }
 
 impl Table {
-    /// Where `ray` enters the box of `node`, if it does before `t_max`.
+    /// The `t` at which `ray` enters the box of `node`, at least `ray.t_min`. `None` if the ray misses the
+    /// box or does not enter it before `ray.t_max`.
+    ///
+    /// # Panics
+    ///
+    /// If the table has no box for `node`.
     pub fn enter(&self, node: u32, ray: &Ray) -> Option<f32> {
         let (near, far) = self.boxes[node as usize];
         let enter = near.max(ray.t_min);
         (enter <= far && enter < ray.t_max).then_some(enter)
     }
 
-    /// Where `ray` hits `primitive`, if it does within its range.
+    /// The `t` at which `ray` hits `primitive`; `None` if that is not in the range of the ray.
+    ///
+    /// # Panics
+    ///
+    /// If the table has no such primitive.
     pub fn hit(&self, primitive: u32, ray: &Ray) -> Option<f32> {
         let t = self.primitives[primitive as usize];
         ray.contains(t).then_some(t)
     }
 }
 
-/// Find a hit in `bvh`, given the answers to every question that the search may ask.
+/// Asks for a hit in `bvh`, with a table that has the answer to every call of the search. The answer is a
+/// [`SearchAnswer`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SearchQuery {
-    /// The hierarchy to search; without nodes for a search of all primitives.
+    /// The hierarchy that is searched; it has no nodes for a search of all primitives.
     pub bvh: Bvh,
-    /// Which `t` count. Its origin and direction play no part: the table answers.
+    /// The ray, whose range says which hits count. Its origin and direction play no role, because the table
+    /// answers.
     pub ray: Ray,
-    /// The answers.
+    /// The answers to all box tests and primitive tests.
     pub table: Table,
 }
 
-/// What a search found and what it asked.
+/// The result of a search and the calls that it made.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SearchAnswer {
-    /// The hit, if any. For a search of any hit: the last one that the search was told of.
+    /// The hit that the search returned; `None` if there is none, and for a search for any hit.
     pub hit: Option<PrimitiveHit>,
-    /// Nodes, boxes and primitives that were asked about.
+    /// The number of node visits, box tests and primitive tests.
     pub counts: Counts,
-    /// How many primitives were asked about after one had been reported as hit.
+    /// The number of primitive tests after one had reported a hit.
     pub tests_after_hit: u64,
 }
 
-/// Answers from a [`Table`] and counts the questions.
+/// Answers a search from a [`Table`] and counts its calls.
+///
+/// # Panics
+///
+/// A call with a node or primitive that does not exist panics.
 pub struct TableProbe<'a> {
     nodes: &'a [Node],
     table: &'a Table,
-    /// What was asked so far.
+    /// The number of calls so far, by kind.
     pub counts: Counts,
-    /// The last primitive that was reported as hit.
+    /// The last hit that was reported to the search.
     pub last_hit: Option<PrimitiveHit>,
-    /// Primitives that were asked about after the first hit.
+    /// The number of primitive tests after the first reported hit.
     pub tests_after_hit: u64,
-    /// The primitives that were asked about, in this order.
+    /// The numbers of the primitives that were tested, in order.
     pub asked: Vec<u32>,
 }
 
 impl<'a> TableProbe<'a> {
-    /// A probe that answers for `query`.
+    /// A probe that answers from the hierarchy and the table of `query`.
     pub fn new(query: &'a SearchQuery) -> Self {
         TableProbe { nodes: &query.bvh.nodes, ..TableProbe::without_hierarchy(&query.table) }
     }
 
-    /// A probe for a search that keeps its nodes itself.
+    /// A probe without nodes, for a search that keeps its nodes itself: `open` panics.
     pub fn without_hierarchy(table: &'a Table) -> Self {
         let counts = Counts::default();
         TableProbe { nodes: &[], table, counts, last_hit: None, tests_after_hit: 0, asked: Vec::new() }
     }
 
-    /// What the search has found and asked.
+    /// The answer of a search that returned `hit`, with the calls that it made.
     pub fn answer(&self, hit: Option<PrimitiveHit>) -> SearchAnswer {
         SearchAnswer { hit, counts: self.counts, tests_after_hit: self.tests_after_hit }
     }

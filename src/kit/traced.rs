@@ -1,38 +1,38 @@
-//! The rays behind one pixel, as data.
+//! The rays of one pixel, as data.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Why a ray was traced.
+/// The purpose for which a ray was traced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RayKind {
-    /// From the camera.
+    /// A ray from the camera.
     Primary,
-    /// Off a mirror.
+    /// A reflected ray.
     Reflection,
-    /// Through a surface.
+    /// A ray refracted through a surface.
     Transmission,
-    /// To a light.
+    /// A shadow ray to a light.
     Shadow,
 }
 
 /// A ray that was traced for a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TracedRay {
-    /// Why.
+    /// The purpose for which the ray was traced.
     pub kind: RayKind,
-    /// Index of the ray that it goes on from; `None` for a ray from the camera.
+    /// The index of the ray at whose hit this ray starts; `None` for a ray from the camera.
     pub parent: Option<usize>,
-    /// Mirrorings and refractions behind it.
+    /// The number of reflections and refractions before this ray; a shadow ray has that of its parent.
     pub depth: u32,
-    /// What the light that it finds counts in the pixel.
+    /// The factor, per channel, with which the light along the ray contributes to the pixel.
     pub weight: Vec3,
-    /// Where it starts.
+    /// The origin of the ray, in world units.
     pub origin: Vec3,
-    /// Where it goes.
+    /// The direction of the ray, of any length but zero.
     pub dir: Vec3,
-    /// How far it goes, in lengths of `dir`, and the name of the material there; a shadow ray says only
-    /// whether it is stopped, at `t` 0 and by no name.
+    /// The `t` of the hit, in lengths of `dir`, and the name of the material there; `None` if nothing is hit.
+    /// An occluded shadow ray has `t` 0 and an empty name.
     pub hit: Option<(f32, String)>,
 }

@@ -1,59 +1,59 @@
-//! Stage 2 in plain data.
+//! Stage 2, triangles and meshes: queries and answers.
 
 use crate::ray::Ray;
 use crate::shape::Triangle;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Where does `ray` meet `triangle`?
+/// Asks where `ray` hits `triangle`; the answer is a [`TriangleHit`] if there is a hit that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TriangleQuery {
-    /// The ray.
+    /// The ray; its range says which hits count.
     pub ray: Ray,
-    /// The triangle.
+    /// The triangle that is intersected.
     pub triangle: Triangle,
 }
 
-/// A point of a triangle on a ray: `o + t d = (1 - β - γ) a + β b + γ c`.
+/// A hit of a ray with a triangle, in barycentric coordinates: `o + t d = (1 - β - γ) a + β b + γ c`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TriangleHit {
-    /// Distance along the ray, in lengths of its direction.
+    /// The ray parameter of the hit: the distance along the ray, in lengths of its direction.
     pub t: f32,
-    /// Weight of corner `b`.
+    /// The barycentric coordinate β of corner `b`, `0..=1`.
     pub beta: f32,
-    /// Weight of corner `c`.
+    /// The barycentric coordinate γ of corner `c`, `0..=1`; `β + γ <= 1`.
     pub gamma: f32,
 }
 
 /// The four numbers of a triangle that the Gram method computes once, for `u = b - a` and `v = c - a`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GramScalars {
-    /// `u · v`.
+    /// The dot product `u · v`, in square world units.
     pub uv: f32,
-    /// `v · v`.
+    /// The dot product `v · v`, in square world units.
     pub vv: f32,
-    /// `u · u`.
+    /// The dot product `u · u`, in square world units.
     pub uu: f32,
-    /// `(u · v)² - (u · u)(v · v)`, which is `-|u × v|²`: never above zero.
+    /// The determinant `(u · v)² - (u · u)(v · v)`, which is `-|u × v|²` and so never above 0.
     pub d: f32,
 }
 
-/// Does `point`, which lies in the plane of `triangle` on the way of `ray`, lie inside the triangle?
+/// Asks whether `point`, where `ray` hits the plane of `triangle`, lies inside the triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InsideQuery {
-    /// The ray whose plane hit is asked about.
+    /// The ray that hits the plane at `point`.
     pub ray: Ray,
-    /// The hit in the plane.
+    /// The hit with the plane, rounded to single precision, in world units.
     pub point: Vec3,
-    /// The triangle.
+    /// The triangle in whose plane the point lies.
     pub triangle: Triangle,
 }
 
-/// What is the value at weights `(α, β, γ)` between three corners?
+/// Asks which value is interpolated between three corners at the barycentric coordinates `(α, β, γ)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InterpolateQuery {
-    /// `(α, β, γ)`; they add up to 1.
+    /// The barycentric coordinates `(α, β, γ)`, whose sum is 1.
     pub weights: Vec3,
-    /// Values at the corners.
+    /// The values at the corners `a`, `b` and `c`.
     pub corners: [Vec3; 3],
 }

@@ -1,4 +1,4 @@
-//! The types that stand in the list of student functions, under the names that it uses.
+//! The types in the signatures of the list of student functions, under the names that the list uses.
 
 pub use super::*;
 pub use crate::aabb::Aabb;

@@ -1,33 +1,40 @@
-//! The BSP tree as data: planes in any direction.
+//! The BSP tree as data: binary space partitioning by planes in any direction.
 
 use super::{check_depth, walk};
 use crate::aabb::Aabb;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// A plane that divides space: all points `p` with `normal · p = offset`. In front is where the normal points.
+/// A plane that divides space: all points `p` with `normal · p = offset`. The front is the side to which the
+/// normal points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CutPlane {
-    /// At right angles to the plane, of length 1.
+    /// The normal of the plane, of unit length.
     pub normal: DVec3,
-    /// The distance of the plane from the origin of space, along the normal.
+    /// The signed distance of the plane from the origin along the normal, in world units.
     pub offset: f64,
 }
 
 impl CutPlane {
-    /// The plane across `axis` at `at`.
+    /// The plane at coordinate `at` (world units) of `axis`, 0 for x, 1 for y, 2 for z; its front has the
+    /// larger coordinates.
+    ///
+    /// # Panics
+    ///
+    /// If `axis` is above 2.
     pub fn across(axis: usize, at: f64) -> Self {
         CutPlane { normal: DVec3::AXES[axis], offset: at }
     }
 
-    /// A square in the plane, with corners this far from the foot of `point`.
+    /// A square in the plane around the projection of `point`, with corners at the distance `2 reach` from
+    /// it.
     fn square(&self, point: DVec3, reach: f64) -> Vec<DVec3> {
         let foot = point - (self.normal.dot(point) - self.offset) * self.normal;
         let (u, v) = self.normal.any_orthonormal_pair();
         [u, v, -u, -v].map(|way| foot + 2.0 * reach * way).to_vec()
     }
 
-    /// What of a convex polygon is in front of the plane for `side` 1, or behind it for -1.
+    /// The part of a convex polygon that lies in front of the plane for `side` 1, or behind it for `side` -1.
     fn keep(&self, polygon: &[DVec3], side: f64) -> Vec<DVec3> {
         let height = |point: DVec3| side * (self.normal.dot(point) - self.offset);
         let next = polygon.iter().cycle().skip(1);
@@ -40,49 +47,52 @@ impl CutPlane {
         edges.flatten().collect()
     }
 
-    /// How far in front of the plane `point` lies; negative behind it.
+    /// The signed distance of `point` from the plane in world units, computed in double precision: positive
+    /// in front of the plane, negative behind it.
     pub fn distance(&self, point: Vec3) -> f64 {
         self.normal.dot(point.as_dvec3()) - self.offset
     }
 }
 
-/// What a node of a BSP tree holds.
+/// What a node of a BSP tree contains: a plane with two child nodes, or a range of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum BspNode {
-    /// Two nodes, one on either side of a plane.
+    /// An inner node: two nodes, one on each side of a plane.
     Inner {
-        /// The plane.
+        /// The plane that divides the region of the node.
         plane: CutPlane,
-        /// The node behind it.
+        /// The index of the node behind the plane.
         back: u32,
-        /// The node in front of it.
+        /// The index of the node in front of the plane.
         front: u32,
     },
-    /// The primitives `items[first..first + count]`.
+    /// A leaf with the primitives `items[first..first + count]`.
     Leaf {
-        /// Where they begin in [`Bsp::items`].
+        /// The index in [`Bsp::items`] of the leaf's first primitive.
         first: u32,
-        /// How many they are; a leaf may hold none.
+        /// The number of primitives in the leaf, which may be 0.
         count: u32,
     },
 }
 
-/// Space, divided by planes in any direction. Node 0 is the root and is all of space. A tree over nothing has no nodes.
+/// A binary space partition. Node 0 is the root, whose region is all of space. A tree over no primitives has
+/// no nodes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bsp {
-    /// All nodes, a parent before its children.
+    /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<BspNode>,
-    /// Numbers of primitives, those of a leaf side by side. A primitive stands in every leaf that it reaches into.
+    /// The numbers of primitives, those of a leaf adjacent. A primitive is listed in every leaf that it
+    /// overlaps.
     pub items: Vec<u32>,
 }
 
 impl Bsp {
-    /// Adds a node at `depth`, the root being at depth 0, and gives its number. It is a leaf with nothing in it until
-    /// [`Bsp::set_leaf`] or [`Bsp::set_children`] says otherwise.
+    /// Adds a node at `depth` (the root has depth 0) and returns its index. It is a leaf without primitives
+    /// until [`Bsp::set_leaf`] or [`Bsp::set_children`] changes it.
     ///
     /// # Panics
     ///
-    /// When `depth` is beyond `max_depth`: then the recursion would never end.
+    /// If `depth` is above `max_depth`. Then the recursion would never end.
     #[track_caller]
     pub fn add_node(&mut self, depth: usize, max_depth: usize) -> u32 {
         check_depth(depth, max_depth);
@@ -90,30 +100,52 @@ impl Bsp {
         self.nodes.len() as u32 - 1
     }
 
-    /// Makes `node` a leaf that holds `primitives`.
+    /// Makes `node` a leaf with `primitives`: appends their numbers to [`Bsp::items`]. Call it once per leaf.
+    ///
+    /// # Panics
+    ///
+    /// If there is no node with the index `node`.
     pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
         let first = self.items.len() as u32;
         self.items.extend(primitives);
         self.nodes[node as usize] = BspNode::Leaf { first, count: primitives.len() as u32 };
     }
 
-    /// Makes `node` the parent of `back` and `front`.
+    /// Makes `node` an inner node with the children `back` and `front` of `plane`.
+    ///
+    /// # Panics
+    ///
+    /// If there is no node with the index `node`. The two children are not checked.
     pub fn set_children(&mut self, node: u32, plane: CutPlane, back: u32, front: u32) {
         self.nodes[node as usize] = BspNode::Inner { plane, back, front };
     }
 
-    /// The primitives of a leaf.
+    /// The numbers of the primitives of a leaf, `items[first..first + count]`.
+    ///
+    /// # Panics
+    ///
+    /// If the range does not lie in [`Bsp::items`].
     pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
         &self.items[first as usize..(first + count) as usize]
     }
 
-    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
+    /// nodes.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
         self.walk(|_, _, _| {})
     }
 
-    /// The planes above `depth`, the root being at depth 0, each as the polygon that the planes above it and the box
-    /// `bounds` leave of it.
+    /// The planes of the inner nodes above `depth` (the root has depth 0), each as the convex polygon to
+    /// which the planes above it and the box `bounds` clip it, in world units. Planes of which nothing is
+    /// left are not in the result.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn polygons(&self, bounds: &Aabb, depth: usize) -> Vec<Vec<DVec3>> {
         let mut polygons = Vec::new();
         self.walk(|node, above, at| {
@@ -135,8 +167,13 @@ impl Bsp {
         polygons
     }
 
-    /// Tells `each` about all nodes: number, the planes above with the side on which the node lies (1 in front, -1
-    /// behind), and depth. How many levels it came to.
+    /// Calls `each` for all nodes in depth-first order, with the index of the node, the planes above it and
+    /// its depth, and returns the number of levels. Each plane comes with the side on which the node lies: 1
+    /// in front, -1 behind.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
         let root = (!self.nodes.is_empty()).then(Vec::new);
         let below = |node: u32, above: &Vec<(CutPlane, f64)>| match self.nodes[node as usize] {

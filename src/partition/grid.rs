@@ -5,59 +5,73 @@ use crate::aabb::Aabb;
 use glam::{DVec3, UVec3};
 use serde::{Deserialize, Serialize};
 
-/// The most cells along an axis: 256³ cells take 64 MiB before anything is in them.
+/// The most cells along an axis when the resolution follows from the number of primitives: 256³ cells take 64
+/// MiB before any primitive is in them.
 pub const MOST_CELLS_ALONG: u32 = 256;
 
-/// Cells of one size. Cell `(x, y, z)` has the number `x + nx · (y + ny · z)`.
+/// A uniform grid of cells of equal size. Cell `(x, y, z)` has the number `x + nx · (y + ny · z)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grid {
-    /// What the cells divide: all that can be met lies within. Empty if there is nothing.
+    /// The box that the cells divide, in world units; it contains all primitives that can be hit. It is empty
+    /// if there are none.
     pub bounds: Aabb,
-    /// How many cells there are along x, y and z, at least 1 each.
+    /// The number of cells along x, y and z, at least 1 each.
     pub resolution: UVec3,
-    /// The primitives of cell `i` are `items[starts[i]..starts[i + 1]]`; one more entry than there are cells.
+    /// The primitives of cell `i` are `items[starts[i]..starts[i + 1]]`. There is one entry more than there
+    /// are cells.
     pub starts: Vec<u32>,
-    /// Numbers of primitives, those of a cell side by side. A primitive stands in every cell that it reaches into.
+    /// The numbers of primitives, those of a cell adjacent. A primitive is listed in every cell that it
+    /// overlaps.
     pub items: Vec<u32>,
 }
 
 impl Grid {
-    /// The number of a cell.
+    /// The number of the cell with the coordinates `cell`, each `0 <= cell < resolution`, which is not
+    /// checked.
     pub fn number(&self, cell: UVec3) -> u32 {
         cell.x + self.resolution.x * (cell.y + self.resolution.y * cell.z)
     }
 
-    /// The primitives in a cell.
+    /// The numbers of the primitives in the cell with this number.
+    ///
+    /// # Panics
+    ///
+    /// If there is no cell with this number.
     pub fn primitives(&self, number: u32) -> &[u32] {
         let [first, end] = [number, number + 1].map(|at| self.starts[at as usize] as usize);
         &self.items[first..end]
     }
 
-    /// Where along `axis` cell `index` begins and the one before ends, in double precision. Always the same number for
-    /// the same face, and exactly the side of the grid at either end.
+    /// The coordinate along `axis` (0, 1, 2 for x, y, z) at which cell `index` begins and the cell before it
+    /// ends, in world units and double precision, `0 <= index <= resolution[axis]`. The result is always the
+    /// same number for the same face, and exactly the side of the grid at both ends.
+    ///
+    /// # Panics
+    ///
+    /// If `axis` is above 2.
     pub fn plane(&self, axis: usize, index: u32) -> f64 {
         let [min, max] = [self.bounds.min[axis], self.bounds.max[axis]].map(f64::from);
         let n = self.resolution[axis];
         if index == n { max } else { min + (max - min) * f64::from(index) / f64::from(n) }
     }
 
-    /// The space of a cell.
+    /// The box of the cell with the coordinates `at`, in world units.
     pub fn cell(&self, at: UVec3) -> Cell {
         let corner = |at: UVec3| DVec3::new(self.plane(0, at.x), self.plane(1, at.y), self.plane(2, at.z));
         Cell { min: corner(at), max: corner(at + 1) }
     }
 
-    /// How many cells there are.
+    /// The number of cells; 0 for a grid without `starts`.
     pub fn n_nodes(&self) -> usize {
         self.starts.len().saturating_sub(1)
     }
 
-    /// A grid has one level.
+    /// The number of levels: 1 for a grid with cells, 0 without.
     pub fn depth(&self) -> usize {
         usize::from(self.n_nodes() > 0)
     }
 
-    /// All cells as boxes, to be drawn; there is one level only.
+    /// All cells as boxes, for drawing. A grid has one level only, so `depth` is ignored.
     pub fn cells(&self, _depth: usize) -> Vec<Aabb> {
         let n = if self.n_nodes() > 0 { self.resolution } else { UVec3::ZERO };
         let all =

@@ -1,5 +1,5 @@
-//! Partitions of space as data: cells, and in each the numbers of the primitives that reach into it. Building and searching
-//! them are exercises of stage 9.
+//! Partitions of space as data: cells, each with the numbers of the primitives that overlap it. Building and
+//! searching them are exercises of stage 9.
 //!
 //! `grid` · `octree` · `kd_tree` · `bsp`
 
@@ -17,36 +17,48 @@ use crate::aabb::Aabb;
 use crate::ray::Ray;
 use glam::{DVec3, Vec3};
 
-/// Everything that a search of cells may ask. Each question is counted, so what a search costs is known exactly.
+/// All that a search of cells may ask about a scene. Each call is counted, so the cost of a search is known
+/// exactly.
 pub trait Cells {
-    /// To be called once for each node or cell that the search comes to. Counts a node visit.
+    /// Records a visit of `node`. A search calls it once for each node or cell that it comes to. Counts a
+    /// node visit.
+    ///
+    /// # Panics
+    ///
+    /// May panic if a search makes so many visits that it must be in an endless loop.
     fn visit(&mut self, node: u32);
 
-    /// The `t` at which `ray` hits `primitive`, if it does for `t_min < t < t_max`. Counts a primitive test.
+    /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
+    /// `ray.t_min < t < ray.t_max`. Counts a primitive test.
+    ///
+    /// # Panics
+    ///
+    /// May panic if there is no primitive with this number.
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32>;
 }
 
-/// A box of space in double precision: where cells meet, both have the very same face.
+/// A closed box of space in double precision, so that neighbouring cells have exactly the same face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// The corner with the smallest coordinates.
+    /// The corner with the smallest coordinate on each axis, in world units.
     pub min: DVec3,
-    /// The corner with the largest coordinates.
+    /// The corner with the largest coordinate on each axis, in world units.
     pub max: DVec3,
 }
 
 impl Cell {
-    /// The box as a cell.
+    /// The cell with the same corners as the box `bounds`, without rounding.
     pub fn new(bounds: &Aabb) -> Self {
         Cell { min: bounds.min.as_dvec3(), max: bounds.max.as_dvec3() }
     }
 
-    /// The middle, where octants meet.
+    /// The centre of the cell, in world units, where its octants meet.
     pub fn middle(&self) -> DVec3 {
         0.5 * (self.min + self.max)
     }
 
-    /// One of the eight octants: bit 0 of `octant` is 1 for the upper half along x, bit 1 along y, bit 2 along z.
+    /// One of the eight octants, `0 <= octant < 8`: bit 0 of `octant` selects the upper half along x, bit 1
+    /// along y, bit 2 along z. Higher bits are ignored.
     pub fn octant(&self, octant: usize) -> Cell {
         let middle = self.middle();
         let mut cell = *self;
@@ -59,7 +71,13 @@ impl Cell {
         cell
     }
 
-    /// The parts below and above `at` along `axis`.
+    /// The parts below and above the plane at `at` (world units) across `axis`, 0 for x, 1 for y, 2 for z.
+    /// The cell is closed, so both parts contain the plane. For an `at` outside of the cell one part is
+    /// larger than the cell and the other is empty.
+    ///
+    /// # Panics
+    ///
+    /// If `axis` is above 2.
     pub fn cut(&self, axis: usize, at: f64) -> [Cell; 2] {
         let (mut below, mut above) = (*self, *self);
         below.max[axis] = at;
@@ -67,20 +85,22 @@ impl Cell {
         [below, above]
     }
 
-    /// Whether the box and the cell share a point; to touch is to share. Never for a box that is not a number.
+    /// Whether the box and the cell have a common point; both are closed, so a common face is enough. `false`
+    /// for a box with NaN.
     pub fn touches(&self, bounds: &Aabb) -> bool {
         (0..3).all(|axis| {
             f64::from(bounds.min[axis]) <= self.max[axis] && self.min[axis] <= f64::from(bounds.max[axis])
         })
     }
 
-    /// The cell in single precision, to be drawn.
+    /// The cell rounded to single precision, for drawing.
     pub fn to_box(&self) -> Aabb {
         Aabb::new(self.min.as_vec3(), self.max.as_vec3())
     }
 }
 
-/// The corners of a box, as the hull of a primitive that is no polygon.
+/// The eight corners of a box, which serve as the hull of a primitive that is not a polygon. Bit 0 of a
+/// corner's index selects `max` along x, bit 1 along y, bit 2 along z.
 pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
     let pick = |corner: usize, axis: usize| match corner >> axis & 1 {
         0 => bounds.min[axis],
@@ -89,7 +109,7 @@ pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
     (0..8).map(|corner| Vec3::new(pick(corner, 0), pick(corner, 1), pick(corner, 2))).collect()
 }
 
-/// Ends a recursion that would never end by itself.
+/// Ends a recursion that would not end by itself: panics at a `depth` above `most`.
 #[track_caller]
 fn check_depth(depth: usize, most: usize) {
     assert!(
@@ -98,8 +118,9 @@ fn check_depth(depth: usize, most: usize) {
     );
 }
 
-/// Goes down a tree to depth `most`, tells `each` about every node, its place and its depth, and returns how many levels
-/// it came to. `root` is the place of node 0, if there is one; `below` gives the children of a node with their places.
+/// Visits a tree in depth-first order down to depth `most`: calls `each` with every node, its place and its
+/// depth, and returns the number of levels that it reached. `root` is the place of node 0, if there is one;
+/// `below` returns the children of a node with their places.
 fn walk<P>(
     root: Option<P>,
     most: usize,

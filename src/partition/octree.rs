@@ -1,62 +1,70 @@
-//! The octree as data.
+//! The octree as data: cells that are divided into eight octants.
 
 use super::{Cell, check_depth, walk};
 use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 
-/// What a node of an octree holds.
+/// What a node of an octree contains: eight child nodes, or a range of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OctreeNode {
-    /// The eight nodes `first..first + 8`, in the order of [`Cell::octant`].
+    /// An inner node with the eight nodes `first..first + 8`, in the order of [`Cell::octant`].
     Inner {
-        /// Number of the first child.
+        /// The index of the first child.
         first: u32,
     },
-    /// The primitives `items[first..first + count]`.
+    /// A leaf with the primitives `items[first..first + count]`.
     Leaf {
-        /// Where they begin in [`Octree::items`].
+        /// The index in [`Octree::items`] of the leaf's first primitive.
         first: u32,
-        /// How many they are; a leaf may hold none.
+        /// The number of primitives in the leaf, which may be 0.
         count: u32,
     },
 }
 
-/// Cells that are divided in eight wherever there is much. Node 0 is the root and has the cell `bounds`; the cells below
-/// are its octants, worked out on the way down. A tree over nothing has no nodes.
+/// Cells that are divided into eight octants where there are many primitives. Node 0 is the root, whose cell
+/// is `bounds`; the cells of the other nodes are its octants, computed on the way down. A tree over no
+/// primitives has no nodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Octree {
-    /// The cell of the root: all that can be met lies within.
+    /// The cell of the root, in world units; it contains all primitives that can be hit.
     pub bounds: Aabb,
-    /// All nodes, a parent before its children.
+    /// All nodes. A parent has a smaller index than its children.
     pub nodes: Vec<OctreeNode>,
-    /// Numbers of primitives, those of a leaf side by side. A primitive stands in every leaf that it reaches into.
+    /// The numbers of primitives, those of a leaf adjacent. A primitive is listed in every leaf that it
+    /// overlaps.
     pub items: Vec<u32>,
 }
 
 impl Octree {
-    /// A tree with a root that is a leaf with nothing in it.
+    /// A tree over the cell `bounds` whose only node is the root, a leaf without primitives.
     pub fn new(bounds: Aabb) -> Self {
         Octree { bounds, nodes: vec![OctreeNode::Leaf { first: 0, count: 0 }], items: Vec::new() }
     }
 
-    /// A tree over nothing.
+    /// The tree over no primitives: without nodes, over the empty box.
     pub fn empty() -> Self {
         Octree { bounds: Aabb::EMPTY, nodes: Vec::new(), items: Vec::new() }
     }
 
-    /// Makes `node` a leaf that holds `primitives`.
+    /// Makes `node` a leaf with `primitives`: appends their numbers to [`Octree::items`]. Call it once per
+    /// leaf.
+    ///
+    /// # Panics
+    ///
+    /// If there is no node with the index `node`.
     pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
         let first = self.items.len() as u32;
         self.items.extend(primitives);
         self.nodes[node as usize] = OctreeNode::Leaf { first, count: primitives.len() as u32 };
     }
 
-    /// Gives `node` eight children, which are at `depth`, the root being at 0: leaves with nothing in them. Tells the
-    /// first.
+    /// Makes `node` an inner node with eight new children, which are leaves without primitives at `depth`
+    /// (the root has depth 0). Returns the index of the first child; the others follow it. `node` must be an
+    /// existing node.
     ///
     /// # Panics
     ///
-    /// When `depth` is beyond `max_depth`: then the recursion would never end.
+    /// If `depth` is above `max_depth`. Then the recursion would never end.
     #[track_caller]
     pub fn divide(&mut self, node: u32, depth: usize, max_depth: usize) -> u32 {
         check_depth(depth, max_depth);
@@ -66,17 +74,30 @@ impl Octree {
         first
     }
 
-    /// The primitives of a leaf.
+    /// The numbers of the primitives of a leaf, `items[first..first + count]`.
+    ///
+    /// # Panics
+    ///
+    /// If the range does not lie in [`Octree::items`].
     pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
         &self.items[first as usize..(first + count) as usize]
     }
 
-    /// Nodes on the longest way down, the root counted; 0 when there is nothing.
+    /// The number of nodes on the longest path from the root to a leaf, both counted; 0 if there are no
+    /// nodes.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
         self.walk(usize::MAX, |_, _, _| {})
     }
 
-    /// The cells at `depth`, and the leaves above it, as boxes to be drawn. The root is at depth 0.
+    /// The cells at `depth` (the root has depth 0), and the leaves above it, as boxes for drawing.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn cells(&self, depth: usize) -> Vec<Aabb> {
         let is_leaf = |node: u32| matches!(self.nodes[node as usize], OctreeNode::Leaf { .. });
         let mut cells = Vec::new();
@@ -86,7 +107,12 @@ impl Octree {
         cells
     }
 
-    /// Tells `each` about all nodes down to `most`: number, cell and depth. How many levels it came to.
+    /// Calls `each` for all nodes down to depth `most` in depth-first order, with the index of the node, its
+    /// cell and its depth, and returns the number of levels that it reached.
+    ///
+    /// # Panics
+    ///
+    /// If a child's index is out of range.
     pub fn walk(&self, most: usize, mut each: impl FnMut(u32, Cell, usize)) -> usize {
         let root = (!self.nodes.is_empty()).then(|| Cell::new(&self.bounds));
         let below = |node: u32, cell: &Cell| match self.nodes[node as usize] {
