@@ -1,4 +1,4 @@
-//! The scene graph as a whole: no loops, and no more of it than a computer holds.
+//! Checks of the scene graph as a whole: it has no loops, and its depth and number of shapes are limited.
 
 use super::reader::Value;
 use super::words::one_line;
@@ -10,7 +10,7 @@ const MAX_LEVELS: u32 = 64;
 /// The most shapes, counted once for every way that leads to them: doubling 64 times is quickly written.
 const MAX_SHAPES: u64 = 1 << 24;
 
-/// The nodes that no other node lists.
+/// The indices of the nodes that no other node lists as a child, in ascending order.
 pub(super) fn roots(nodes: &[Node]) -> Vec<usize> {
     let mut is_root = vec![true; nodes.len()];
     nodes.iter().flat_map(|node| &node.children).for_each(|&child| is_root[child] = false);
@@ -28,7 +28,8 @@ enum Visit {
     Done { levels: u32, shapes: u64 },
 }
 
-/// Refuses loops and graphs without measure. `listed` are the children of each node as the file names them.
+/// Fails if the graph has a loop, more than 64 levels, or more than 2^24 shapes counted once per place.
+/// `listed` are the children of each node as the file names them, for messages.
 pub(super) fn check(nodes: &[Node], listed: &[Vec<Value>]) -> Result<(), LoadError> {
     let mut visits = vec![Visit::No; nodes.len()];
     for start in 0..nodes.len() {

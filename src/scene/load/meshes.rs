@@ -14,7 +14,9 @@ use crate::scene::{SceneMesh, ply};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// All `[meshes.NAME]`, with their names. Materials and textures that come with them join those of the scene.
+/// All `[meshes.NAME]` in the order of the file, with their names. Materials and textures that come with them
+/// are added to those of the scene. Fails if a file or a material is missing or malformed, or if subdivision
+/// would make more than 2^24 triangles.
 pub(super) fn meshes<'a>(
     value: Option<Value<'a>>,
     materials: &mut Materials,

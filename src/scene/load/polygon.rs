@@ -1,4 +1,4 @@
-//! `polygon = { corners = [ … ] }`: flat, convex, and once around.
+//! Reads `polygon = { corners = [ … ] }` and checks that it is flat, convex and goes around once.
 
 use super::reader::Value;
 use crate::scene::error::LoadError;
@@ -8,7 +8,8 @@ use std::f64::consts::{PI, TAU};
 /// How far corners may stray from a plane, as a share of the polygon's size: written with five digits, they do.
 const FLATNESS: f64 = 1e-5;
 
-/// The corners of a sound polygon.
+/// The corners of a polygon, at least three and in order. Fails if two neighbours are the same point, if all
+/// lie on one line, if one lies outside of the common plane, or if the polygon is not convex.
 pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
     let list = value.table(&["corners"])?.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
     let items = list.list("a list of points")?;

@@ -1,4 +1,4 @@
-//! The tables of which a scene has one: `film`, `camera`, `environment` and `quality`.
+//! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
 use super::reader::Value;
 use crate::camera::{Camera, Lens, Shutter};
@@ -19,6 +19,8 @@ const MAX_DEPTH: u32 = 1000;
 /// 1024^3 cells of 4 bytes fill 4 GiB.
 const MAX_GRID: u32 = 1024;
 
+/// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
+/// range or there are more than 2^28 pixels.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
     let Some(value) = value else { return Ok(film) };
@@ -41,6 +43,8 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     }
 }
 
+/// The camera of `[camera]`; `aspect` is width over height of the film. Fails if a value is missing or out of
+/// range, if the view direction is zero, or if `up` is parallel to it.
 pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
     let table =
         value.table(&["position", "look_at", "direction", "up", "vertical_fov", "lens", "shutter"])?;
@@ -92,14 +96,19 @@ fn shutter(value: Value) -> Result<Shutter, LoadError> {
     Ok(Shutter { open, close })
 }
 
-/// Light that comes from no lamp.
+/// Light that comes from no light source, from the table `[environment]`.
 #[derive(Default)]
 pub(super) struct Environment {
+    /// Linear radiance of rays that hit nothing, at least 0.
     pub background: Vec3,
+    /// Ambient light of the Phong model in linear RGB, at least 0.
     pub ambient: Vec3,
+    /// Whether light that bounces between surfaces is wanted.
     pub indirect_light: bool,
 }
 
+/// The values of `[environment]`, black and `false` where nothing else is given; fails if one is of the wrong
+/// type or below 0.
 pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError> {
     let Some(value) = value else { return Ok(Environment::default()) };
     let table = value.table(&["background", "ambient", "indirect_light"])?;
@@ -128,6 +137,8 @@ const QUALITY_KEYS: [&str; 15] = [
     "kd_heuristics",
 ];
 
+/// The settings of `[quality]`, with `Quality::default()` for keys that are missing; fails if a value is out
+/// of range.
 pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
     let mut quality = Quality::default();
     let Some(value) = value else { return Ok(quality) };

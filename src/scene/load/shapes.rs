@@ -1,4 +1,4 @@
-//! `shape = { … }` of a node. Shapes of which a ray could hit nothing are refused: they are slips.
+//! Reads `shape = { … }` of a node. Shapes that no ray can hit are refused, because they are mistakes.
 
 use super::names::Names;
 use super::polygon;
@@ -7,10 +7,12 @@ use crate::scene::error::LoadError;
 use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
 use glam::Vec3;
 
-/// All that may stand in `shape`.
+/// All kinds of shapes: exactly one of these keys must stand in `shape`.
 pub(super) const KINDS: [&str; 10] =
     ["sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "bezier", "mesh"];
 
+/// The shape of a node in the space of the node; `meshes` are the names that `mesh` may refer to. Fails if a
+/// value is missing or out of range, or if the shape is degenerate or exceeds the range of `f32`.
 pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     let kind = value.table(&KINDS)?.one_of(&KINDS)?;
     let shape = match kind.key {
@@ -33,6 +35,7 @@ pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     }
 }
 
+/// A sphere from its `center` and its `radius`, which must be above 0.
 pub(super) fn sphere(value: Value) -> Result<Sphere, LoadError> {
     let table = value.table(&["center", "radius"])?;
     Ok(Sphere { center: point(&table, "center")?, radius: radius(&table)? })
@@ -83,6 +86,8 @@ fn cone(value: Value) -> Result<Cone, LoadError> {
     Ok(Cone { base, apex, radius: radius(&table)? })
 }
 
+/// A disk from its `center`, its `normal`, which is scaled to unit length, and its `radius`, which must be
+/// above 0.
 pub(super) fn disk(value: Value) -> Result<Disk, LoadError> {
     let table = value.table(&["center", "normal", "radius"])?;
     Ok(Disk { center: point(&table, "center")?, normal: normal(&table)?, radius: radius(&table)? })

@@ -1,10 +1,12 @@
-//! `transform = [ … ]` and `transform_end = [ … ]` of a node.
+//! Reads `transform = [ … ]` and `transform_end = [ … ]` of a node.
 
 use super::reader::{Table, Value};
 use crate::scene::error::LoadError;
 use glam::{Affine3A, DAffine3, DMat3, DVec3};
 
-/// Where a node stands at shutter time 0, and at time 1 if it moves.
+/// The transform of a node to its parent at shutter time 0, and at time 1 if the node moves. Fails if a step
+/// is malformed, if a transform cannot be inverted in single precision, or if the blend of the two is
+/// singular in between.
 pub(super) fn of_node(table: &Table) -> Result<(Affine3A, Option<Affine3A>), LoadError> {
     let start = table.get("transform").map_or(Ok(DAffine3::IDENTITY), steps)?;
     let Some(value) = table.get("transform_end") else { return Ok((single(start), None)) };

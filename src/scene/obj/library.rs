@@ -1,4 +1,4 @@
-//! Material libraries, the files with the ending `.mtl`.
+//! Material libraries of OBJ files: files with the extension `.mtl`.
 
 use super::ObjMaterial;
 use crate::scene::error::LoadError;
@@ -7,7 +7,8 @@ use glam::Vec3;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The libraries that an `mtllib` line names at `span` of the OBJ file.
+/// The paths of the libraries that an `mtllib` line names at the bytes `span` of the OBJ file; fails if one
+/// of them does not exist. Names are relative to the folder of the OBJ file.
 pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<PathBuf>, LoadError> {
     let directory = file.parent().unwrap_or(Path::new(""));
     let names = &text[span.clone()];
@@ -32,14 +33,17 @@ pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<P
         .collect()
 }
 
-/// Reads all materials of a library.
+/// Reads all materials of the library `file`, in the order of the file; fails if it cannot be read or is
+/// malformed.
 pub(super) fn read(file: &Path) -> Result<Vec<ObjMaterial>, LoadError> {
     parse(file, &read_bytes(file)?)
 }
 
-/// Reads all materials in the bytes of a library.
+/// Reads all materials from the bytes of a library; fails at the first malformed line, and at a value above
+/// the first `newmtl`.
 ///
-/// As in the OBJ file, `tobj` sees only lines that have been checked: a colour with two numbers makes it panic.
+/// As in the OBJ file, `tobj` gets only lines that have been checked, because a colour with two numbers makes
+/// it panic.
 pub(super) fn parse(file: &Path, bytes: &[u8]) -> Result<Vec<ObjMaterial>, LoadError> {
     let text = readable(bytes);
     let mut reader = Reader { file, text: &text, clean: String::new(), named: false };

@@ -6,18 +6,18 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
 
-/// What a file holds once all of its lines are found to be right.
+/// The content of an OBJ file, all of whose lines are correct.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// The file without anything that `tobj` does not need or gets wrong.
+    /// The lines that `tobj` needs, each in a form that it reads correctly.
     pub clean: String,
-    /// Number of `v` lines.
+    /// Number of `v` lines in the file.
     pub vertices: usize,
-    /// Number of `f` lines.
+    /// Number of `f` lines in the file, before polygons are cut into triangles.
     pub faces: usize,
-    /// The names behind `usemtl`, each once.
+    /// The names after `usemtl`, each once and in order of first use.
     pub material_names: Vec<String>,
-    /// What stands behind `mtllib`.
+    /// Byte ranges of the text after each `mtllib`, which is one file name or several.
     pub libraries: Vec<Range<usize>>,
     texture_coordinates: usize,
     normals: usize,
@@ -26,7 +26,8 @@ pub(super) struct Lines {
 /// The keywords that are long enough to be misspelt, and their real neighbours in the format.
 const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 
-/// Reads all lines of `text`.
+/// Checks all lines of `text` and returns their content; fails at the first line that is malformed or that
+/// names a vertex, texture coordinate or normal that is not above it.
 pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
     let mut reader = Reader { file, text, lines: Lines::default(), names: HashSet::new() };
     // The one library that `tobj` sees: it stands for all names of materials.
