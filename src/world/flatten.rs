@@ -1,5 +1,5 @@
-//! Down the scene graph: transforms are multiplied, shapes become primitives, and what moves is kept at both ends of
-//! its way.
+//! Traversal of the scene graph: transforms are multiplied, shapes become primitives, and what moves is kept
+//! at shutter times 0 and 1.
 
 use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
@@ -15,6 +15,7 @@ use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2};
 use std::ops::Range;
 
+/// Traverses `scene` from its roots and returns its primitives in world space; see [`World::new`].
 pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
     let mut meshes = Meshes::new(scene, effects, functions);
     let searched =

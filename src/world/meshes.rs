@@ -1,5 +1,5 @@
-//! Meshes before they are placed: divided, smoothed, and patches made of triangles. Which of them stand in more than one
-//! place is counted here as well.
+//! Meshes before they are placed: subdivided, with their normals, and Bézier patches made of triangles. The
+//! number of places of each mesh is counted here as well.
 
 use super::WorldFunctions;
 use super::facets::Facet;
@@ -11,26 +11,32 @@ use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A mesh that is ready to be placed.
+/// A mesh that can be placed in the world: subdivided and with its normals.
 pub(super) struct Ready {
+    /// Positions, triangles and texture coordinates, in the space of the mesh.
     pub mesh: Arc<Mesh>,
-    /// One a vertex, or none for a flat mesh.
+    /// One unit normal per vertex; empty for a mesh that is shaded flat.
     pub normals: Vec<Vec3>,
-    /// For each of the mesh's own material names, the index of the scene's material.
+    /// For each of the mesh's own material names, the index of the material in the scene; empty if the mesh
+    /// takes the material of its node.
     pub materials: Vec<usize>,
-    /// Whether it is kept once and placed by instances.
+    /// Whether the mesh is kept once and placed by instances.
     pub shared: bool,
-    /// The part that holds it, once it has been asked for.
+    /// Index into [`super::World::parts`], once a first instance has been made.
     pub part: Option<u32>,
 }
 
-/// All that shows triangles: meshes of the scene by index, patches by the node that holds them.
+/// All shapes that are meshes of triangles: the meshes of the scene, and its Bézier patches.
 pub(super) struct Meshes {
+    /// The meshes of the scene, with the indices that they have there.
     pub of_scene: Vec<Ready>,
+    /// The Bézier patches, by the index of the node that shows the patch.
     pub of_nodes: HashMap<usize, Ready>,
 }
 
 impl Meshes {
+    /// Subdivides the meshes of `scene`, computes normals where `effects` asks for smooth meshes, and divides
+    /// Bézier patches into triangles, each as far as `functions` has the function for it.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> Meshes {
         let places = Places::count(scene);
         let shared = |places: u64| places > 1 && !scene.quality.copies && functions.placement.is_some();
@@ -152,13 +158,18 @@ fn parents_first(scene: &Scene) -> Vec<usize> {
 }
 
 impl Ready {
-    /// The material of a triangle, if it has one of its own.
+    /// The index in the scene of the material of triangle `face`; `None` if it takes the material of its
+    /// node.
     pub fn material_of(&self, face: usize) -> Option<u32> {
         let name = *self.mesh.face_materials.get(face)?;
         self.materials.get(name as usize).map(|&material| material as u32)
     }
 
-    /// A triangle with what lies at its corners.
+    /// Triangle `face` with the normals and texture coordinates at its corners, if the mesh has them.
+    ///
+    /// # Panics
+    ///
+    /// If the mesh has no triangle `face`.
     pub fn facet(&self, face: usize) -> Facet {
         let vertices = self.mesh.triangles[face];
         let normals =
