@@ -44,10 +44,10 @@ pub enum Geometry {
 pub struct Slot(u32);
 
 impl Slot {
-    /// The value that stands for no index.
+    /// The value that stands for no index: `u32::MAX`, which is never an index.
     pub const NONE: Slot = Slot(u32::MAX);
 
-    /// The index, or `None` for [`Slot::NONE`].
+    /// The index into the table, or `None` for [`Slot::NONE`].
     #[inline]
     pub fn get(self) -> Option<usize> {
         (self != Slot::NONE).then_some(self.0 as usize)

@@ -9,7 +9,7 @@ use std::f32::consts::{PI, TAU};
 /// A shape in a space of its own, into which rays are transformed before they are tested (stage 8).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// The shape, in its own space.
+    /// The shape, in its own space and as the scene file describes it.
     pub shape: SolidShape,
     /// The transforms from the space of the shape to the world and back.
     pub placement: Placement,
