@@ -116,7 +116,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
     Ok(ObjFile { mesh, materials })
 }
 
-/// One mesh for each run of faces with the same material.
+/// Reads one mesh for each run of faces with the same material.
 fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError> {
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
     // `tobj` forgets names that no library defines, but a scene may define them as well. So it is told that each
@@ -130,8 +130,9 @@ fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError>
     }
 }
 
-/// All parts in one mesh. Normals stay only if every corner has one: a mesh has one for each vertex or none at all, and a
-/// made-up one would be seen in the picture. A part without texture coordinates shows the middle of its image.
+/// All parts as one mesh. Normals are kept only if every corner has one: a mesh has one per vertex or none at
+/// all, and an invented one would be visible in the picture. A part without texture coordinates shows the
+/// middle of its image.
 fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     let vec3s = |numbers: &[f32]| -> Vec<Vec3> { numbers.chunks_exact(3).map(Vec3::from_slice).collect() };
     let mut mesh = Mesh::default();
@@ -165,7 +166,7 @@ fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     mesh
 }
 
-/// The number of a material in the mesh, which numbers them in order of first use.
+/// The index of a material in the mesh, in order of first use; a new name is added.
 fn material_number(mesh: &mut Mesh, name: &str) -> u32 {
     let known = mesh.material_names.iter().position(|known| known == name);
     known.unwrap_or_else(|| {

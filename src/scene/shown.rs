@@ -53,8 +53,8 @@ impl Scene {
 
 struct Walk<'a> {
     scene: &'a Scene,
-    /// Nodes that were visited, each with the material that it inherits and whether what is above moves: a node that
-    /// stands in a million places is looked at a few times.
+    /// The nodes that were visited, each with the material that it inherits and whether a node above it
+    /// moves. So a node with a million places is visited a few times only.
     seen: BTreeSet<(usize, usize, bool)>,
     shown: Vec<Shown>,
 }

@@ -154,8 +154,8 @@ fn on_triangle<F: StudentFunctions>(
     Point { point, error, normal, smooth }
 }
 
-/// Barycentric coordinates `(α, β, γ)` of the hit, none below 0. Where the search did not keep those that the test
-/// found, the triangle is tested once more.
+/// Barycentric coordinates `(α, β, γ)` of the hit, with `α >= 0`. If the search did not keep those of the
+/// test, the triangle is tested once more.
 #[inline(always)]
 fn barycentric<F: StudentFunctions>(
     tests: ShapeTests,

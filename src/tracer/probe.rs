@@ -51,9 +51,9 @@ pub struct SceneProbe<'a, F, T> {
 pub struct Notes {
     /// Whether any hit is enough; otherwise the closest is needed.
     any_will_do: bool,
-    /// Of the last hit that was reported.
+    /// The last hit that was reported: the primitive, and what its test found.
     last: (u32, Detail),
-    /// Of the closest hit with an instance: the instance, the primitive that it places, and what the test of that found.
+    /// The closest hit with an instance: the hit, the primitive of the shared mesh, and what its test found.
     instance: Option<(PrimitiveHit, u32, Detail)>,
 }
 

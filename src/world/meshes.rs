@@ -70,7 +70,7 @@ impl Meshes {
     }
 }
 
-/// The mesh as the scene wants it, and whether that is another one than in its file.
+/// The mesh, subdivided as often as the scene asks, and whether it differs from that in its file.
 fn divided(source: &SceneMesh, functions: &WorldFunctions) -> (Arc<Mesh>, bool) {
     match functions.subdivide {
         Some(subdivide) if source.subdivisions > 0 => {
@@ -84,7 +84,8 @@ fn divided(source: &SceneMesh, functions: &WorldFunctions) -> (Arc<Mesh>, bool) 
     }
 }
 
-/// Those of the file if they belong to this mesh, or averages.
+/// One normal per vertex: those of the file if the mesh is that of the file, otherwise averages; none if
+/// there is no function for them.
 fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3> {
     match functions.vertex_normals {
         _ if !is_new && !mesh.normals.is_empty() => mesh.normals.clone(),
@@ -93,7 +94,8 @@ fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3
     }
 }
 
-/// `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the viewer.
+/// A Bézier patch as `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the
+/// viewer.
 fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> Vec3) -> Mesh {
     let side = steps + 1;
     let at = |row: u32, column: u32| Vec2::new(column as f32, row as f32) / steps as f32;
@@ -111,7 +113,7 @@ fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> 
     }
 }
 
-/// In how many places the nodes of a scene stand, and the meshes. What moves is copied, and does not count.
+/// The number of places of each node and of each mesh in the scene.
 struct Places {
     of_nodes: Vec<u64>,
     of_meshes: Vec<u64>,

@@ -47,7 +47,7 @@ pub(super) fn nodes(
     Ok((nodes, roots))
 }
 
-/// The table of one node. That a shape stands in `shape` is easily forgotten, so it gets its own remedy.
+/// The table of one node. A shape outside of `shape` is a common mistake, so it gets advice of its own.
 fn table(value: Value<'_>) -> Result<Table<'_>, LoadError> {
     let table = value.any_table()?;
     match KINDS.iter().find(|kind| table.get(kind).is_some()) {

@@ -130,7 +130,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// `vector`, which was read from this value, if all components are as they should be.
+    /// `vector`, which was read from this value, if `holds` is true for each component; fails otherwise.
     fn each_component(
         &self,
         vector: Vec3,

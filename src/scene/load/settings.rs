@@ -8,15 +8,16 @@ use crate::scene::error::LoadError;
 use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
 
-/// The longest side of a picture, in pixels.
+/// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
-/// The most pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
+/// The largest number of pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
 const MAX_PIXELS: u64 = 1 << 28;
-/// Beyond a million samples, the rounding of their sum in `f32` outweighs what another one adds.
+/// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
+/// contribution of one more.
 const MAX_SAMPLES: u32 = 1 << 20;
-/// Each bounce is a call within a call, and a thread has a stack of 2 MiB.
+/// The largest number of reflections and refractions on a path.
 const MAX_DEPTH: u32 = 1000;
-/// 1024^3 cells of 4 bytes fill 4 GiB.
+/// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
 const MAX_GRID: u32 = 1024;
 
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of

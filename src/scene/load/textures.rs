@@ -43,7 +43,7 @@ pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
     Ok(Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap })
 }
 
-/// The pixels row by row, in linear light; transparency is left out.
+/// The pixels row by row from the top, in linear light; transparency is ignored.
 fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
     match image {
         // High dynamic range files store linear light already.
@@ -66,7 +66,7 @@ fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
     }
 }
 
-/// The sRGB curve backwards (IEC 61966-2-1): a line near black, a power above.
+/// The inverse of the sRGB curve (IEC 61966-2-1): linear near black, a power above; both values in `0..=1`.
 fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -120,7 +120,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A name, which may hold blanks.
+    /// A name, which may contain blanks.
     fn name(&self, keyword: &Word, rest: &[Word], help: &str) -> Result<String, LoadError> {
         match rest {
             [first, .., last] => Ok(self.text[first.span.start..last.span.end].into()),
@@ -132,7 +132,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Three numbers, or one for a grey.
+    /// Three numbers, or one for a grey, as text for `tobj`.
     fn colour(&self, keyword: &Word, values: &[Word]) -> Result<String, LoadError> {
         if let [word, ..] = values
             && ["spectral", "xyz"].contains(&word.text)
@@ -166,7 +166,7 @@ impl Reader<'_> {
     }
 }
 
-/// What follows the options of an image, as in `map_Kd -clamp on -s 2 2 1 wood.png`.
+/// The words after the options of an image, as in `map_Kd -clamp on -s 2 2 1 wood.png`.
 fn after_options<'a, 'b>(mut rest: &'b [Word<'a>]) -> &'b [Word<'a>] {
     while let [option, values @ ..] = rest {
         let most = match option.text {

@@ -23,7 +23,7 @@ pub(super) struct Lines {
     normals: usize,
 }
 
-/// The keywords that are long enough to be misspelt, and their real neighbours in the format.
+/// The keywords that are long enough to be misspelt, and the similar keywords of the format.
 const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 
 /// Checks all lines of `text` and returns their content; fails at the first line that is malformed or that
@@ -38,8 +38,8 @@ pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
     Ok(reader.lines)
 }
 
-/// The lines of a file, as bytes. One that ends in a backslash goes on in the next, unless it is a comment: those
-/// like to end in the name of a Windows directory.
+/// The byte ranges of the lines of a file. A line that ends in a backslash continues in the next one, unless
+/// it is a comment: comments often end in the name of a Windows directory.
 fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
     let mut start = if text.starts_with('\u{feff}') { 3 } else { 0 };
     std::iter::from_fn(move || {
@@ -220,7 +220,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// All that stands behind a keyword. Names may hold blanks.
+    /// The byte range of everything after a keyword. Names may contain blanks.
     fn rest(&self, keyword: &Word, end: usize, help: &str) -> Result<Range<usize>, LoadError> {
         let rest = &self.text[keyword.span.end..end];
         let start = keyword.span.end + (rest.len() - rest.trim_start().len());
@@ -231,7 +231,8 @@ impl<'a> Reader<'a> {
         Ok(start..start + rest.trim().len())
     }
 
-    /// The format has many keywords that are none of our business, so only a near miss is an error.
+    /// Fails only if a keyword looks like a misspelt one, because the format has many keywords that a mesh
+    /// does not need.
     fn check_keyword(&self, keyword: &Word) -> Result<(), LoadError> {
         match nearest(keyword.text, LONG_KEYWORDS) {
             Some(meant) if meant != keyword.text && !keyword.text.starts_with('#') => Err(self
@@ -242,7 +243,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A name as `tobj` sees it: a line break, which only a backslash can bring in, would end its line.
+/// A name without line breaks, which only a backslash can bring in and which would end its line for `tobj`.
 fn one_line(name: &str) -> String {
     name.replace(['\n', '\r'], " ")
 }

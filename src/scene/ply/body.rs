@@ -132,7 +132,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Moves past the next number and remembers where it stands.
+    /// Skips the next number and remembers its byte range.
     fn advance(&mut self, scalar: Scalar, place: Place) -> Result<(), LoadError> {
         match self.encoding {
             Encoding::Ascii => {
@@ -151,8 +151,8 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Moves past the next word, if there is one. Line ends are blanks like any other: a row of several vertices
-    /// and a vertex of several rows read the same.
+    /// Skips the next word, if there is one. Line ends count as blanks: several vertices in one row and a
+    /// vertex over several rows are read alike.
     fn next_word(&mut self) -> bool {
         let rest = &self.bytes[self.at..];
         let Some(blanks) = rest.iter().position(|byte| !byte.is_ascii_whitespace()) else { return false };

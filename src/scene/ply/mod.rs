@@ -97,7 +97,7 @@ pub(crate) fn unit_normals(normals: Vec<Vec3>) -> Vec<Vec3> {
     normals.into_iter().map(Vec3::try_normalize).collect::<Option<_>>().unwrap_or_default()
 }
 
-/// The texture coordinates, or none at all if one of them names no place in an image.
+/// The texture coordinates, or none at all if one of them is not finite.
 fn finite_uvs(uvs: Vec<Vec2>) -> Vec<Vec2> {
     if uvs.iter().all(|uv| uv.is_finite()) { uvs } else { Vec::new() }
 }

@@ -22,7 +22,7 @@ pub(super) struct Layout {
     corners: usize,
 }
 
-/// Names of texture coordinates: one pair for each tool that has written PLY files.
+/// The names of texture coordinates: one pair for each tool that writes PLY files.
 const UV_NAMES: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 const CORNER_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
@@ -153,7 +153,7 @@ impl Layout {
         Ok(())
     }
 
-    /// One index into the table of vertices.
+    /// One index of a vertex; fails if there is no such vertex.
     fn corner(&self, body: &mut Body, place: Place, item: Scalar) -> Result<u32, LoadError> {
         let index = body.value(item, place)?;
         // Some writers spell indices as floats, which is fine as long as they count. False also for a NaN.
