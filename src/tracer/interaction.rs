@@ -45,16 +45,12 @@ struct Point {
 }
 
 impl SurfaceInteraction {
-    /// The interaction of `ray` with the surface that it hits at `hit`.
+    /// The interaction of `ray` with the surface that it hits at `hit`. Panics if `hit` does not belong to
+    /// `world`.
     ///
     /// On a sphere the point is computed from the centre, in a triangle from the corners, and on a plane by
     /// projection, so that its error does not grow with the length of the ray. `Surface::error` bounds the
     /// rounding error along each axis in world units.
-    ///
-    /// # Panics
-    ///
-    /// If `hit` does not belong to `world`: an index is out of range, or an instance stands where a surface
-    /// is expected.
     #[inline(always)]
     pub fn new<F: StudentFunctions>(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Self {
         let (point, material) = match hit.target {
@@ -240,11 +236,8 @@ fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
 }
 
 /// The texture coordinates of a hit at `point`, in world space; the middle of the image, `(0.5, 0.5)`, for
-/// shapes without any. They may lie outside of `0..=1` on infinite planes and meshes.
-///
-/// # Panics
-///
-/// If `hit` does not belong to `world`.
+/// shapes without any. They may lie outside of `0..=1` on infinite planes and meshes. Panics if `hit` does
+/// not belong to `world`.
 pub fn texture_coordinates<F: StudentFunctions>(
     world: &World,
     tests: ShapeTests,

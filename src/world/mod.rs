@@ -165,7 +165,7 @@ pub struct WorldFunctions {
     pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
     /// Divides each triangle of a mesh into four. Without it, meshes are not subdivided.
     pub subdivide: Option<fn(&Mesh) -> Mesh>,
-    /// Whether spheres are shown; without them, they are left out.
+    /// Whether spheres are shown; otherwise they are left out.
     pub spheres: bool,
     /// Whether infinite planes are shown; otherwise they are left out.
     pub planes: bool,
