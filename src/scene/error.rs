@@ -1,31 +1,38 @@
-//! What a reader of files says when it cannot go on: what, where, and what to do about it.
+//! The error of all file readers: which file cannot be used, where in it, what is wrong, and how to repair
+//! it.
 
 use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// A file of the user's that cannot be used. Nothing has been written when this is returned.
+/// A file of the user that cannot be used. It displays as `file:line:column: message`, followed by a line
+/// `help: …` if there is advice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadError {
-    /// The file.
+    /// Path of the file that cannot be used.
     pub file: PathBuf,
-    /// Line and column, both from 1, if the trouble sits at a place in the file.
+    /// Line and column, both counted from 1 and the column in characters; `None` if the error concerns the
+    /// whole file.
     pub place: Option<(usize, usize)>,
-    /// Bytes of the file that are to blame, for tools that draw the line; empty if there is no place.
+    /// The byte range of the file that is wrong, for tools that mark it; empty if there is no place.
     pub span: Range<usize>,
-    /// What is wrong, lower case, without a full stop.
+    /// What is wrong, in lower case and without a full stop.
     pub message: String,
-    /// What to do about it.
+    /// How to repair the file, if there is advice.
     pub help: Option<String>,
 }
 
 impl LoadError {
-    /// Trouble with a whole file.
+    /// An error that concerns the whole `file`, without a place and without advice.
     pub fn new(file: &Path, message: impl Into<String>) -> Self {
         LoadError { file: file.into(), place: None, span: 0..0, message: message.into(), help: None }
     }
 
-    /// Trouble at the bytes `span` of `text`, which is what the file holds.
+    /// An error at the bytes `span` of `text`, the content of `file`. Line and column are those of
+    /// `span.start`.
+    ///
+    /// A byte order mark does not count as a column. A start beyond the end of `text`, or inside of a
+    /// character, is placed at the end of `text`.
     pub fn at(file: &Path, text: &str, span: Range<usize>, message: impl Into<String>) -> Self {
         let before = text.get(..span.start).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -35,7 +42,7 @@ impl LoadError {
         LoadError { place: Some((line, column)), span, ..LoadError::new(file, message) }
     }
 
-    /// The same error with a remedy.
+    /// The same error with the advice `help`, which replaces any earlier advice.
     pub fn help(self, help: impl Into<String>) -> Self {
         LoadError { help: Some(help.into()), ..self }
     }

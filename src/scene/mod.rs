@@ -1,4 +1,7 @@
-//! A scene that has been read and found sound: everything that a frame needs, nothing that can fail.
+//! A scene as data: film, camera, lights, materials, meshes and the scene graph.
+//!
+//! [`load`] reads a scene from a TOML file and checks it. A scene that [`load`] returns holds everything that
+//! a frame needs: all its indices are in range, and its graph has no cycle.
 
 pub mod error;
 pub mod load;
@@ -18,60 +21,68 @@ use glam::{Affine3A, Mat3A, Vec3, Vec3A};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How linear light becomes the numbers of an image file.
+/// How linear light becomes the numbers of an 8-bit image file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Encoding {
-    /// The curve that screens expect.
+    /// The sRGB curve of IEC 61966-2-1, which screens expect.
     #[default]
     Srgb,
-    /// Power 1/2, the gamma of the lecture notes.
+    /// The square root (power 1/2), the gamma of the lecture notes.
     Gamma2,
 }
 
-/// Size and encoding of the picture.
+/// Size of the picture in pixels, and encoding of its 8-bit files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FilmSettings {
-    /// Pixels a row.
+    /// Pixels per row, at least 1; a scene file may ask for up to 65 536.
     pub width: u32,
-    /// Rows.
+    /// Rows of pixels, at least 1; a scene file may ask for up to 65 536 rows and 2^28 pixels in all.
     pub height: u32,
-    /// For 8-bit files.
+    /// Encoding of 8-bit image files; the film itself holds linear radiance.
     pub encoding: Encoding,
 }
 
-/// A mesh of the scene, with what the scene says of it.
+/// A mesh of the scene, with the settings that the scene file gives for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SceneMesh {
-    /// The tables.
+    /// Positions, triangles and optional normals, texture coordinates and face materials, in the space of the
+    /// mesh.
     pub mesh: Arc<Mesh>,
-    /// Whether normals are interpolated over a triangle.
+    /// Whether shading normals are interpolated over each triangle; otherwise the normal of the triangle is
+    /// used.
     pub smooth: bool,
-    /// How often each triangle is divided into four before anything is traced (stage 8).
+    /// Number of Loop subdivision steps before anything is traced (stage 8), 0 to 12 in a scene file. Each
+    /// step divides every triangle into four.
     pub subdivisions: u32,
-    /// For each of the mesh's own material names, the index of the scene's material, if the scene wants them.
+    /// For each of the mesh's own material names, an index into [`Scene::materials`]. Empty if all triangles
+    /// take the material of the node that shows the mesh.
     pub materials: Vec<usize>,
 }
 
 /// A node of the scene graph. Nodes may have several parents; they never form a cycle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Node {
-    /// For messages.
+    /// Name for messages: that of the scene file, or `node 1`, `node 2` and so on by position in the file.
     pub name: String,
-    /// From the space of this node to that of its parent, at shutter time 0.
+    /// The affine transform from the space of this node to that of its parent, at shutter time 0; it must be
+    /// invertible.
     pub transform: Affine3A,
-    /// The same at shutter time 1, if the node moves (stage 6).
+    /// The same transform at shutter time 1, if the node moves (stage 6). [`blend`] gives the transforms
+    /// between.
     pub transform_end: Option<Affine3A>,
-    /// What the node shows, if anything.
+    /// The shape, in the space of this node; `None` for a node that only groups its children.
     pub shape: Option<Shape>,
-    /// Index of the node's material; without one, children and shape take the parent's.
+    /// Index into [`Scene::materials`], for the shape and for all nodes below that name no material of their
+    /// own. `None` inherits the material of the parent; a root without one takes material 0.
     pub material: Option<usize>,
-    /// Indices of nodes below.
+    /// Indices into [`Scene::nodes`] of the children, which stand in the space of this node.
     pub children: Vec<usize>,
 }
 
 impl Scene {
-    /// A scene with nothing in it, seen by `camera`: 1 by 1 pixel, black, one default material.
+    /// A scene without shapes and lights, seen by `camera`. Its film is 1 by 1 pixel, its background is
+    /// black, and its only material is the default at index 0.
     pub fn empty(camera: Camera) -> Scene {
         Scene {
             film: FilmSettings { width: 1, height: 1, encoding: Encoding::default() },
@@ -92,13 +103,18 @@ impl Scene {
 }
 
 impl Node {
-    /// From the space of this node to that of its parent at `time`, the matrices blended entry by entry.
+    /// The transform from the space of this node to that of its parent at shutter time `time`,
+    /// `0 <= time <= 1`: [`blend`] of its two ends, or [`Node::transform`] if the node does not move.
     pub fn transform_at(&self, time: f32) -> Affine3A {
         self.transform_end.map_or(self.transform, |end| blend(&self.transform, &end, time))
     }
 }
 
-/// `start` at time 0, `end` at time 1, entry by entry.
+/// The matrix `(1 - time) * start + time * end`, entry by entry: `start` at time 0, `end` at time 1. Times
+/// outside `0 <= time <= 1` extrapolate, and a NaN gives NaN.
+///
+/// Pitfall: the blend of two rotations is not a rotation. A shape that turns shrinks on its way, and in the
+/// middle of a half turn it has no volume.
 pub fn blend(start: &Affine3A, end: &Affine3A, time: f32) -> Affine3A {
     let column = |start: Vec3A, end: Vec3A| (1.0 - time) * start + time * end;
     let (s, e) = (&start.matrix3, &end.matrix3);
@@ -112,33 +128,34 @@ pub fn blend(start: &Affine3A, end: &Affine3A, time: f32) -> Affine3A {
     }
 }
 
-/// A scene, ready to be rendered.
+/// A scene, ready to be rendered: what is shown, from where, and with which accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// The picture to make.
+    /// Size of the picture in pixels, and encoding of its 8-bit files.
     pub film: FilmSettings,
-    /// Where it is taken from.
+    /// The camera in world space, with its lens and its shutter.
     pub camera: Camera,
-    /// Colour of rays that hit nothing.
+    /// Linear radiance of rays that hit nothing, at least 0 in each channel.
     pub background: Vec3,
-    /// `A`, light that comes from everywhere.
+    /// `A`, the ambient light of the Phong model in linear RGB, at least 0 in each channel.
     pub ambient: Vec3,
-    /// Light bounced between surfaces is wanted (stage 11).
+    /// Whether the scene asks for light that bounces between surfaces (stage 11).
     pub indirect_light: bool,
-    /// All lamps.
+    /// All lights in world space, in the order of the scene file.
     pub lights: Vec<Light>,
     /// All materials; index 0 is the default for shapes that name none.
     pub materials: Vec<Material>,
-    /// Names of the materials, for messages.
+    /// The name of each material by index, for messages. A material that comes with the mesh `box` is called
+    /// `box/NAME`.
     pub material_names: Vec<String>,
-    /// All images.
+    /// All images in linear light; [`Material::texture`] is an index into this list.
     pub textures: Vec<Texture>,
-    /// All meshes.
+    /// All meshes, each in its own space; [`Shape::Mesh`] holds an index into this list.
     pub meshes: Vec<SceneMesh>,
-    /// All nodes.
+    /// All nodes of the scene graph; [`Node::children`] and [`Scene::roots`] are indices into this list.
     pub nodes: Vec<Node>,
-    /// Indices of the nodes that have no parent.
+    /// Indices of the nodes that have no parent, in ascending order. Their transforms lead to world space.
     pub roots: Vec<usize>,
-    /// Default knobs for this scene.
+    /// Sampling, accuracy and acceleration structure, as the scene file sets them.
     pub quality: Quality,
 }

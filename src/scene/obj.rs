@@ -11,11 +11,11 @@
 //! f 1/1/1 2/1/1 3/1/1
 //! ```
 //!
-//! A corner of a face has up to three indices, counted from 1: into the positions `v`, the texture coordinates `vt`
-//! and the normals `vn`. Our [`Mesh`] has one index a corner, so each combination that occurs becomes a vertex of
-//! its own; that is what `tobj` does for us, together with cutting polygons into triangles. It does not say where
-//! an error sits, though, and some nonsense makes it panic. So `lines` first reads the file line by line, finds
-//! all that is wrong, and hands on only what is right.
+//! A corner of a face has up to three indices, counted from 1: into the positions `v`, the texture
+//! coordinates `vt` and the normals `vn`. Our [`Mesh`] has one index per corner, so each combination that
+//! occurs becomes a vertex of its own. `tobj` makes these vertices and cuts polygons into triangles. Its
+//! errors name no line, however, and some malformed files make it panic. Therefore `lines` first reads the
+//! file line by line, reports every error with its place, and hands on only the lines that are correct.
 
 mod library;
 mod lines;
@@ -29,47 +29,65 @@ use crate::scene::ply::unit_normals;
 use glam::{Vec2, Vec3};
 use std::path::{Path, PathBuf};
 
-/// What an OBJ file and its material libraries hold.
+/// The content of an OBJ file and of its material libraries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjFile {
-    /// All objects and groups of the file in one mesh: in the end all triangles go into one set of primitives.
+    /// All objects and groups of the file as one mesh, because all triangles become one set of primitives in
+    /// the end.
     pub mesh: Mesh,
-    /// All materials of the libraries, used or not. A name in [`Mesh::material_names`] may be missing here.
+    /// All materials of the libraries, used or not; of two with the same name only the last. A name in
+    /// [`Mesh::material_names`] may be missing here.
     pub materials: Vec<ObjMaterial>,
 }
 
-/// A material of a library, as it is written there.
+/// A material of a material library (MTL file), with its numbers as they are written there. Each number is
+/// finite but may be out of range; `None` stands for a line that is missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjMaterial {
-    /// `newmtl`
+    /// The name after `newmtl`; it may contain blanks.
     pub name: String,
-    /// `Ka`
+    /// The colour after `Ka`: the share of ambient light that is reflected, in linear RGB.
     pub ambient: Option<Vec3>,
-    /// `Kd`
+    /// The colour after `Kd`: the share of light that is reflected diffusely, in linear RGB.
     pub diffuse: Option<Vec3>,
-    /// `Ks`
+    /// The colour after `Ks`: the strength of the highlight, in linear RGB.
     pub specular: Option<Vec3>,
-    /// `Ns`, the Phong exponent.
+    /// The number after `Ns`: the exponent of the Phong model.
     pub shininess: Option<f32>,
-    /// `Ni`
+    /// The number after `Ni`: the index of refraction inside the material.
     pub index_of_refraction: Option<f32>,
-    /// `d`: 1 is opaque.
+    /// The number after `d`: the opacity, 1 for opaque and 0 for fully transparent.
     pub dissolve: Option<f32>,
-    /// `map_Kd`, as a path that starts where the library lies.
+    /// The image after `map_Kd`, as a path joined to the folder of the library. The file need not exist.
     pub diffuse_texture: Option<PathBuf>,
-    /// `Ke`
+    /// The colour after `Ke`: the light that the surface emits, in linear RGB.
     pub emission: Option<Vec3>,
 }
 
-/// The material of faces above the first `usemtl` line, if other faces have one.
+/// The material name of faces above the first `usemtl` line, if other faces have a material.
 pub const DEFAULT_MATERIAL: &str = "default";
 
-/// Reads the mesh and the materials of an OBJ file.
+/// Reads the mesh and the materials of the OBJ file `file`, as [`parse`] does with its bytes.
+///
+/// # Errors
+///
+/// If `file` cannot be read, and in all cases in which [`parse`] fails.
 pub fn read(file: &Path) -> Result<ObjFile, LoadError> {
     parse(file, &read_bytes(file)?)
 }
 
-/// Reads the bytes of an OBJ file; its libraries are looked for next to `file`.
+/// Reads the mesh and the materials from the bytes of an OBJ file; material libraries are searched for in the
+/// folder of `file`, which need not exist itself.
+///
+/// Positions and texture coordinates are finite. Normals are of unit length; if any corner has no normal, or
+/// a normal without direction, the mesh has none at all. Where only some materials of the file have texture
+/// coordinates, those of the others are `(0.5, 0.5)`.
+///
+/// # Errors
+///
+/// If a line of the file or of a library is malformed, if an index names no vertex, texture coordinate or
+/// normal above its face, if a position or a texture coordinate is not finite, if a library is missing or
+/// cannot be read, or if there are no faces. An error at a place in a file names its line and column.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
     let text = readable(bytes);
     let lines = lines::read(file, &text)?;
@@ -98,7 +116,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
     Ok(ObjFile { mesh, materials })
 }
 
-/// One mesh for each run of faces with the same material.
+/// Reads one mesh for each run of faces with the same material.
 fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError> {
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
     // `tobj` forgets names that no library defines, but a scene may define them as well. So it is told that each
@@ -112,8 +130,9 @@ fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError>
     }
 }
 
-/// All parts in one mesh. Normals stay only if every corner has one: a mesh has one for each vertex or none at all, and a
-/// made-up one would be seen in the picture. A part without texture coordinates shows the middle of its image.
+/// All parts as one mesh. Normals are kept only if every corner has one: a mesh has one per vertex or none at
+/// all, and an invented one would be visible in the picture. A part without texture coordinates shows the
+/// middle of its image.
 fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     let vec3s = |numbers: &[f32]| -> Vec<Vec3> { numbers.chunks_exact(3).map(Vec3::from_slice).collect() };
     let mut mesh = Mesh::default();
@@ -147,7 +166,7 @@ fn merge(parts: Vec<tobj::Mesh>, names: &[String]) -> Mesh {
     mesh
 }
 
-/// The number of a material in the mesh, which numbers them in order of first use.
+/// The index of a material in the mesh, in order of first use; a new name is added.
 fn material_number(mesh: &mut Mesh, name: &str) -> u32 {
     let known = mesh.material_names.iter().position(|known| known == name);
     known.unwrap_or_else(|| {

@@ -1,40 +1,41 @@
-//! What a scene says of how it is to be rendered: structures, sampling, precision.
+//! The settings of a scene that trade accuracy for time: acceleration structure, sampling and precision.
 
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use serde::{Deserialize, Serialize};
 
-/// Which structure finds the closest hit.
+/// The acceleration structure that finds the closest hit of a ray. All of them must find the same hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Accelerator {
-    /// Every primitive for every ray.
+    /// No structure: every ray is tested against every primitive (stage 2).
     BruteForce,
-    /// The scene graph itself, with a box around each of its nodes (stage 8).
+    /// The scene graph itself, with a bounding box around each of its nodes (stage 8).
     BoundingBoxes,
-    /// The same with balls (stage 8).
+    /// The scene graph itself, with a bounding sphere around each of its nodes (stage 8).
     BoundingSpheres,
-    /// A bounding volume hierarchy.
+    /// A bounding volume hierarchy (stage 3).
     #[default]
     Bvh,
-    /// A uniform grid (stage 9).
+    /// A uniform grid of equal cells (stage 9).
     Grid,
-    /// An octree (stage 9).
+    /// An octree that is searched from the root down (stage 9).
     Octree,
-    /// An octree, searched from cell to cell and not from the root down (stage 9).
+    /// An octree that is searched from cell to cell along the ray, and not from the root down (stage 9).
     OctreeByCells,
-    /// A kd-tree (stage 9).
+    /// A kd-tree: space is divided by planes across the axes (stage 9).
     KdTree,
-    /// A binary space partition (stage 9).
+    /// A binary space partition (BSP) tree: space is divided by planes of any direction (stage 9).
     Bsp,
-    /// A bounding volume hierarchy, after what the ray before met (stage 9).
+    /// A bounding volume hierarchy; the primitive that the previous ray hit is tested first (stage 9).
     CachedBvh,
-    /// A bounding volume hierarchy, with rays from the camera in packets of eight (stage 9).
+    /// A bounding volume hierarchy that is searched by camera rays in packets of eight (stage 9).
     PacketBvh,
 }
 
 impl Accelerator {
-    /// All of them.
+    /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
+    /// structures that divide space.
     pub const ALL: [Accelerator; 11] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
@@ -49,7 +50,7 @@ impl Accelerator {
         Accelerator::Bsp,
     ];
 
-    /// Its name in scene files.
+    /// The name in scene files, in snake case, for example `bounding_boxes`.
     pub fn name(self) -> &'static str {
         match self {
             Accelerator::BruteForce => "brute_force",
@@ -67,56 +68,61 @@ impl Accelerator {
     }
 }
 
-/// How a hierarchy divides its primitives.
+/// Where the builder of a bounding volume hierarchy divides the primitives of a node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Split {
-    /// Half of the primitives on either side.
+    /// At the object median: half of the primitives on either side.
     ObjectMedian,
-    /// Half of the box on either side.
+    /// At the spatial median: half of the box on either side.
     SpatialMedian,
-    /// Where the expected cost is least.
+    /// Where the expected cost is least by the surface area heuristic (SAH).
     #[default]
     SurfaceArea,
 }
 
 impl Split {
-    /// All three, in the order of the lecture.
+    /// All three splits, in the order of the lecture.
     pub const ALL: [Split; 3] = [Split::ObjectMedian, Split::SpatialMedian, Split::SurfaceArea];
 }
 
-/// Which of the ray/triangle tests is used.
+/// Which ray/triangle test is used in single precision (stage 2).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TriangleMethod {
-    /// Cramer's rule.
+    /// Solve for `t` and the barycentric coordinates by Cramer's rule.
     Cramer,
-    /// Plane first, then the Gram matrix.
+    /// Intersect the plane of the triangle, then find the barycentric coordinates with the Gram matrix of its
+    /// edges.
     Gram,
-    /// Watertight edge tests.
+    /// The method of the student's choice. That of the reference is watertight: no ray passes between two
+    /// triangles that share an edge.
     #[default]
     Watertight,
 }
 
-/// Where the samples of a pixel lie (stage 6).
+/// Where the samples of a pixel lie (stage 6). Lens, shutter time, area lights and rough surfaces are sampled
+/// in the same way, and independently at random with [`Sampler::Center`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampler {
-    /// In its centre, all of them.
+    /// All samples lie in the centre of the pixel.
     Center,
-    /// Anywhere.
+    /// Independent samples, uniformly distributed over the pixel.
     Random,
-    /// Anywhere in cells of a grid, one a cell.
+    /// Stratified sampling: the pixel is divided into a grid of cells, and each sample lies anywhere in a
+    /// cell of its own.
     Jittered,
-    /// Around the centre, weighted by a Gaussian.
+    /// Stratified samples over a square that reaches 1.5 pixels from the centre along x and y, weighted by a
+    /// Gaussian.
     Gaussian,
-    /// Spread as evenly as can be; a single one in the centre.
+    /// An Owen-scrambled Sobol sequence, which spreads samples evenly; a single sample lies in the centre.
     #[default]
     LowDiscrepancy,
 }
 
 impl Sampler {
-    /// Whether `samples` samples of a pixel lie anywhere else than in its centre.
+    /// Whether any of `samples` samples per pixel lies elsewhere than in the centre of the pixel.
     pub fn spreads(self, samples: u32) -> bool {
         match self {
             Sampler::Center => false,
@@ -126,51 +132,59 @@ impl Sampler {
     }
 }
 
-/// How many digits the tests of rays against triangles and spheres work with (stage 10). Rays and shapes themselves are
-/// kept in single precision. Planes, boxes, cylinders, cones, disks and polygons have one test each, whatever this is:
-/// their `t` is right to a few roundings.
+/// Floating-point precision of the ray tests against triangles and spheres (stage 10).
+///
+/// Rays and shapes themselves are stored in single precision. Infinite planes, boxes, cylinders, cones, disks
+/// and polygons have one test each, for both settings; their `t` is right to a few roundings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
-    /// 24 bits, by the [`TriangleMethod`] of the scene; that of the reference which is watertight takes 53 as it is.
+    /// Single precision, 24 bits, by the [`TriangleMethod`] of the scene. The watertight test of the
+    /// reference uses double precision in any case.
     #[default]
     Single,
-    /// 53 bits, whatever the method is.
+    /// Double precision, 53 bits, whatever the [`TriangleMethod`] is.
     Double,
 }
 
-/// Every knob that trades accuracy for time.
+/// Every setting that trades accuracy for time. A key that a scene file leaves out keeps its value of
+/// `Quality::default()`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quality {
-    /// Samples a pixel, at least 1.
+    /// Number of samples per pixel, at least 1; 1 by default.
     pub samples_per_pixel: u32,
-    /// Where they lie (stage 6).
+    /// Where the samples of a pixel lie (stage 6); low discrepancy by default.
     pub sampler: Sampler,
-    /// Samples of an area light a hit (stage 6); with 0 it shines from its middle.
+    /// Samples per area light and hit (stage 6); 1 by default. With 0 an area light shines from its centre.
     pub light_samples: u32,
-    /// Rays of a rough mirror a hit, at least 1 (stage 6).
+    /// Rays for each glossy reflection or transmission at a hit on a rough surface, at least 1 (stage 6); 1
+    /// by default.
     pub gloss_samples: u32,
-    /// How often a ray may be mirrored or refracted (stage 5).
+    /// Largest number of reflections and refractions on a path from the camera (stage 5); 5 by default.
     pub max_depth: u32,
-    /// Rays of less weight are not traced (stage 5).
+    /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
+    /// (stage 5); 0.001 by default.
     pub min_contribution: f32,
-    /// What finds the closest hit.
+    /// The acceleration structure that finds the closest hit; a bounding volume hierarchy by default.
     pub accelerator: Accelerator,
-    /// How a hierarchy is split.
+    /// Where a bounding volume hierarchy divides its primitives; by surface area by default.
     pub split: Split,
-    /// The most primitives that a leaf holds, at least 1.
+    /// The most primitives in a leaf of a bounding volume hierarchy, at least 1; 4 by default. Trees that
+    /// divide space aim at the same number, and stop earlier where a division does not help.
     pub leaf_size: u32,
-    /// The ray/triangle test.
+    /// The ray/triangle test in single precision; watertight by default.
     pub triangle_method: TriangleMethod,
-    /// Whether a mesh that stands in several places is copied for each, as if stage 8 were not there.
+    /// Whether the triangles of a mesh are copied for each of its instances, as without stage 8; `false`
+    /// shares one mesh.
     pub copies: bool,
-    /// What a search of the scene graph saves (stage 8).
+    /// Which shortcuts a search of the scene graph takes (stage 8); all by default.
     pub savings: Savings,
-    /// Digits of tests against triangles and spheres (stage 10).
+    /// Floating-point precision of the tests against triangles and spheres (stage 10); single by default.
     pub precision: Precision,
-    /// Cells of a grid along its longest side; 0 takes the formula's (stage 9).
+    /// Cells of a uniform grid along its longest side (stage 9); 0, the default, takes the number of the
+    /// formula.
     pub grid_resolution: u32,
-    /// What the builder of a kd-tree minds (stage 9).
+    /// Which heuristics the builder of a kd-tree follows (stage 9); all by default.
     pub kd_heuristics: KdHeuristics,
 }
 

@@ -1,24 +1,33 @@
-//! What a scene shows: the shapes that can be reached from its roots, each with what it is made of.
+//! The shapes that a scene shows: those that can be reached from its roots, each with its materials.
 
 use super::{Node, Scene};
 use crate::shape::Shape;
 use std::collections::BTreeSet;
 
-/// A shape in the scene.
+/// A shape that the scene shows, with the materials and the motion that it has there.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Index of its node.
+    /// Index of the node that holds the shape, in [`Scene::nodes`].
     pub node: usize,
-    /// Index of its mesh, if it is one.
+    /// Index of the mesh in [`Scene::meshes`], if the shape is a mesh.
     pub mesh: Option<usize>,
-    /// Indices of the materials that it is made of, in ascending order.
+    /// Indices into [`Scene::materials`] of the materials of the shape, in ascending order, each once.
     pub materials: Vec<usize>,
-    /// Whether it, or a node above it, is elsewhere at time 1 than at time 0.
+    /// Whether the transform of the node, or of a node above it, differs between shutter times 0 and 1.
     pub moves: bool,
 }
 
 impl Scene {
-    /// Every shape that is reached from a root, once for each combination of material and motion in which it is.
+    /// Every shape that is reached from a root, depth first, once for each combination of inherited material
+    /// and motion.
+    ///
+    /// A node with many places is listed once per combination, so the time does not grow with the number of
+    /// its places.
+    ///
+    /// # Panics
+    ///
+    /// If an index of the scene into its nodes or meshes is out of range. A scene that [`crate::scene::load`]
+    /// has read has no such index.
     pub fn shown(&self) -> Vec<Shown> {
         let mut walk = Walk { scene: self, seen: BTreeSet::new(), shown: Vec::new() };
         for &root in &self.roots {
@@ -44,8 +53,8 @@ impl Scene {
 
 struct Walk<'a> {
     scene: &'a Scene,
-    /// Nodes that were visited, each with the material that it inherits and whether what is above moves: a node that
-    /// stands in a million places is looked at a few times.
+    /// The nodes that were visited, each with the material that it inherits and whether a node above it
+    /// moves. So a node with a million places is visited a few times only.
     seen: BTreeSet<(usize, usize, bool)>,
     shown: Vec<Shown>,
 }

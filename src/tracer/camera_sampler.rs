@@ -1,4 +1,5 @@
-//! From the samples of a pixel to rays, and from their colours to that of the pixel, through the functions of stage 6.
+//! From the samples of a pixel to camera rays, and from their colours to the colour of the pixel, by the
+//! functions of stage 6.
 
 use super::plan::Plan;
 use crate::camera::Camera;
@@ -11,13 +12,13 @@ use crate::world::camera_for;
 use glam::{Vec2, Vec3, uvec2};
 use std::marker::PhantomData;
 
-/// Makes rays out of samples.
+/// Makes camera rays from samples, and the colour of a pixel from the colours of its samples.
 pub struct CameraSampler<F> {
     camera: Camera,
     sampler: Sampler,
     /// Width and height of the film in pixels.
     film: Vec2,
-    /// Whether samples have places of their own in the pixel.
+    /// Whether the student function `pixel_position` places samples in the pixel.
     positions: bool,
     /// Whether the samples of a pixel are weighted.
     weights: bool,
@@ -25,7 +26,7 @@ pub struct CameraSampler<F> {
 }
 
 impl<F: StudentFunctions> CameraSampler<F> {
-    /// For the camera and the film of `scene`.
+    /// The sampler for the camera and the film of `scene`.
     pub fn new(scene: &Scene, plan: &Plan) -> Self {
         CameraSampler {
             camera: camera_for(scene),
@@ -37,7 +38,9 @@ impl<F: StudentFunctions> CameraSampler<F> {
         }
     }
 
-    /// The ray of a sample.
+    /// The camera ray of a sample in world space, through the pixel position, the lens and the shutter time
+    /// that the sample draws. Without a shutter its time is 0; without a drawn time it is the time at which
+    /// the shutter opens.
     #[inline(always)]
     pub fn ray(&self, sample: &CameraSample) -> Ray {
         let on_film = (uvec2(sample.column, sample.row).as_vec2() + self.place(sample)) / self.film;
@@ -49,7 +52,8 @@ impl<F: StudentFunctions> CameraSampler<F> {
         ray
     }
 
-    /// How much a sample counts in its pixel.
+    /// The weight of a sample in its pixel: 1, or that of the Gaussian filter at its distance from the
+    /// centre.
     #[inline(always)]
     pub fn weight(&self, sample: &CameraSample) -> f32 {
         match self.sampler {
@@ -58,7 +62,8 @@ impl<F: StudentFunctions> CameraSampler<F> {
         }
     }
 
-    /// Where in its pixel a sample lies.
+    /// The position of a sample in pixels from the upper left corner of its pixel; a Gaussian filter reaches
+    /// beyond the pixel.
     #[inline(always)]
     fn place(&self, sample: &CameraSample) -> Vec2 {
         match &sample.pixel {
@@ -68,6 +73,7 @@ impl<F: StudentFunctions> CameraSampler<F> {
         }
     }
 
+    /// The shutter time of a sample, `0..=1`.
     #[inline(always)]
     fn time(&self, sample: &CameraSample) -> f32 {
         let Some(shutter) = &self.camera.shutter else { return 0.0 };
@@ -83,7 +89,9 @@ impl<F: StudentFunctions> CameraSampler<F> {
         F::time_in_shutter(shutter, slot, slots, stratum.u.x)
     }
 
-    /// The colour that the samples of a pixel make.
+    /// The linear colour of a pixel from its samples: the colour of a single sample, the weighted mean by
+    /// `develop`, or the plain mean if the filter functions are not written. Without samples the plain mean
+    /// is NaN.
     #[inline(always)]
     pub fn filter_pixel(&self, samples: &[WeightedColor]) -> Vec3 {
         match samples {

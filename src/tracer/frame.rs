@@ -1,4 +1,4 @@
-//! One frame: its plan, what rays meet, and the camera, put together for a job.
+//! One frame: its plan, its acceleration structures and its camera, put together for a job.
 
 use super::camera_sampler::CameraSampler;
 use super::interaction::Looks;
@@ -11,24 +11,25 @@ use crate::kit::{Limits, RenderJob, StudentFunctions};
 use crate::scene::Quality;
 use crate::world::World;
 
-/// Everything that the rays of a frame need, built once.
+/// Everything that the rays of a frame need. It is built once and shared by all threads.
 pub struct Frame<'a, F> {
-    /// What was asked for.
+    /// The scene to render, with view, seed and number of threads.
     pub job: &'a RenderJob,
-    /// What of it is computed.
+    /// Which of the effects of the scene are computed, and by which functions.
     pub plan: Plan,
-    /// Makes rays.
+    /// Makes camera rays from samples, and colours of pixels from the colours of samples.
     pub camera: CameraSampler<F>,
-    /// Finds what they meet.
+    /// Finds the hits of rays in the flattened scene.
     pub intersector: Intersector<F>,
-    /// How surfaces are looked at.
+    /// By which functions and with which normals hits become surface interactions.
     pub looks: Looks,
-    /// When a path ends.
+    /// At which depth and weight a path ends.
     pub limits: Limits,
 }
 
 impl<'a, F: StudentFunctions> Frame<'a, F> {
-    /// Plans the frame and builds the structures; `watch` hears how far they are.
+    /// Plans the frame, flattens the scene and builds the acceleration structures; `watch` receives the
+    /// progress of the build.
     pub fn new(job: &'a RenderJob, written: &Written<F>, watch: &dyn Watch) -> Self {
         let scene = &job.scene;
         let quality = &scene.quality;
@@ -42,12 +43,13 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         Frame { job, plan, camera, intersector, looks, limits }
     }
 
-    /// How the scene is to be rendered.
+    /// The quality settings of the scene that is rendered.
     pub fn quality(&self) -> &Quality {
         &self.job.scene.quality
     }
 
-    /// What the frame driver draws: only what the scene calls for.
+    /// The settings of the frame driver: film size, threads, seed, and random numbers only for the effects of
+    /// the plan.
     pub fn settings(&self) -> FrameSettings {
         let (film, quality) = (&self.job.scene.film, self.quality());
         let settings = FrameSettings {

@@ -1,37 +1,37 @@
-//! What a ray meets first.
+//! The closest hit of a ray.
 
 use glam::Vec3;
 
-/// What a ray meets first, and where.
+/// The closest hit of a ray: its distance, the surface, and what the test found there.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// Distance along the ray, in lengths of its direction.
     pub t: f32,
-    /// What is met.
+    /// The surface that is hit, by its indices in the world.
     pub target: Target,
-    /// Where on it.
+    /// What the test of the surface found beside `t`.
     pub detail: Detail,
 }
 
-/// Which surface.
+/// The surface that a ray hits, by its indices in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// Index of an infinite plane of the world.
+    /// Index of an infinite plane in `World::planes`.
     Plane(u32),
-    /// Index of a primitive of the world.
+    /// Index of a primitive in `World::primitives`, which is not an instance.
     Primitive(u32),
-    /// Index of an instance among the primitives of the world, and of a primitive of the mesh that it places.
+    /// Index of an instance in `World::primitives`, and index of a primitive of its shared mesh.
     Instance(u32, u32),
 }
 
-/// What the test of a primitive found beside `t`, so that the primitive that is met need not be tested again.
+/// What the test of a primitive found beside `t`. It is kept so that the primitive need not be tested again.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Detail {
-    /// Nothing, or it was not kept.
+    /// Nothing was found, or it was not kept.
     #[default]
     None,
-    /// Barycentric coordinates `(β, γ)` of a triangle.
+    /// Barycentric coordinates `(β, γ)` of the hit in a triangle.
     Triangle(f32, f32),
-    /// The normal of a solid, in its own space.
+    /// The unit normal of a solid at the hit, in its own space.
     Solid(Vec3),
 }

@@ -1,5 +1,5 @@
-//! From a hit to the point that is shaded: its place with a bound on the rounding error, its normals, what it is made of,
-//! and where it lies in an image.
+//! From a hit to the point that is shaded: its position with a bound on the rounding error, its normals, its
+//! material and its texture coordinates.
 
 use super::hit::{Detail, Hit, Target};
 use super::intersection::ShapeTests;
@@ -12,22 +12,22 @@ use crate::shape::{Plane, Sphere, Triangle};
 use crate::world::{Geometry, Instance, Primitive, Solid, SolidShape, World, around_ball};
 use glam::{DVec3, Vec2, Vec3, vec2};
 
-/// A point at which a ray meets a surface.
+/// A point at which a ray hits a surface, with everything that shading needs.
 pub struct SurfaceInteraction {
-    /// The point, as the functions of students see it.
+    /// Position with error bound and unit normals, in world space, as student functions receive them.
     pub surface: Surface,
-    /// Whether the ray comes from outside.
+    /// Whether the ray arrives from outside, against the outward normal of the shape.
     pub entering: bool,
-    /// Index of the material.
+    /// Index of the material at the point in `World::materials`.
     pub material: usize,
 }
 
-/// How surfaces are looked at.
+/// How hits become surface interactions: which tests and which normals are used.
 #[derive(Clone, Copy)]
 pub struct Looks {
-    /// By which functions rays are tested against shapes.
+    /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
-    /// Whether normals are interpolated over smooth meshes.
+    /// Whether normals are interpolated over the triangles of smooth meshes.
     pub smooth: bool,
     /// Whether normals are turned to the side from which the ray comes.
     pub facing: bool,
@@ -45,7 +45,12 @@ struct Point {
 }
 
 impl SurfaceInteraction {
-    /// Of `ray` at `hit`.
+    /// The interaction of `ray` with the surface that it hits at `hit`. Panics if `hit` does not belong to
+    /// `world`.
+    ///
+    /// On a sphere the point is computed from the centre, in a triangle from the corners, and on a plane by
+    /// projection, so that its error does not grow with the length of the ray. `Surface::error` bounds the
+    /// rounding error along each axis in world units.
     #[inline(always)]
     pub fn new<F: StudentFunctions>(world: &World, looks: Looks, ray: &Ray, hit: &Hit) -> Self {
         let (point, material) = match hit.target {
@@ -99,7 +104,8 @@ fn in_instance<F: StudentFunctions>(
     (to_world::<F>(point, &instance.placement), material)
 }
 
-/// The instance that is primitive `outer`, primitive `inner` of its mesh, and what that is made of.
+/// The instance that is primitive `outer` of the world, primitive `inner` of its shared mesh, and the index
+/// of the material there.
 fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32) {
     let outer = &world.primitives[outer as usize];
     let Geometry::Instance(index) = outer.geometry else { unreachable!("only instances have an inside") };
@@ -144,8 +150,8 @@ fn on_triangle<F: StudentFunctions>(
     Point { point, error, normal, smooth }
 }
 
-/// Barycentric coordinates `(α, β, γ)` of the hit, none below 0. Where the search did not keep those that the test
-/// found, the triangle is tested once more.
+/// Barycentric coordinates `(α, β, γ)` of the hit, with `α >= 0`. If the search did not keep those of the
+/// test, the triangle is tested once more.
 #[inline(always)]
 fn barycentric<F: StudentFunctions>(
     tests: ShapeTests,
@@ -205,7 +211,7 @@ fn normal_of_solid<F: StudentFunctions>(
     }
 }
 
-/// A point in the space of an object, in the world.
+/// A point in the space of an object, transformed to the world with its error bound and its normals.
 fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
     let (up, down) = (placement.to_world.as_daffine3(), placement.to_object.as_daffine3());
     let point = up.transform_point3(own.point.as_dvec3()).as_vec3();
@@ -229,7 +235,9 @@ fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
     }
 }
 
-/// The texture coordinates of a hit at `point`; the middle of the image where the shape has none.
+/// The texture coordinates of a hit at `point`, in world space; the middle of the image, `(0.5, 0.5)`, for
+/// shapes without any. They may lie outside of `0..=1` on infinite planes and meshes. Panics if `hit` does
+/// not belong to `world`.
 pub fn texture_coordinates<F: StudentFunctions>(
     world: &World,
     tests: ShapeTests,
@@ -279,10 +287,11 @@ fn uv_on_triangle(world: &World, image: usize, weights: Vec3) -> Vec2 {
     weights.x * a + weights.y * b + weights.z * c
 }
 
-/// Half the distance between 1 and the next number: what rounding takes at most.
+/// Half the distance between 1 and the next `f32`: the largest relative error of one rounding.
 const HALF_STEP: f32 = f32::EPSILON / 2.0;
 
-/// `γ_n`, the largest relative error that `n` roundings can add up to (Higham).
+/// `γ_n = n u / (1 - n u)`, a bound on the relative error of `n` roundings (Higham, "Accuracy and Stability
+/// of Numerical Algorithms").
 fn rounding(n: u32) -> f32 {
     let nu = n as f32 * HALF_STEP;
     nu / (1.0 - nu)

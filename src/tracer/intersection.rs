@@ -1,24 +1,25 @@
-//! By which student functions rays are tested against triangles and spheres.
+//! Which student functions test rays against triangles and spheres.
 
 use crate::kit::{StudentFunctions, TriangleHit};
 use crate::ray::Ray;
 use crate::shape::{Sphere, Triangle};
 
-/// The method and the precision of the scene as one choice, so that the inner loop branches once.
+/// Triangle method and precision of the scene as one choice, so that the inner loop has one branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeTests {
-    /// The method of the student's choice; that of the reference is watertight.
+    /// The triangle method of the student's choice; that of the reference is watertight.
     Watertight,
-    /// Cramer's rule.
+    /// The triangle method by Cramer's rule.
     Cramer,
-    /// Plane and Gram matrix.
+    /// The triangle method by plane and Gram matrix.
     Gram,
-    /// Every number in double precision, whatever the method is.
+    /// Triangles and spheres in double precision, whatever the method is.
     InDouble,
 }
 
 impl ShapeTests {
-    /// Where `ray` hits `triangle`, if it does within its range.
+    /// The hit of `ray` with `triangle` for `t_min < t < t_max`, if there is one: `t` and barycentric
+    /// coordinates.
     #[inline(always)]
     pub fn triangle<F: StudentFunctions>(self, ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
         match self {
@@ -29,7 +30,7 @@ impl ShapeTests {
         }
     }
 
-    /// The `t` at which `ray` hits `sphere` first, if it does within its range.
+    /// The smallest `t` with `t_min < t < t_max` at which `ray` hits `sphere`, if there is one.
     #[inline(always)]
     pub fn sphere<F: StudentFunctions>(self, ray: &Ray, sphere: &Sphere) -> Option<f32> {
         match self {

@@ -1,4 +1,5 @@
-//! What rays meet: the closest of planes and primitives, by the structure that the plan has chosen.
+//! Finds hits of rays: the closest of infinite planes and primitives, by the structure that the plan has
+//! chosen.
 
 use super::hit::{Detail, Hit, Target};
 use super::motion::plane_at;
@@ -16,16 +17,16 @@ use crate::world::{Geometry, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
 
-/// Finds what rays meet.
+/// Finds the closest hit or any hit of rays with a world.
 pub struct Intersector<F> {
-    /// The world with its structures.
+    /// The world with an acceleration structure over its primitives and one over each shared mesh.
     pub scene: Structured,
     accelerator: Option<Accelerator>,
     functions: PhantomData<F>,
 }
 
 impl<F: StudentFunctions> Intersector<F> {
-    /// Builds the structures over `world`.
+    /// Builds the acceleration structures of `plan` over `world` and over each of its shared meshes.
     pub fn new(mut world: World, plan: &Plan, quality: &Quality) -> Self {
         let graph = world.graph.take();
         // Shared meshes first: an instance is as large as its mesh. A list of primitives needs no boxes.
@@ -48,12 +49,14 @@ impl<F: StudentFunctions> Intersector<F> {
         Intersector { scene, accelerator: plan.accelerator, functions: PhantomData }
     }
 
-    /// Bytes of the structures of all shared meshes.
+    /// Bytes of memory that the structures of all shared meshes take.
     pub fn bytes_of_parts(&self) -> u64 {
         self.scene.parts.iter().filter_map(Structure::size).map(|size| size.bytes).sum()
     }
 
-    /// What `ray` meets first. `last` is the primitive that the ray before met.
+    /// The closest hit of `ray` within its range, or `None`. If the accelerator has a cache, `last` is the
+    /// primitive that the previous ray hit, and it is updated. If no search is written, the result is the
+    /// last primitive that the ray hits, or else the last infinite plane.
     #[inline(always)]
     pub fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T, last: &mut Option<u32>) -> Option<Hit> {
         // Most scenes have no infinite plane, and then the ray need not be copied: 3 % of a plain frame.
@@ -78,7 +81,8 @@ impl<F: StudentFunctions> Intersector<F> {
         hit.map(|hit| probe.hit_of(hit, ray)).or(plane)
     }
 
-    /// What each of `rays` meets first. A structure that takes several rays at once gets them in one batch.
+    /// The closest hit of each of `rays`, in their order. A structure that searches several rays at once gets
+    /// them in one packet.
     pub fn closest_hits<T: Tally>(&self, rays: &[Ray], tally: &mut T) -> Vec<Option<Hit>> {
         let (Structure::Hierarchy(bvh), true, Some(first)) =
             (&self.scene.structure, self.takes_batches(), rays.first())
@@ -97,12 +101,12 @@ impl<F: StudentFunctions> Intersector<F> {
         found.map(|((hit, ray), (_, plane))| hit.map(|hit| probe.hit_of(hit, ray)).or(plane)).collect()
     }
 
-    /// Whether the structure takes several rays at once, so that rays from the camera should come in packets.
+    /// Whether the structure searches several rays at once, so that camera rays should come in packets.
     pub fn takes_batches(&self) -> bool {
         self.accelerator == Some(Accelerator::PacketBvh)
     }
 
-    /// Whether `ray` meets anything within its range.
+    /// Whether `ray` hits anything for `t_min < t < t_max`, which is what a shadow ray asks.
     #[inline(always)]
     pub fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
         let in_plane = self.scene.world.planes.iter().any(|plane| {
@@ -115,7 +119,7 @@ impl<F: StudentFunctions> Intersector<F> {
         in_plane || self.scene.structure.any_hit::<F, _>(&mut probe, ray, self.scene.savings)
     }
 
-    /// The closest of the infinite planes, and the ray that ends there.
+    /// The closest hit with an infinite plane, and a copy of the ray that ends there.
     fn closest_plane<T: Tally>(&self, ray: &Ray, tally: &mut T) -> (Option<Ray>, Option<Hit>) {
         let mut ray = *ray;
         let mut closest = None;
@@ -134,7 +138,7 @@ impl<F: StudentFunctions> Intersector<F> {
     }
 }
 
-/// The corners of a triangle that stands still.
+/// The corners of a triangle that does not move; `None` for any other primitive.
 fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
     match (primitive.end.get(), &primitive.geometry) {
         (None, Geometry::Triangle(triangle)) => Some(vec![triangle.a, triangle.b, triangle.c]),
@@ -142,7 +146,7 @@ fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
     }
 }
 
-/// The box around all places where the primitive is.
+/// The box around all positions of the primitive between times 0 and 1.
 fn bounds_of<F: StudentFunctions>(world: &World, parts: &[Aabb], primitive: &Primitive) -> Aabb {
     let bounds = |geometry: &Geometry| match geometry {
         Geometry::Sphere(sphere) => F::sphere_bounds(sphere),

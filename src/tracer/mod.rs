@@ -1,10 +1,12 @@
-//! Frames out of student functions: whatever is written is used, and a picture says what it lacks.
+//! Renders frames with student functions: every function that is written is used, and notes say what a
+//! picture lacks.
 //!
-//! [`Renderer`] answers for the frames of a kit. `plan` decides what is computed and what stands in for functions that
-//! are not written; `frame` puts together `camera_sampler`, which makes rays, and `intersector`, which finds what they
-//! meet: through a `structure`, whose search asks a `probe`, which tests triangles and spheres by `intersection` and
-//! shapes in spaces of their own by `solids`. `path` follows a ray through the tree of rays that it makes, from
-//! `interaction` to interaction. `record` writes rays down, `outlines` draws structures.
+//! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
+//! that are not written. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
+//! which finds their hits. The intersector searches a `structure` through a `probe`, which tests triangles
+//! and spheres by `intersection` and shapes in spaces of their own by `solids`. `path` follows a ray through
+//! the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a pixel,
+//! and `outlines` draws structures.
 
 mod camera_sampler;
 mod frame;
@@ -46,12 +48,15 @@ use std::marker::PhantomData;
 use std::time::Instant;
 use written::Written;
 
-/// Renders with the functions of `F`.
+/// Renders frames with the student functions of `F`.
+///
+/// A function that turns out to be unfinished during a frame (`todo!`) is left out: the frame starts again
+/// without it, and a note names it. Any other panic of a student function is passed on.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Renderer<F>(PhantomData<F>);
 
 impl<F> Renderer<F> {
-    /// The renderer, which has no state.
+    /// The renderer; it has no state.
     pub const NEW: Renderer<F> = Renderer(PhantomData);
 }
 
@@ -81,8 +86,8 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 }
 
-/// Does `work` with what is written. Where it reaches a `todo!` all the same, it begins again without that function; gives
-/// a note for each of those.
+/// Calls `work` with the functions that are written. Where it reaches a `todo!` all the same, it starts again
+/// without that function; returns a note for each of those.
 fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
     let mut written = Written::all();
     let mut notes = Vec::new();
@@ -150,7 +155,7 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
     crate::frame::render(&settings, watch, radiance, |samples| frame.camera.filter_pixel(samples))
 }
 
-/// What was done between two counts, as a colour.
+/// The work between two counts as a colour: node visits, box tests and primitive tests.
 fn work(before: &Counts, after: &Counts) -> Vec3 {
     let nodes = after.node_visits - before.node_visits;
     let boxes = after.box_tests - before.box_tests;

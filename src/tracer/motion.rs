@@ -1,11 +1,12 @@
-//! Where moving shapes are at the time of a ray.
+//! Positions of moving shapes at the time of a ray.
 
 use crate::kit::StudentFunctions;
 use crate::shape::{Plane, Sphere, Triangle};
 use crate::world::{EndlessPlane, Geometry, Primitive, World};
 use glam::Vec3;
 
-/// The shape of `primitive` at `time`.
+/// The geometry of `primitive` at shutter time `time`, `0..=1`, interpolated linearly between its two ends;
+/// the geometry itself if it does not move.
 #[inline]
 pub fn geometry_at<F: StudentFunctions>(world: &World, primitive: &Primitive, time: f32) -> Geometry {
     match primitive.end.get() {
@@ -36,7 +37,8 @@ fn triangle_at<F: StudentFunctions>(start: &Triangle, end: &Triangle, time: f32)
     }
 }
 
-/// Where a plane is at `time`, and the axes of its texture.
+/// The infinite plane at shutter time `time`, `0..=1`, and the axes of its texture there, both in world
+/// space.
 pub fn plane_at<F: StudentFunctions>(plane: &EndlessPlane, time: f32) -> (Plane, [Vec3; 2]) {
     match &plane.motion {
         None => (plane.plane, plane.axes),

@@ -1,4 +1,4 @@
-//! The boxes and cells of a structure as lines that can be drawn.
+//! The boxes and cells of a structure as line segments that can be drawn.
 
 use super::structure::{Structure, Volumes};
 use crate::aabb::Aabb;
@@ -9,8 +9,11 @@ use crate::shape::Sphere;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// The edges of the boxes or cells at this depth, the root being at depth 0, and of the leaves above it; of a BSP tree the
-/// polygons in which its planes above this depth cut each other.
+/// Line segments in world space for the boxes, spheres or cells of `structure` at depth `depth`, and for the
+/// leaves above it. The root is at depth 0; a grid has one level.
+///
+/// Of a BSP tree, the segments are the edges of the polygons in which its planes above this depth cut each
+/// other. Brute force has no segments.
 pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
     let edges = |boxes: Vec<Aabb>| boxes.iter().filter(|one| !one.is_empty()).flat_map(edges_of).collect();
     match structure {
@@ -44,7 +47,7 @@ fn edges_of(bounds: &Aabb) -> Vec<[Vec3; 2]> {
     (0..8).flat_map(from).map(|(corner, axis)| [corners[corner], corners[corner | 1 << axis]]).collect()
 }
 
-/// Three circles around the axes.
+/// Three circles on the sphere, one around each axis, of 48 segments each.
 fn circles(ball: &Sphere) -> Vec<[Vec3; 2]> {
     const CORNERS: usize = 48;
     let circle = |axis: usize| {

@@ -1,4 +1,4 @@
-//! Rays from the camera in packets, one pixel beside the other.
+//! Packets of camera rays through neighbouring pixels.
 
 use super::camera_sampler::CameraSampler;
 use super::hit::Hit;
@@ -9,22 +9,24 @@ use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use std::collections::HashMap;
 
-/// Columns and rows of pixels that share a packet. They divide a tile evenly, so that no two threads trace the same one.
+/// Columns and rows of pixels that share a packet. They divide a tile evenly, so that no two threads trace
+/// the same packet.
 const BLOCK: (u32, u32) = (4, 2);
 const _: () = assert!(TILE.is_multiple_of(BLOCK.0) && TILE.is_multiple_of(BLOCK.1));
 
-/// Rays of a packet.
+/// The number of rays in a packet: one for each pixel of a block of 4 by 2.
 pub const PACKET: usize = (BLOCK.0 * BLOCK.1) as usize;
 
-/// What the packets of a tile have met so far.
+/// The hits of packets whose pixels have not all been asked for yet.
 #[derive(Default)]
 pub struct Packets {
-    /// By column, row and number of the sample.
+    /// The hits, by column, row and number of the sample.
     hits: HashMap<(u32, u32, u32), Option<Hit>>,
 }
 
 impl Packets {
-    /// What the ray of a sample meets. The first sample of a block traces the rays of all its pixels.
+    /// The closest hit of the camera ray of `sample`. The first sample of a block of pixels traces the rays
+    /// of all its pixels; the other samples find their hit stored.
     pub fn first_hit<F: StudentFunctions, T: Tally>(
         &mut self,
         sample: &CameraSample,

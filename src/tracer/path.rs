@@ -1,4 +1,5 @@
-//! The light along one ray, through the tree of rays that it makes: Whitted's algorithm with a list of rays that wait.
+//! The light along one ray, through the tree of its secondary rays: Whitted's algorithm with a list of
+//! waiting rays instead of recursion.
 
 use super::frame::Frame;
 use super::hit::Hit;
@@ -14,42 +15,42 @@ use crate::ray::Ray;
 use glam::Vec3;
 use std::borrow::Cow;
 
-/// A ray that is followed, and what its light counts in the pixel.
+/// A ray that is followed, with the weight of its light in the pixel.
 #[derive(Clone, Copy)]
 pub struct Path {
-    /// The ray.
+    /// The ray, in world space and at one shutter time.
     pub ray: Ray,
-    /// Where its random numbers are looked up.
+    /// Where the random numbers of this path are looked up.
     pub points: Points,
-    /// What the light along it counts in the pixel.
+    /// The weight per channel of the light along this ray in the pixel; 1 for a camera ray.
     pub weight: Vec3,
-    /// Mirrorings and refractions behind it.
+    /// The number of reflections and refractions between the camera and this ray.
     pub depth: u32,
-    /// Why it is followed.
+    /// Whether it is a camera ray, a reflected or a transmitted ray.
     pub kind: RayKind,
-    /// The number of the ray that it goes on from, in the record.
+    /// Index of its parent ray in the record; `None` for a camera ray.
     pub parent: Option<usize>,
 }
 
 impl Path {
-    /// A ray from the camera.
+    /// The path of the camera ray `ray`, with weight 1 and depth 0.
     pub fn from_camera(ray: Ray, points: Points) -> Path {
         Path { ray, points, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None }
     }
 }
 
-/// State of one thread: its counts, and lists that are filled anew for every hit.
+/// The state of one thread: its counts, and lists that are reused for every hit.
 #[derive(Default)]
 pub struct Scratch<T> {
-    /// What was counted.
+    /// The events that this thread has counted.
     pub tally: T,
     lights: Vec<LightSample>,
     /// For each of `lights`, whether it casts shadows.
     shadows: Vec<bool>,
     waiting: Vec<Path>,
-    /// The primitive that the ray before met.
+    /// The primitive that the previous ray hit.
     last: Option<u32>,
-    /// Rays from the camera that were traced ahead.
+    /// The hits of camera rays that were traced ahead in packets.
     pub packets: Packets,
 }
 
@@ -63,7 +64,10 @@ impl<T: Tally> Tally for Scratch<T> {
 }
 
 impl<F: StudentFunctions> Frame<'_, F> {
-    /// The light that comes back along `path` from the camera, which meets `hit` first.
+    /// The linear radiance that arrives along `path`, whose closest hit is `hit`, times the weight of the
+    /// path: light of the surface, of the secondary rays, and the background where nothing is hit.
+    ///
+    /// Source: Whitted, "An improved illumination model for shaded display", 1980.
     #[inline(always)]
     pub fn radiance<T: Tally>(
         &self,
@@ -88,13 +92,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
-    /// What the ray meets first.
+    /// The closest hit of `ray` within its range, or `None`; counted in `scratch`.
     #[inline(always)]
     pub fn closest_hit<T: Tally>(&self, ray: &Ray, scratch: &mut Scratch<T>) -> Option<Hit> {
         self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.last)
     }
 
-    /// The light that the surface at `hit` sends back along the path; the secondary rays join those that wait.
+    /// The light that the surface at `hit` sends back along the path; its secondary rays are added to the
+    /// waiting rays.
     #[inline(always)]
     fn light_from<T: Tally>(
         &self,
@@ -115,7 +120,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         color
     }
 
-    /// What the surface is made of, with its image.
+    /// The material of the surface, with `ambient` and `diffuse` multiplied by its image.
     #[inline(always)]
     fn material<T: Tally>(
         &self,
@@ -137,7 +142,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })
     }
 
-    /// Puts the light that can arrive at a surface into `scratch.lights`.
+    /// Puts a sample of each light that can reach the surface into `scratch.lights`.
     #[inline(always)]
     fn sample_lights<T: Tally>(&self, path: &Path, at: &SurfaceInteraction, scratch: &mut Scratch<T>) {
         scratch.lights.clear();
@@ -162,7 +167,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
-    /// Direct light by the student's `shade`, which asks for a shadow ray per light; `record` gets those that are traced.
+    /// Direct light by the student's `shade`, which asks for a shadow ray per light; `record` receives those
+    /// that are traced.
     #[inline(always)]
     fn shade<T: Tally>(
         &self,
@@ -187,7 +193,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         })
     }
 
-    /// Adds the secondary rays of a surface to those that wait; `number` is that of the path in the record.
+    /// Adds the secondary rays of a surface to the waiting rays; `number` is the index of the path in the
+    /// record.
     #[inline(always)]
     fn scatter<T: Tally>(
         &self,
@@ -229,7 +236,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
-    /// The normal of the surface at `hit` as a colour, or the background.
+    /// The shading normal at `hit` as the colour `0.5 n + 0.5`, in world space; the background if nothing is
+    /// hit.
     pub fn normal_as_color<T: Tally>(
         &self,
         path: &Path,

@@ -1,4 +1,4 @@
-//! What a frame will compute, and what it leaves out while exercises are not written yet.
+//! What a frame computes, and what it leaves out while exercises are not written yet.
 
 use super::intersection::ShapeTests;
 use super::written::Written;
@@ -10,32 +10,32 @@ use crate::shape::Shape;
 use crate::world::WorldFunctions;
 use glam::Vec3;
 
-/// What a frame will compute.
+/// What a frame computes: the effects of the scene, as far as the student functions for them are written.
 pub struct Plan {
-    /// What the scene calls for, as far as it is written.
+    /// The effects that the scene asks for and that are written.
     pub effects: Effects,
-    /// The structure that finds what rays meet; `None` if no search is written.
+    /// The acceleration structure; `None` if no search is written, not even brute force.
     pub accelerator: Option<Accelerator>,
-    /// By which functions rays are tested against shapes.
+    /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
-    /// What is shown.
+    /// What a pixel shows: light, normals or work. If `shade` is not written, it shows normals.
     pub view: View,
-    /// What the world is made with.
+    /// The student functions that the world is made with, and the kinds of shapes that are shown.
     pub world: WorldFunctions,
-    /// Whether normals are interpolated over smooth meshes.
+    /// Whether normals are interpolated over the triangles of smooth meshes.
     pub smooth: bool,
     /// Whether normals are turned to the side from which the ray comes.
     pub facing: bool,
-    /// Whether samples have places of their own in the pixel.
+    /// Whether `pixel_position` is written; otherwise samples lie anywhere in the pixel.
     pub positions: bool,
-    /// Whether the samples of a pixel are weighted.
+    /// Whether the filter functions are written; otherwise all samples of a pixel have the same weight.
     pub weights: bool,
-    /// What the picture will lack, one sentence each.
+    /// What the picture will lack, one sentence each; empty if nothing.
     pub notes: Vec<String>,
 }
 
 impl Plan {
-    /// For `job`, with the functions that are `written`.
+    /// The plan of `job`, if only the functions of `written` may be called.
     pub fn new<F: StudentFunctions>(job: &RenderJob, written: &Written<F>) -> Plan {
         let scene = &job.scene;
         let mut notes = Vec::new();
@@ -284,7 +284,8 @@ fn choose_accelerator<F: StudentFunctions>(
     None
 }
 
-/// What a hierarchy takes, and every structure: the boxes around primitives.
+/// The functions that a bounding volume hierarchy needs. Every structure needs them, because they bound
+/// primitives.
 const HIERARCHY: &[Function] = &[
     Function::triangle_bounds,
     Function::sphere_bounds,
@@ -295,7 +296,7 @@ const HIERARCHY: &[Function] = &[
     Function::any_hit,
 ];
 
-/// The functions that a structure takes beside those of a hierarchy, and their stage.
+/// The functions that a structure needs beside those of a hierarchy, and their stage.
 fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
     match accelerator {
         Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),

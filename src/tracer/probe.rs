@@ -1,4 +1,4 @@
-//! What searches may ask about the primitives of a world, or of a mesh that several instances share.
+//! What searches may ask about the primitives of a world, or of a shared mesh.
 
 use super::hit::{Detail, Hit, Target};
 use super::intersection::ShapeTests;
@@ -15,25 +15,25 @@ use crate::world::{Geometry, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
 
-/// A world with its structures: what every probe of a frame looks at.
+/// A world with its acceleration structures, which all probes of a frame read.
 pub struct Structured {
-    /// What is there.
+    /// The flat scene: all primitives, infinite planes, materials and lights.
     pub world: World,
-    /// Over the primitives of the world.
+    /// The acceleration structure over the primitives of the world.
     pub structure: Structure,
-    /// One per shared mesh, over its triangles.
+    /// One acceleration structure per shared mesh, over its triangles.
     pub parts: Vec<Structure>,
-    /// By which functions rays are tested against shapes.
+    /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
-    /// What a search of the scene graph saves.
+    /// Which shortcuts a search of the scene graph takes.
     pub savings: Savings,
 }
 
 /// Answers the questions of a search about one set of primitives, and counts them.
 ///
-/// It holds what the inner loop reads, and is inlined there: asked through [`Structured`], a frame took a tenth longer. What
-/// it writes it writes through references, so that a compiler may keep the rest in registers: with `notes` as a part of
-/// it, hierarchies took 5 % more instructions.
+/// It holds what the inner loop reads, and is inlined there: with indirect access through [`Structured`], a
+/// frame took a tenth longer. Everything that it changes is behind references, so that the compiler can keep
+/// the rest in registers: with `notes` stored inside, hierarchies took 5 % more instructions.
 pub struct SceneProbe<'a, F, T> {
     nodes: &'a [Node],
     primitives: &'a [Primitive],
@@ -46,23 +46,24 @@ pub struct SceneProbe<'a, F, T> {
     functions: PhantomData<F>,
 }
 
-/// What a probe remembers of the hits that it reported: the number of the primitive, and what its test found beside `t`.
+/// What a probe remembers of the hits that it reported: the index of the primitive, and what its test found
+/// beside `t`.
 pub struct Notes {
-    /// Whether the first hit is as good as the closest.
+    /// Whether any hit is enough; otherwise the closest is needed.
     any_will_do: bool,
-    /// Of the last hit that was reported.
+    /// The last hit that was reported: the primitive, and what its test found.
     last: (u32, Detail),
-    /// Of the closest hit with an instance: the instance, the primitive that it places, and what the test of that found.
+    /// The closest hit with an instance: the hit, the primitive of the shared mesh, and what its test found.
     instance: Option<(PrimitiveHit, u32, Detail)>,
 }
 
 impl Notes {
-    /// For a ray that asks for the closest hit.
+    /// Empty notes for a ray whose closest hit is searched.
     pub fn for_closest_hit() -> Notes {
         Notes { any_will_do: false, last: (u32::MAX, Detail::None), instance: None }
     }
 
-    /// For a ray that only asks whether there is a hit.
+    /// Empty notes for a ray for which any hit is enough, such as a shadow ray.
     pub fn for_any_hit() -> Notes {
         Notes { any_will_do: true, ..Notes::for_closest_hit() }
     }
@@ -74,13 +75,13 @@ impl Notes {
 }
 
 impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
-    /// For the primitives of the world.
+    /// A probe for `ray` against the primitives of the world; `tally` counts its answers.
     #[inline(always)]
     pub fn new(scene: &'a Structured, ray: &Ray, tally: &'a mut T, notes: &'a mut Notes) -> Self {
         SceneProbe::over(scene, &scene.structure, &scene.world.primitives, ray, tally, notes)
     }
 
-    /// For `primitives`, which `structure` holds.
+    /// A probe for `ray` against `primitives`, over which `structure` is built.
     #[inline(always)]
     fn over(
         scene: &'a Structured,
@@ -124,8 +125,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         Some(hit.t)
     }
 
-    /// Carries the ray into the space of the shared mesh and searches there. Out of line, because few scenes have
-    /// instances.
+    /// Transforms the ray into the space of the shared mesh and searches there. Out of line, because few
+    /// scenes have instances.
     #[cold]
     fn intersect_instance(&mut self, index: u32, ray: &Ray, instance: u32) -> Option<f32> {
         let instance = &self.world.instances[instance as usize];
@@ -157,7 +158,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         }
     }
 
-    /// What the search has found, with what the test of that primitive found beside `t`.
+    /// The complete hit for `found`, the result of a search with `ray`: with its surface, and with what the
+    /// test found beside `t`.
     pub fn hit_of(&mut self, found: PrimitiveHit, ray: &Ray) -> Hit {
         let PrimitiveHit { t, primitive } = found;
         let Geometry::Instance(_) = self.primitives[primitive as usize].geometry else {
@@ -223,11 +225,11 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     }
 }
 
-/// The same for a packet, whose rays have directions of their own.
+/// A [`SceneProbe`] for a packet of rays, each with a direction of its own.
 pub struct PacketProbe<'a, F, T>(pub SceneProbe<'a, F, T>);
 
 impl<F: StudentFunctions, T: Tally> PacketProbe<'_, F, T> {
-    /// What the search has found for one ray of the packet.
+    /// The complete hit for `found`, the result of the search for `ray`, one ray of the packet.
     pub fn hit_of(&mut self, found: PrimitiveHit, ray: &Ray) -> Hit {
         // The notes are about whichever ray came last.
         *self.0.notes = Notes::for_closest_hit();

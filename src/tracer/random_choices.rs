@@ -1,11 +1,12 @@
-//! What is drawn at random on the way of a ray, through the functions of stage 6: a point of an area light, a direction
-//! off or through a rough surface.
+//! Random choices on the path of a ray, by the functions of stage 6: a point of an area light, a direction
+//! from a rough surface.
 
 use crate::kit::{Bounce, Child, LightSample, StudentFunctions, Surface};
 use crate::material::{AreaShape, Emitter, Light};
 use crate::random::{Points, Purpose};
 
-/// The light from part `part` of `parts` of the area light number `index`: its part of the whole.
+/// Sample `part` of `parts` of the area light `light`, number `index` in the scene, with outline `shape`: the
+/// light that arrives at `surface` from a random point of it, divided by `parts`.
 pub fn sample_area_light<F: StudentFunctions>(
     (index, light, shape): (usize, &Light, &AreaShape),
     surface: &Surface,
@@ -22,7 +23,7 @@ pub fn sample_area_light<F: StudentFunctions>(
     LightSample { radiance: sample.radiance / parts as f32, ..sample }
 }
 
-/// The outline of an area light.
+/// The outline of an area light; `None` for point lights and directional lights.
 pub fn area_of(light: &Light) -> Option<&AreaShape> {
     match &light.emitter {
         Emitter::Area { shape, .. } => Some(shape),
@@ -30,7 +31,8 @@ pub fn area_of(light: &Light) -> Option<&AreaShape> {
     }
 }
 
-/// Part `part` of `parts` of the rays that a rough surface makes of `child`: its part of the weight.
+/// Ray `part` of `parts` that a surface of `roughness` `0..=1` makes of the ideal secondary ray `child`: in a
+/// random direction around it, with its weight divided by `parts`.
 pub fn sample_rough_surface<F: StudentFunctions>(
     child: &Child,
     surface: &Surface,

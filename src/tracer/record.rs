@@ -1,33 +1,34 @@
-//! Writing down the rays behind a pixel while they are followed.
+//! A record of the rays behind a pixel, while they are followed.
 
 use super::path::Path;
 use crate::kit::{RayKind, TracedRay};
 use crate::ray::Ray;
 
-/// Receives every ray of a path. By default a ray is not kept.
+/// Receives every ray that is followed. The default methods keep nothing.
 pub trait Record {
-    /// The path met nothing.
+    /// Receives a path that hits nothing.
     fn miss(&mut self, _path: &Path) {}
 
-    /// The path met a surface of this material at `t`. Gives its number.
+    /// Receives a path that hits a surface of material `_material` at `_t`, in lengths of the direction.
+    /// Returns the index of the path in the record.
     fn hit(&mut self, _path: &Path, _t: f32, _material: usize) -> usize {
         0
     }
 
-    /// A shadow ray went out from the surface that the path number `parent` met.
+    /// Receives a shadow ray from the surface that path `_parent` of the record hits.
     fn shadow(&mut self, _path: &Path, _parent: usize, _ray: &Ray, _blocked: bool) {}
 }
 
-/// Keeps nothing.
+/// A record that keeps nothing, for frames.
 pub struct NoRecord;
 
 impl Record for NoRecord {}
 
-/// Keeps all rays, parents before children.
+/// A record that keeps all rays, parents before children.
 pub struct Rays<'a> {
-    /// Names of the materials, by index.
+    /// The names of the materials of the scene, by index.
     pub material_names: &'a [String],
-    /// The rays.
+    /// The rays so far; an index into them is the number of a path.
     pub rays: Vec<TracedRay>,
 }
 

@@ -1,4 +1,4 @@
-//! Shapes in spaces of their own: where a ray of the world meets one, and a box around it.
+//! Shapes in spaces of their own: their hits with rays in world space, and their bounding boxes.
 
 use super::intersection::ShapeTests;
 use crate::aabb::Aabb;
@@ -7,7 +7,8 @@ use crate::kit::{SolidHit, StudentFunctions};
 use crate::ray::Ray;
 use crate::world::{Solid, SolidShape};
 
-/// Where a ray of the world meets a solid, with the normal in the space of the solid.
+/// The hit of a ray in world space with a solid for `t_min < t < t_max`: its `t`, and the unit normal in the
+/// space of the solid. `t` is the same in both spaces.
 #[inline(never)]
 pub fn intersect_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, solid: &Solid) -> Option<SolidHit> {
     let ray = &F::ray_to_object(ray, &solid.placement.to_object);
@@ -24,7 +25,7 @@ pub fn intersect_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, solid:
     }
 }
 
-/// The box in the world around a solid.
+/// The bounding box of a solid in world space, with room for rounding errors.
 pub fn bounds_of_solid<F: StudentFunctions>(solid: &Solid) -> Aabb {
     let own = match &solid.shape {
         SolidShape::Ball(ball) => F::sphere_bounds(ball),
@@ -33,10 +34,11 @@ pub fn bounds_of_solid<F: StudentFunctions>(solid: &Solid) -> Aabb {
     placed_bounds::<F>(&own, &solid.placement)
 }
 
-/// The box in the world around what has the box `bounds` in its own space.
+/// The bounding box in world space of an object whose bounding box in its own space is `bounds`.
 ///
-/// A ray that is carried there is rounded, and with it where it passes: by a step of its direction, or 6e-8 of its way. A
-/// hundred-thousandth of the size is enough for rays from a hundred sizes away.
+/// The box is enlarged by a hundred-thousandth of its largest extent, because the direction of a ray is
+/// rounded when it is transformed to the space of the object: that moves the ray by 6e-8 of its distance. The
+/// margin is enough for rays from a distance of a hundred times the extent.
 pub fn placed_bounds<F: StudentFunctions>(bounds: &Aabb, placement: &Placement) -> Aabb {
     let room = 1e-5 * (bounds.max - bounds.min).max_element().max(0.0);
     F::bounds_to_world(&placement.to_world, &Aabb::new(bounds.min - room, bounds.max + room))

@@ -1,4 +1,5 @@
-//! The structure over a set of primitives: built by the functions of stages 3, 8 and 9, and searched by them.
+//! The acceleration structure over a set of primitives, built and searched by the functions of stages 3, 8
+//! and 9.
 
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
@@ -12,60 +13,61 @@ use crate::shape::Sphere;
 use glam::{UVec3, Vec3};
 use std::marker::PhantomData;
 
-/// What a search goes through.
+/// An acceleration structure over a set of primitives.
 #[derive(Debug)]
 pub enum Structure {
-    /// Nothing: every primitive is tested.
+    /// No structure: every primitive is tested.
     List,
-    /// Nothing, and no search is written: later primitives are painted over earlier ones, near or far.
+    /// No structure and no search: later primitives cover earlier ones, near or far.
     Painter,
     /// A bounding volume hierarchy.
     Hierarchy(Bvh),
-    /// The scene graph, with a volume around each node.
+    /// The scene graph, with a bounding volume around each node.
     Graph {
-        /// Its nodes.
+        /// The nodes of the scene graph.
         graph: Graph,
-        /// One per node.
+        /// One bounding volume per node of the graph.
         volumes: Volumes,
     },
-    /// A uniform grid.
+    /// A uniform grid of cells.
     Grid(Grid),
-    /// An octree.
+    /// An octree, a tree of cubes.
     Octree {
-        /// Its nodes.
+        /// The nodes of the octree.
         tree: Octree,
-        /// Whether it is searched from cell to cell, and not from the root down.
+        /// Whether it is searched from cell to cell along the ray, and not from the root down.
         by_cells: bool,
     },
-    /// A kd-tree.
+    /// A kd-tree, divided by planes across the axes.
     KdTree(KdTree),
     /// A binary space partition.
     Bsp {
-        /// Its nodes.
+        /// The nodes of the BSP tree.
         tree: Bsp,
-        /// The box around all primitives.
+        /// The bounding box of all primitives.
         around: Aabb,
     },
 }
 
-/// One volume per node of a scene graph; nothing for a node that holds nothing.
+/// The bounding volumes of a scene graph, one per node; empty or `None` for a node without primitives at or
+/// below it.
 #[derive(Debug)]
 pub enum Volumes {
-    /// Boxes.
+    /// Axis-aligned bounding boxes.
     Boxes(Vec<Aabb>),
-    /// Spheres.
+    /// Bounding spheres.
     Balls(Vec<Option<Sphere>>),
 }
 
-/// The primitives below a structure, as searches ask about them.
+/// The primitives below a structure, with the questions that searches ask about them.
 pub trait Primitives: Probe + Cells {
-    /// How many they are.
+    /// The number of primitives; their indices are `0..n_primitives`.
     fn n_primitives(&self) -> u32;
 
-    /// Counts an event.
+    /// Counts one event.
     fn count(&mut self, event: Event);
 
-    /// The reciprocal of the ray's direction.
+    /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
     fn inverse_dir(&self) -> Vec3;
 }
 
@@ -73,12 +75,16 @@ pub trait Primitives: Probe + Cells {
 /// Grid Traversal", 2006, find 2 to 5 best).
 const DENSITY: f32 = 4.0;
 
-/// Deeper octants are a thousandth of a thousandth of the scene wide.
+/// The deepest level of an octree: octants there are a millionth of the scene wide.
 const DEEPEST_OCTANT: usize = 20;
 
 impl Structure {
-    /// Over primitives in these boxes, by `accelerator`; `None` if no search is written. A shared mesh has no graph, and
-    /// gets a hierarchy in its place. `hull` gives the corners of a primitive that is flat.
+    /// Builds the structure of `accelerator` over primitives with the bounding boxes `bounds`; no structure
+    /// if it is `None`, because no search is written.
+    ///
+    /// A shared mesh has no scene graph, and gets a hierarchy in its place. `hull` returns the corners of a
+    /// flat primitive by index, for a BSP tree; other primitives are represented by the corners of their
+    /// boxes.
     pub fn build<F: StudentFunctions>(
         bounds: &[Aabb],
         graph: Option<Graph>,
@@ -130,7 +136,9 @@ impl Structure {
         }
     }
 
-    /// The closest hit of `ray` with the primitives behind `probe`.
+    /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`; for
+    /// [`Structure::Painter`] the hit with the last primitive. `savings` are the shortcuts of a search of the
+    /// scene graph; other structures ignore it.
     #[inline(always)]
     pub fn closest_hit<F: StudentFunctions, P: Primitives>(
         &self,
@@ -154,7 +162,8 @@ impl Structure {
         }
     }
 
-    /// Whether `ray` has any hit with the primitives behind `probe`.
+    /// Whether `ray` hits any primitive of `probe` within its range. Only hierarchies and lists stop at the
+    /// first hit; other structures search the closest one.
     #[inline(always)]
     pub fn any_hit<F: StudentFunctions, P: Primitives>(
         &self,
@@ -169,7 +178,7 @@ impl Structure {
         }
     }
 
-    /// The nodes of a hierarchy.
+    /// The nodes of a bounding volume hierarchy; empty for any other structure.
     pub fn nodes(&self) -> &[Node] {
         match self {
             Structure::Hierarchy(bvh) => &bvh.nodes,
@@ -177,7 +186,8 @@ impl Structure {
         }
     }
 
-    /// How large it is, if there is anything.
+    /// The number of nodes, levels, references to primitives and bytes of the structure; `None` for brute
+    /// force.
     pub fn size(&self) -> Option<StructureSize> {
         fn bytes<T>(list: &[T]) -> usize {
             std::mem::size_of_val(list)
@@ -210,7 +220,7 @@ impl Structure {
     }
 }
 
-/// The last primitive in the order of the scene that the ray meets.
+/// The hit with the last primitive, in the order of the scene, that the ray hits.
 fn last_hit<P: Primitives>(probe: &mut P, ray: &Ray) -> Option<PrimitiveHit> {
     (0..probe.n_primitives())
         .rev()
@@ -248,7 +258,8 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
     }
 }
 
-/// As many cells along the longest side as the scene says, and cubes; or what the formula gives.
+/// Cells of a grid along each axis: as many along the longest side as the scene says, and cubes; or what the
+/// formula gives.
 fn resolution<F: StudentFunctions>(bounds: &[Aabb], quality: &Quality) -> UVec3 {
     let around = around(bounds);
     let longest = (around.max - around.min).max_element();
@@ -262,13 +273,13 @@ fn resolution<F: StudentFunctions>(bounds: &[Aabb], quality: &Quality) -> UVec3 
     }
 }
 
-/// The box around all boxes that are not empty.
+/// The bounding box of all boxes that are not empty.
 fn around(bounds: &[Aabb]) -> Aabb {
     let boxes = bounds.iter().filter(|one| !one.is_empty());
     boxes.fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
-/// A box around each node of a graph and all below it.
+/// A bounding box for each node of a graph, around its primitives and all nodes below.
 fn boxes<F: StudentFunctions>(graph: &Graph, bounds: &[Aabb]) -> Vec<Aabb> {
     let mut boxes = vec![Aabb::EMPTY; graph.nodes.len()];
     // Children have higher numbers than their parents.

@@ -1,5 +1,5 @@
-//! Shapes as triangles. Curved ones have enough of them that the outline looks round, and normals that make the rest
-//! look round, too.
+//! Shapes as triangles. Curved shapes have so many of them that the outline looks round, and interpolated
+//! normals that make the shading look round.
 
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Sphere};
 use glam::{Vec2, Vec3, vec2};
@@ -8,17 +8,20 @@ use std::f32::consts::TAU;
 /// Corners on a full circle: an error of 0.03 % of the radius.
 const AROUND: usize = 128;
 
-/// A triangle with the normals at its corners, on a curved surface, and with the texture coordinates there, if it has
+/// A triangle, with normals at its corners if the surface is curved, and with texture coordinates if it has
 /// any.
 #[derive(Clone, Copy)]
 pub(super) struct Facet {
+    /// The corners, anticlockwise seen from the front, which is the outside of a closed shape.
     pub corners: [Vec3; 3],
+    /// Unit normals at the corners, on the side of the front; `None` if the triangle is shaded flat.
     pub normals: Option<[Vec3; 3]>,
+    /// Texture coordinates at the corners, `(0, 0)` at the lower left of the image.
     pub uvs: Option<[Vec2; 3]>,
 }
 
 impl Facet {
-    /// The same, seen from the other side.
+    /// The same triangle with its second and third corner exchanged, so that its front becomes its back.
     pub fn turned(&self) -> Facet {
         fn turn<T: Copy>([a, b, c]: [T; 3]) -> [T; 3] {
             [a, c, b]
@@ -35,11 +38,12 @@ fn curved(corners: [Vec3; 3], normals: [Vec3; 3]) -> Facet {
     Facet { corners, normals: Some(normals), uvs: None }
 }
 
-/// A fan around the first corner.
+/// A convex polygon as a fan of triangles around its first corner.
 pub(super) fn polygon(corners: &[Vec3]) -> Vec<Facet> {
     (2..corners.len()).map(|i| flat(corners[0], corners[i - 1], corners[i])).collect()
 }
 
+/// A box as twelve triangles, with the whole image on each face.
 pub(super) fn cuboid(cuboid: &Cuboid) -> Vec<Facet> {
     // Corner number i takes x from bit 0, y from bit 1 and z from bit 2; each face runs anticlockwise from outside.
     let corner = |i: usize| {
@@ -68,6 +72,7 @@ fn circle(axis: Vec3) -> Vec<Vec3> {
         .collect()
 }
 
+/// A disk as 128 triangles around its centre, without texture coordinates.
 pub(super) fn disk(disk: &Disk) -> Vec<Facet> {
     cap(disk.center, disk.normal, disk.radius)
 }
@@ -77,6 +82,7 @@ fn cap(center: Vec3, normal: Vec3, radius: f32) -> Vec<Facet> {
     rim.windows(2).map(|side| flat(center, center + radius * side[0], center + radius * side[1])).collect()
 }
 
+/// A closed cylinder as two disks and 256 triangles between them, without texture coordinates.
 pub(super) fn cylinder(cylinder: &Cylinder) -> Vec<Facet> {
     let axis = cylinder.top - cylinder.base;
     let mut facets = cap(cylinder.top, axis, cylinder.radius);
@@ -91,6 +97,7 @@ pub(super) fn cylinder(cylinder: &Cylinder) -> Vec<Facet> {
     facets
 }
 
+/// A closed cone as a disk and 128 triangles from there to the apex, without texture coordinates.
 pub(super) fn cone(cone: &Cone) -> Vec<Facet> {
     let axis = cone.apex - cone.base;
     let height = axis.length();
@@ -105,6 +112,8 @@ pub(super) fn cone(cone: &Cone) -> Vec<Facet> {
     facets
 }
 
+/// A sphere as triangles between 128 meridians and in 64 bands of latitude, with longitude and latitude as
+/// texture coordinates.
 pub(super) fn sphere(sphere: &Sphere) -> Vec<Facet> {
     let rings = AROUND / 2;
     let directions: Vec<Vec<Vec3>> = (0..=rings)

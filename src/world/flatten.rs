@@ -1,5 +1,5 @@
-//! Down the scene graph: transforms are multiplied, shapes become primitives, and what moves is kept at both ends of
-//! its way.
+//! Traversal of the scene graph: transforms are multiplied, shapes become primitives, and what moves is kept
+//! at shutter times 0 and 1.
 
 use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
@@ -15,6 +15,7 @@ use crate::shape::{Plane, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2};
 use std::ops::Range;
 
+/// Traverses `scene` from its roots and returns its primitives in world space; see [`World::new`].
 pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
     let mut meshes = Meshes::new(scene, effects, functions);
     let searched =
@@ -42,14 +43,14 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
     flattener.world
 }
 
-/// The most primitives in a world, about a gigabyte of them.
+/// The largest number of primitives in a world, which take about a gigabyte.
 const MOST_PRIMITIVES: usize = 1 << 24;
 
-/// Where something is: to the world at time 0, and at time 1 if it moves.
+/// The transform of a node to the world at time 0, and at time 1 if it moves.
 struct Way {
     start: Affine3A,
     end: Option<Affine3A>,
-    /// Whether `start` lies between the two ends of a way, and is not the product of the nodes' transforms.
+    /// Whether `start` is a blend between two times, and not the product of the transforms of the nodes.
     blended: bool,
 }
 
@@ -70,14 +71,14 @@ struct Flattener<'a> {
     effects: &'a Effects,
     functions: &'a WorldFunctions,
     still_at: f32,
-    /// The transforms from the root down to where we are.
+    /// The transforms from the root down to the current node.
     path: Vec<Affine3A>,
     world: World,
 }
 
 impl Flattener<'_> {
-    /// Adds the node `index` and all below it. `way` belongs to its parent, as does `above`, its number in the graph;
-    /// `material` is inherited.
+    /// Adds the node `index` and all nodes below it. `way` is the transform of its parent, `above` the index
+    /// of the parent in the graph, and `material` is inherited from it.
     fn node(&mut self, index: usize, way: &Way, material: usize, above: u32, meshes: &mut Meshes) {
         let node = &self.scene.nodes[index];
         let way = way.then(node);
@@ -103,7 +104,8 @@ impl Flattener<'_> {
         self.path.pop();
     }
 
-    /// Adds a node that holds `primitives` to the graph, below the node `above`; gives its number, if there is a graph.
+    /// Adds a node with `primitives` to the graph, below the node `above`. Returns its index, or 0 if there
+    /// is no graph.
     fn in_graph(&mut self, primitives: Range<u32>, above: u32) -> u32 {
         let Some(Graph { nodes }) = &mut self.world.graph else { return 0 };
         let here = nodes.len() as u32;
@@ -139,8 +141,8 @@ impl Flattener<'_> {
         }
     }
 
-    /// Where the shape of this node stands, if the kit says so. What moves is not placed: its transform is another one at
-    /// every moment.
+    /// The placement of the shape of the current node, if the kit has the function for it. A shape that moves
+    /// has none, because its transform changes with time.
     fn placement(&self, way: &Way) -> Option<Placement> {
         let place = self.functions.placement?;
         match (way.end, way.blended) {
@@ -150,7 +152,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// Whether the shape could stay what it is.
+    /// Adds the shape as a solid, if it can be placed; returns whether it could.
     fn solid(&mut self, shape: &Shape, way: &Way, material: u32) -> bool {
         let (Some(shape), Some(placement)) = (SolidShape::of(shape), self.placement(way)) else {
             return false;
@@ -161,13 +163,13 @@ impl Flattener<'_> {
         true
     }
 
-    /// Adds a primitive that has neither normals nor images nor ends of its own.
+    /// Adds a primitive without normals, image and motion.
     fn push(&mut self, geometry: Geometry, material: u32) {
         let (normals, image, end) = (Slot::NONE, Slot::NONE, Slot::NONE);
         self.world.primitives.push(Primitive { geometry, material, normals, image, end });
     }
 
-    /// A sphere stays one as long as it is not stretched, not even halfway.
+    /// Adds a sphere. It stays a sphere unless its transform stretches it at time 0, 1 or in the middle.
     fn sphere(&mut self, sphere: &Sphere, way: &Way, material: u32) {
         let at = |to_world: &Affine3A| {
             let radius = uniform_scale(to_world)? * sphere.radius;
@@ -225,7 +227,8 @@ impl Flattener<'_> {
         }
     }
 
-    /// A mesh that stands in several places is kept once, if it can be placed; otherwise its triangles are copied.
+    /// Adds a mesh. A mesh with several places is kept once, if it can be placed; otherwise its triangles are
+    /// copied.
     fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
         if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
             let part = ready.part.unwrap_or_else(|| self.part(ready));
@@ -243,7 +246,7 @@ impl Flattener<'_> {
             self.world.primitives.push(triangle);
         }
     }
-    /// A mesh in a hundred thousand places is more than a computer holds as copies.
+    /// Notes that a mesh is left out, because its copies would exceed [`MOST_PRIMITIVES`].
     fn leave_out_copies(&mut self) {
         let note = format!(
             "meshes are left out: copied for each of their places they come to more than {MOST_PRIMITIVES} triangles, \
@@ -254,7 +257,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// Keeps the triangles of a mesh in its own space; says where.
+    /// Keeps the triangles of a mesh in its own space; returns the index of the shared mesh.
     fn part(&mut self, ready: &Ready) -> u32 {
         let here = Way::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
@@ -293,7 +296,8 @@ impl Flattener<'_> {
         Primitive { geometry: corners(&way.start), material, normals, image, end }
     }
 
-    /// Whether a colour of this material comes from an image; of an inherited one, whether any does.
+    /// Whether a colour of this material comes from an image; for an inherited material, whether that of any
+    /// material does.
     fn reads_image(&self, material: u32) -> bool {
         let all = &self.effects.materials;
         all.get(material as usize).map_or_else(|| all.iter().any(|one| one.texture), |one| one.texture)

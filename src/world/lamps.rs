@@ -1,4 +1,4 @@
-//! From a place on a lamp to the light that arrives from there.
+//! From a point on a light to the light that arrives from there.
 
 use crate::kit::LightSample;
 use crate::material::{AreaShape, Emitter, Falloff, Light};
@@ -6,8 +6,12 @@ use crate::shape::Sphere;
 use glam::Vec3;
 
 impl Light {
-    /// The light that would arrive at `point` from the middle of the lamp if nothing stood in its way. The way to a ball
-    /// ends at its surface, so that a ball that is seen as well does not stand in its own light.
+    /// The light that would arrive at `point`, in world space, from the centre of this light if nothing stood
+    /// in its way.
+    ///
+    /// A directional light is infinitely far away and does not weaken. The distance to a spherical light ends
+    /// at its surface, so that a sphere that the scene shows in its place does not block it; from the centre
+    /// of the sphere, the direction is +y.
     #[inline]
     pub fn from_its_middle(&self, point: Vec3) -> LightSample {
         match &self.emitter {
@@ -23,7 +27,12 @@ impl Light {
         }
     }
 
-    /// The light that would arrive at `point` from `place` on the lamp.
+    /// The light that would arrive at `point` from the point `place` of this light, both in world space, if
+    /// nothing stood in its way. By the inverse-square law it is divided by the square of their distance, if
+    /// the light has that falloff.
+    ///
+    /// Where the two points are the same, the direction is +y, and a light with inverse-square falloff has
+    /// infinite radiance (NaN in a channel that is 0).
     #[inline]
     pub fn from_place(&self, place: Vec3, point: Vec3) -> LightSample {
         let way = place - point;
@@ -32,8 +41,12 @@ impl Light {
         self.arriving(direction, distance, distance)
     }
 
-    /// The light that would arrive at `point` from where the unit direction `direction` meets `ball`. It weakens with the
-    /// distance to the middle: a ball shines as if all of its light came from there.
+    /// The light that would arrive at `point` from the point of the spherical light `ball` that it sees in
+    /// the unit direction `direction`: the near side from outside of the sphere, the far side from inside.
+    ///
+    /// It weakens with the distance to the centre, as if all light came from there. A direction that just
+    /// misses the sphere by a rounding error counts as touching it. At the centre, inverse-square falloff
+    /// gives infinite radiance (NaN in a channel that is 0).
     pub fn from_ball(&self, ball: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
         let distance = distance_to_ball(ball, direction, point);
         self.arriving(direction, distance, point.distance(ball.center))
@@ -53,8 +66,8 @@ impl Light {
     }
 }
 
-/// How far it is to the ball: to its near side from outside, to its far side from inside. Directions that just miss it
-/// by a rounding count as touching it.
+/// The distance along the unit vector `direction` to the sphere: to its near side from outside, to its far
+/// side from inside. A direction that just misses the sphere by a rounding error counts as touching it.
 fn distance_to_ball(ball: &Sphere, direction: Vec3, point: Vec3) -> f32 {
     // In double precision: 24 bits do not hold the square of a small radius beside that of a long way.
     let (to_center, direction) = (ball.center.as_dvec3() - point.as_dvec3(), direction.as_dvec3());

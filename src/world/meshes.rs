@@ -1,5 +1,5 @@
-//! Meshes before they are placed: divided, smoothed, and patches made of triangles. Which of them stand in more than one
-//! place is counted here as well.
+//! Meshes before they are placed: subdivided, with their normals, and Bézier patches made of triangles. The
+//! number of places of each mesh is counted here as well.
 
 use super::WorldFunctions;
 use super::facets::Facet;
@@ -11,26 +11,32 @@ use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A mesh that is ready to be placed.
+/// A mesh that can be placed in the world: subdivided and with its normals.
 pub(super) struct Ready {
+    /// Positions, triangles and texture coordinates, in the space of the mesh.
     pub mesh: Arc<Mesh>,
-    /// One a vertex, or none for a flat mesh.
+    /// One unit normal per vertex; empty for a mesh that is shaded flat.
     pub normals: Vec<Vec3>,
-    /// For each of the mesh's own material names, the index of the scene's material.
+    /// For each of the mesh's own material names, the index of the material in the scene; empty if the mesh
+    /// takes the material of its node.
     pub materials: Vec<usize>,
-    /// Whether it is kept once and placed by instances.
+    /// Whether the mesh is kept once and placed by instances.
     pub shared: bool,
-    /// The part that holds it, once it has been asked for.
+    /// Index into [`super::World::parts`], once a first instance has been made.
     pub part: Option<u32>,
 }
 
-/// All that shows triangles: meshes of the scene by index, patches by the node that holds them.
+/// All shapes that are meshes of triangles: the meshes of the scene, and its Bézier patches.
 pub(super) struct Meshes {
+    /// The meshes of the scene, with the indices that they have there.
     pub of_scene: Vec<Ready>,
+    /// The Bézier patches, by the index of the node that shows the patch.
     pub of_nodes: HashMap<usize, Ready>,
 }
 
 impl Meshes {
+    /// Subdivides the meshes of `scene`, computes normals where `effects` asks for smooth meshes, and divides
+    /// Bézier patches into triangles, each as far as `functions` has the function for it.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> Meshes {
         let places = Places::count(scene);
         let shared = |places: u64| places > 1 && !scene.quality.copies && functions.placement.is_some();
@@ -64,7 +70,7 @@ impl Meshes {
     }
 }
 
-/// The mesh as the scene wants it, and whether that is another one than in its file.
+/// The mesh, subdivided as often as the scene asks, and whether it differs from that in its file.
 fn divided(source: &SceneMesh, functions: &WorldFunctions) -> (Arc<Mesh>, bool) {
     match functions.subdivide {
         Some(subdivide) if source.subdivisions > 0 => {
@@ -78,7 +84,8 @@ fn divided(source: &SceneMesh, functions: &WorldFunctions) -> (Arc<Mesh>, bool) 
     }
 }
 
-/// Those of the file if they belong to this mesh, or averages.
+/// One normal per vertex: those of the file if the mesh is that of the file, otherwise averages; none if
+/// there is no function for them.
 fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3> {
     match functions.vertex_normals {
         _ if !is_new && !mesh.normals.is_empty() => mesh.normals.clone(),
@@ -87,7 +94,8 @@ fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3
     }
 }
 
-/// `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the viewer.
+/// A Bézier patch as `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the
+/// viewer.
 fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> Vec3) -> Mesh {
     let side = steps + 1;
     let at = |row: u32, column: u32| Vec2::new(column as f32, row as f32) / steps as f32;
@@ -105,7 +113,7 @@ fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> 
     }
 }
 
-/// In how many places the nodes of a scene stand, and the meshes. What moves is copied, and does not count.
+/// The number of places of each node and of each mesh in the scene.
 struct Places {
     of_nodes: Vec<u64>,
     of_meshes: Vec<u64>,
@@ -152,13 +160,18 @@ fn parents_first(scene: &Scene) -> Vec<usize> {
 }
 
 impl Ready {
-    /// The material of a triangle, if it has one of its own.
+    /// The index in the scene of the material of triangle `face`; `None` if it takes the material of its
+    /// node.
     pub fn material_of(&self, face: usize) -> Option<u32> {
         let name = *self.mesh.face_materials.get(face)?;
         self.materials.get(name as usize).map(|&material| material as u32)
     }
 
-    /// A triangle with what lies at its corners.
+    /// Triangle `face` with the normals and texture coordinates at its corners, if the mesh has them.
+    ///
+    /// # Panics
+    ///
+    /// If the mesh has no triangle `face`.
     pub fn facet(&self, face: usize) -> Facet {
         let vertices = self.mesh.triangles[face];
         let normals =

@@ -1,9 +1,9 @@
-//! A scene made flat: every node's transform applied, all meshes merged into one set of primitives (lecture "In RTGI
-//! all meshes are merged to a big set of primitives").
+//! A scene made flat: every node's transform is applied, and all meshes become one set of primitives (lecture
+//! "In RTGI all meshes are merged to a big set of primitives").
 //!
-//! With stage 8 there are exceptions: boxes, cylinders, cones, disks, polygons and stretched spheres stay what they are,
-//! in spaces of their own, and a mesh that stands in several places is kept once. Without it, and where they move, they
-//! are made of triangles.
+//! With stage 8 there are exceptions. Boxes, cylinders, cones, disks, polygons and stretched spheres keep
+//! their shape, each in a space of its own, and a mesh with several instances is kept once. Without stage 8,
+//! and where they move, these shapes are made of triangles.
 
 mod facets;
 mod flatten;
@@ -24,141 +24,152 @@ use crate::scene::Scene;
 use crate::shape::{BezierPatch, Plane, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
-/// What a ray can be tested against.
+/// The shape of a primitive: what a ray can be tested against.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Geometry {
-    /// A sphere.
+    /// A sphere, in the space of the primitive.
     Sphere(Sphere),
-    /// A triangle.
+    /// A triangle, in the space of the primitive; its front is the side from which the corners run
+    /// anticlockwise.
     Triangle(Triangle),
-    /// Index into [`World::solids`].
+    /// Index into [`World::solids`], whose shape is tested in a space of its own.
     Solid(u32),
-    /// Index into [`World::instances`].
+    /// Index into [`World::instances`], whose shared mesh is searched in the space of that mesh.
     Instance(u32),
 }
 
-/// An index into a table, or none: in four bytes instead of eight, because there are millions of them.
+/// An optional index into a table, `0..u32::MAX`. It takes four bytes instead of the eight of an
+/// `Option<u32>`, because a world holds millions of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(u32);
 
 impl Slot {
-    /// No index.
+    /// The value that stands for no index: `u32::MAX`, which is never an index.
     pub const NONE: Slot = Slot(u32::MAX);
 
-    /// The index, if there is one.
+    /// The index into the table, or `None` for [`Slot::NONE`].
     #[inline]
     pub fn get(self) -> Option<usize> {
         (self != Slot::NONE).then_some(self.0 as usize)
     }
 
-    /// Appends `entry` and says where it is.
+    /// Appends `entry` to `table` and returns its index.
     fn push<T>(table: &mut Vec<T>, entry: T) -> Slot {
         table.push(entry);
         Slot(table.len() as u32 - 1)
     }
 }
 
-/// A bounded primitive in world space, or in that of its part.
+/// A bounded primitive, in world space or in the space of its shared mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Primitive {
-    /// Its shape, at time 0 if it moves.
+    /// The shape of the primitive, at time 0 if it moves.
     pub geometry: Geometry,
     /// Index into [`World::materials`], or [`Primitive::INHERITED`].
     pub material: u32,
-    /// Into [`World::normals`], for a triangle with normals at its corners; if it moves, those of time 1 follow.
+    /// Index into [`World::normals`], for a triangle with normals at its corners. If it moves, the next entry
+    /// there holds its normals at time 1.
     pub normals: Slot,
-    /// Into [`World::uvs`] for a triangle, [`World::ball_axes`] for a sphere, if its colour is read from an image.
+    /// For a primitive whose colour is read from an image: index into [`World::uvs`] for a triangle, into
+    /// [`World::ball_axes`] for a sphere.
     pub image: Slot,
-    /// Into [`World::ends`], if it moves.
+    /// Index into [`World::ends`] of the geometry at time 1, if the primitive moves.
     pub end: Slot,
 }
 
 impl Primitive {
-    /// The material of a primitive in a part that takes that of its instance.
+    /// The material of a primitive of a shared mesh that takes the material of its instance.
     pub const INHERITED: u32 = u32::MAX;
 }
 
-/// A mesh that is kept once and stands in several places.
+/// A shared mesh: it is kept once, and several instances place it in the world.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
-    /// Its triangles, in its own space.
+    /// The triangles of the mesh, in its own space.
     pub primitives: Vec<Primitive>,
 }
 
-/// A part in one of its places.
+/// One placement of a shared mesh in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instance {
-    /// Index into [`World::parts`].
+    /// Index of the shared mesh in [`World::parts`].
     pub part: u32,
-    /// Where it stands.
+    /// The transforms from the space of the mesh to the world and back.
     pub placement: Placement,
 }
 
-/// A plane, which no box can hold.
+/// An infinite plane in world space. It has no bounding box, so acceleration structures do not hold it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EndlessPlane {
     /// The plane, at time 0 if it moves; its normal is of unit length.
     pub plane: Plane,
-    /// Index into [`World::materials`].
+    /// Index of its material in [`World::materials`].
     pub material: u32,
-    /// Two directions along it that are a unit of its own space long: the axes of its texture.
+    /// The axes of its texture: two directions along the plane in world space, at time 0 if it moves. Each is
+    /// as long as one unit of the space of its node, over which the image runs once.
     pub axes: [Vec3; 2],
-    /// Three points of it at times 0 and 1, if it moves; their anticlockwise side is its front.
+    /// If the plane moves, three of its points at times 0 and 1. They run anticlockwise seen from the side of
+    /// the normal.
     pub motion: Option<[Triangle; 2]>,
 }
 
-/// A flat scene.
+/// A flat scene: primitives, infinite planes and everything that they refer to by index.
 #[derive(Clone, Debug, Default)]
 pub struct World {
-    /// Everything with an end.
+    /// All bounded primitives, in the order of the scene graph.
     pub primitives: Vec<Primitive>,
-    /// Everything without.
+    /// All infinite planes, which are tested one by one.
     pub planes: Vec<EndlessPlane>,
-    /// Shapes in spaces of their own.
+    /// Shapes that rays are tested against in a space of their own (stage 8).
     pub solids: Vec<Solid>,
-    /// Meshes that stand in several places.
+    /// Meshes with several instances, each kept once (stage 8).
     pub parts: Vec<Part>,
-    /// Their places.
+    /// The placements of these meshes; each is also a primitive in [`World::primitives`].
     pub instances: Vec<Instance>,
-    /// The scene graph over `primitives`, if that is what rays will search.
+    /// The scene graph over [`World::primitives`], if the accelerator of the scene is a volume around each of
+    /// its nodes.
     pub graph: Option<Graph>,
-    /// Unit normals at the corners of smooth triangles.
+    /// Normals at the corners of smooth triangles, in the space of the primitive. Each is of unit length, or
+    /// zero where the transformed normal has no direction.
     pub normals: Vec<[Vec3; 3]>,
-    /// Texture coordinates at the corners of triangles.
+    /// Texture coordinates at the corners of triangles; `(0, 0)` is the lower left of the image.
     pub uvs: Vec<[Vec2; 3]>,
-    /// For spheres with an image, how directions of the world turn into directions of their own space.
+    /// For spheres with an image: the matrix from directions in the world to directions in the space of the
+    /// sphere, up to a positive factor.
     pub ball_axes: Vec<Mat3>,
-    /// Where moving primitives are at time 1.
+    /// The geometry of moving primitives at time 1; [`Primitive::geometry`] is that at time 0.
     pub ends: Vec<Geometry>,
-    /// As in the scene.
+    /// All materials, with the indices that they have in the scene.
     pub materials: Vec<Material>,
-    /// As in the scene.
+    /// All lights, with the indices that they have in the scene.
     pub lights: Vec<Light>,
-    /// As in the scene.
+    /// All images in linear light, with the indices that they have in the scene.
     pub textures: Vec<Texture>,
-    /// What the picture will lack, one sentence each.
+    /// What the picture will lack, one sentence each; empty if nothing.
     pub notes: Vec<String>,
 }
 
-/// From the transforms from the root down to where a node stands.
+/// A function that composes the transforms of the nodes from the root down to a shape, and returns the
+/// placement of the shape. `None` means that the shape cannot be placed.
 pub type Place = fn(&[Affine3A]) -> Option<Placement>;
 
-/// The student functions that a world is made with, and the kinds of shapes that can be shown at all.
+/// The student functions that a world is made with, and which kinds of shapes it contains.
 #[derive(Clone, Copy)]
 pub struct WorldFunctions {
-    /// Gives a mesh one unit normal per vertex; without it, meshes whose files have no normals are flat.
+    /// Computes one unit normal per vertex. Without it, meshes whose files have no normals are flat.
     pub vertex_normals: Option<fn(&Mesh) -> Vec<Vec3>>,
-    /// Composes the transforms from the root down; without it, all shapes are made of triangles and meshes copied.
+    /// Composes the transforms from the root down. Without it, all shapes but unstretched spheres and
+    /// infinite planes are made of triangles, and meshes are copied for each instance.
     pub placement: Option<Place>,
-    /// A point of a patch; without it, patches are left out.
+    /// The point of a Bézier patch at `(u, v)`, both in `0..=1`. Without it, patches are left out.
     pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
-    /// Four triangles for each; without it, meshes stay as coarse as they are.
+    /// Divides each triangle of a mesh into four. Without it, meshes are not subdivided.
     pub subdivide: Option<fn(&Mesh) -> Mesh>,
-    /// Whether spheres are shown.
+    /// Whether spheres are shown; otherwise they are left out.
     pub spheres: bool,
-    /// Whether infinite planes are shown.
+    /// Whether infinite planes are shown; otherwise they are left out.
     pub planes: bool,
-    /// Whether triangles are shown, and what is made of them.
+    /// Whether triangles are shown, and shapes that are made of triangles; otherwise both are left out.
     pub triangles: bool,
 }
 
@@ -177,7 +188,10 @@ impl Default for WorldFunctions {
 }
 
 impl WorldFunctions {
-    /// Those of `F` that are `written`.
+    /// The functions of `F` for which `written` returns true. All kinds of shapes are shown.
+    ///
+    /// [`WorldFunctions::placement`] is set only if every function for shapes in spaces of their own is
+    /// written.
     pub fn of<F: StudentFunctions>(written: &dyn Fn(Function) -> bool) -> Self {
         // A shape stays in a space of its own only if every function for that is there.
         let in_spaces = [
@@ -202,19 +216,33 @@ impl WorldFunctions {
 }
 
 impl World {
-    /// Flattens `scene` as far as `effects` call for it.
+    /// Flattens `scene`: applies all transforms and collects the primitives, with motion and images as far as
+    /// `effects` ask for them.
+    ///
+    /// A scene without motion in `effects` stands where it is when the shutter opens. Copies of meshes beyond
+    /// 2^24 primitives are left out, with a note.
+    ///
+    /// # Panics
+    ///
+    /// If an index of the scene is out of range; a scene that [`crate::scene::load`] has read has no such
+    /// index. A graph with a loop overflows the stack. A panic of a student function is passed on.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
         flatten::flatten(scene, effects, functions)
     }
 
-    /// The same scene of triangles, spheres and planes alone, all where they stand when the shutter opens, whatever is
-    /// written: what searches and tests of different kits can be compared on.
+    /// The scene as triangles, spheres and infinite planes alone, standing where it is when the shutter
+    /// opens, with no student function used; Bézier patches are left out. Searches and tests of different
+    /// kits can be compared on it.
+    ///
+    /// # Panics
+    ///
+    /// If an index of the scene is out of range.
     pub fn plain(scene: &Scene) -> World {
         World::new(scene, &Effects::default(), &WorldFunctions::default())
     }
 }
 
-/// What the scene asks for and no built stage simulates.
+/// What the scene asks for and no built stage simulates, one sentence each; empty if nothing.
 pub fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
     let mut notes = Vec::new();
     if scene.indirect_light {
@@ -223,7 +251,8 @@ pub fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
     notes
 }
 
-/// The camera of a scene for a film of another size: the vertical field of view stays.
+/// The camera of `scene` with the aspect ratio of its film, for a film whose size has been changed. The
+/// vertical field of view stays the same.
 pub fn camera_for(scene: &Scene) -> Camera {
     Camera { aspect: scene.film.width as f32 / scene.film.height as f32, ..scene.camera }
 }

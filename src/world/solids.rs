@@ -1,4 +1,4 @@
-//! Shapes that stay what they are, each in a space of its own.
+//! Shapes that are not made of triangles: each is tested in a space of its own.
 
 use crate::aabb::Aabb;
 use crate::graph::Placement;
@@ -6,34 +6,34 @@ use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere};
 use glam::{Vec2, Vec3, vec2};
 use std::f32::consts::{PI, TAU};
 
-/// A shape that rays are carried to.
+/// A shape in a space of its own, into which rays are transformed before they are tested (stage 8).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
-    /// The shape, in its own space.
+    /// The shape, in its own space and as the scene file describes it.
     pub shape: SolidShape,
-    /// Where it stands.
+    /// The transforms from the space of the shape to the world and back.
     pub placement: Placement,
 }
 
-/// What can be a [`Solid`].
+/// The shapes that can be a [`Solid`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolidShape {
-    /// A sphere that its transform stretches.
+    /// A sphere; in the world its transform makes it an ellipsoid.
     Ball(Sphere),
-    /// A box.
+    /// A box with faces along the axes of its own space.
     Cuboid(Cuboid),
-    /// A closed cylinder.
+    /// A cylinder, closed by a disk at either end.
     Cylinder(Cylinder),
-    /// A closed cone.
+    /// A cone, closed by a disk at its base.
     Cone(Cone),
-    /// A disk.
+    /// A flat disk, which has no inside.
     Disk(Disk),
-    /// A convex polygon.
+    /// A flat convex polygon, which has no inside.
     Polygon(Polygon),
 }
 
 impl SolidShape {
-    /// `shape`, if it is one of these; a sphere is.
+    /// The solid of `shape`; `None` for infinite planes, triangles, meshes and Bézier patches.
     pub(super) fn of(shape: &Shape) -> Option<SolidShape> {
         Some(match shape {
             Shape::Sphere(ball) => SolidShape::Ball(*ball),
@@ -46,7 +46,8 @@ impl SolidShape {
         })
     }
 
-    /// A box around the shape, with room for its roundings.
+    /// A box around the shape in its own space, a few roundings larger than the exact one on each side, so
+    /// that it loses no point of the shape.
     pub fn bounds(&self) -> Aabb {
         let shape = match self.clone() {
             SolidShape::Ball(ball) => Shape::Sphere(ball),
@@ -62,8 +63,12 @@ impl SolidShape {
         Aabb::new(bounds.min - room, bounds.max + room)
     }
 
-    /// Texture coordinates at a point of the surface: an image around a ball, one on each face of a box; the middle of the
-    /// image for shapes that have none.
+    /// Texture coordinates at `point` of the surface, whose normal is `normal`, both in the space of the
+    /// shape; the result lies in `0..=1` along u and v.
+    ///
+    /// A sphere has an image around it, as in [`around_ball`]. A box has the whole image on each face. A
+    /// coordinate of `point` that is not finite, or along which the box is flat, counts as the middle of the
+    /// face. Other shapes show the middle of the image, `(0.5, 0.5)`.
     pub fn texture_coordinates(&self, point: Vec3, normal: Vec3) -> Vec2 {
         match self {
             SolidShape::Ball(ball) => around_ball(point - ball.center),
@@ -73,14 +78,18 @@ impl SolidShape {
     }
 }
 
-/// Longitude and latitude of a direction, as an image wraps around a ball.
+/// Longitude and latitude of `direction` as texture coordinates in `0..=1`: the equirectangular image around
+/// a sphere, upright along y.
+///
+/// The v coordinate is 0 at -y and 1 at +y. The u coordinate is 0.5 at +z and 0.75 at +x, and jumps from 1 to
+/// 0 at -z. The direction may be of any length; zero, infinite and NaN directions count as +y.
 pub fn around_ball(direction: Vec3) -> Vec2 {
     let own = direction.normalize_or(Vec3::Y);
     vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
 }
 
-/// The images of the side faces stand upright along y; those of top and bottom as if the box were tilted towards the
-/// viewer at +z.
+/// The images of the side faces stand upright along y; those of top and bottom as if the box were tilted
+/// towards a viewer at +z.
 fn on_face(cuboid: &Cuboid, point: Vec3, normal: Vec3) -> Vec2 {
     let share = (point - cuboid.min) / (cuboid.max - cuboid.min);
     let share = share.map(|share| if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 });

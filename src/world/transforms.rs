@@ -1,9 +1,10 @@
-//! What transforms do to planes, normals and sizes.
+//! The effect of transforms on planes, normals and sizes.
 
 use glam::{Affine3A, Mat3A, Vec3};
 
-/// Two unit vectors at right angles to `normal` and each other, `u × v` along it. On the floor they are x and -z, so that
-/// an image lies upright for who looks along -z.
+/// Two unit vectors `u` and `v` along a plane, at right angles to each other, with `u × v` along `normal`,
+/// which may be of any length but zero. On the floor they are x and -z, so that an image is upright for a
+/// viewer who looks along -z.
 pub(super) fn plane_axes(normal: Vec3) -> (Vec3, Vec3) {
     let normal = normal.normalize();
     // Any axis far from the normal will do; x for floors and ceilings, y for walls.
@@ -12,13 +13,14 @@ pub(super) fn plane_axes(normal: Vec3) -> (Vec3, Vec3) {
     (u, normal.cross(u))
 }
 
-/// Carries normals to the world: the inverse transpose, up to a positive factor, so that a mirrored transform keeps
-/// the outside outside.
+/// The matrix that takes normals to the world, the inverse transpose of `to_world`. It is not scaled by the
+/// determinant, so that a normal stays outside under a transform that mirrors.
 pub(super) fn normal_matrix(to_world: &Affine3A) -> Mat3A {
     to_world.matrix3.inverse().transpose()
 }
 
-/// The factor by which a transform scales, if it scales all directions alike to a few roundings.
+/// The factor by which a transform scales lengths; `None` if it scales some directions differently, by more
+/// than a few roundings.
 pub(super) fn uniform_scale(to_world: &Affine3A) -> Option<f32> {
     let gram = to_world.matrix3.transpose() * to_world.matrix3;
     let squared = gram.x_axis.x;

@@ -1,4 +1,4 @@
-//! Files that a scene names: where they are, and what to say when they are not there.
+//! Files that a scene names: their paths, and the messages if they are missing.
 
 use super::reader::Value;
 use super::words::{nearest, quoted};
@@ -6,7 +6,8 @@ use crate::scene::error::LoadError;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The path of the file that `value` names, relative to the folder of the scene.
+/// The path of the file that `value` names, relative to the folder of the scene; fails if it does not exist,
+/// is a folder or cannot be read.
 pub(super) fn find(value: Value) -> Result<PathBuf, LoadError> {
     let name = value.text()?;
     let path = value.source.file.parent().unwrap_or(Path::new("")).join(name);
@@ -21,7 +22,8 @@ pub(super) fn find(value: Value) -> Result<PathBuf, LoadError> {
     Err(trouble)
 }
 
-/// What to say of a file that is not there: where it was looked for, and what lies there instead.
+/// The advice for a file that does not exist: the path that was tried, and a file in the same folder with a
+/// similar name.
 pub(super) fn where_it_might_be(path: &Path) -> String {
     let folder = match path.parent() {
         Some(folder) if folder != Path::new("") => folder,
@@ -43,7 +45,7 @@ pub(super) fn where_it_might_be(path: &Path) -> String {
     }
 }
 
-/// The extension of `path` in lower case; empty if it has none.
+/// The extension of `path` in lower case and without the dot; empty if it has none.
 pub(super) fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }

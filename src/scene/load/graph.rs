@@ -1,16 +1,18 @@
-//! The scene graph as a whole: no loops, and no more of it than a computer holds.
+//! Checks of the scene graph as a whole: it has no loops, and its depth and number of shapes are limited.
 
 use super::reader::Value;
 use super::words::one_line;
 use crate::scene::Node;
 use crate::scene::error::LoadError;
 
-/// The deepest nesting. Programs that follow the graph call themselves once a level.
+/// The largest number of levels. Programs that traverse the graph by recursion call themselves once per
+/// level.
 const MAX_LEVELS: u32 = 64;
-/// The most shapes, counted once for every way that leads to them: doubling 64 times is quickly written.
+/// The largest number of shapes, counted once per path that leads to them, because a graph with few nodes can
+/// have very many paths.
 const MAX_SHAPES: u64 = 1 << 24;
 
-/// The nodes that no other node lists.
+/// The indices of the nodes that no other node lists as a child, in ascending order.
 pub(super) fn roots(nodes: &[Node]) -> Vec<usize> {
     let mut is_root = vec![true; nodes.len()];
     nodes.iter().flat_map(|node| &node.children).for_each(|&child| is_root[child] = false);
@@ -28,7 +30,8 @@ enum Visit {
     Done { levels: u32, shapes: u64 },
 }
 
-/// Refuses loops and graphs without measure. `listed` are the children of each node as the file names them.
+/// Fails if the graph has a loop, more than 64 levels, or more than 2^24 shapes counted once per place.
+/// `listed` are the children of each node as the file names them, for messages.
 pub(super) fn check(nodes: &[Node], listed: &[Vec<Value>]) -> Result<(), LoadError> {
     let mut visits = vec![Visit::No; nodes.len()];
     for start in 0..nodes.len() {
@@ -60,7 +63,7 @@ pub(super) fn check(nodes: &[Node], listed: &[Vec<Value>]) -> Result<(), LoadErr
     Ok(())
 }
 
-/// Adds up a node whose children are all done.
+/// Adds up the levels and shapes of a node whose children are all done.
 fn finished(node: &Node, listed: &[Value], visits: &[Visit]) -> Result<Visit, LoadError> {
     let (mut levels, mut shapes) = (1, u64::from(node.shape.is_some()));
     for (&child, value) in node.children.iter().zip(listed) {
@@ -78,7 +81,7 @@ fn finished(node: &Node, listed: &[Value], visits: &[Visit]) -> Result<Visit, Lo
     Ok(Visit::Done { levels, shapes })
 }
 
-/// The loop that is closed when the last node of `way` lists `child`.
+/// The message for the loop that is closed when the last node of `way` lists `child`.
 fn loop_message(nodes: &[Node], way: &[(usize, usize)], child: usize) -> String {
     const LONGEST: usize = 8; // names; a longer loop is shown by its ends
     let looped: Vec<usize> = way.iter().map(|(node, _)| *node).skip_while(|&node| node != child).collect();

@@ -1,4 +1,4 @@
-//! `[[lights]]`.
+//! Reads `[[lights]]`: point lights, directional lights and area lights.
 
 use super::reader::Value;
 use super::shapes::{disk, sphere};
@@ -8,6 +8,8 @@ use glam::Vec3;
 
 const KEYS: [&str; 6] = ["point", "directional", "area", "color", "intensity", "shadows"];
 
+/// All lights of `[[lights]]` in the order of the file, in world space; fails if a value is missing or out of
+/// range, or if a rectangle has no area.
 pub(super) fn lights(value: Option<Value>) -> Result<Vec<Light>, LoadError> {
     let Some(value) = value else { return Ok(Vec::new()) };
     value.list("a list of tables, each under `[[lights]]`")?.into_iter().map(light).collect()

@@ -1,4 +1,4 @@
-//! `[materials.NAME]`, and the materials that come with OBJ meshes.
+//! Reads `[materials.NAME]`, and converts the materials that come with OBJ meshes.
 
 use super::names::Names;
 use super::reader::Value;
@@ -24,16 +24,19 @@ const KEYS: [&str; 11] = [
     "texture",
 ];
 
-/// All materials, each with its name. The first is the default.
+/// All materials of a scene with their names. Index 0 is the default.
 pub(super) struct Materials<'a> {
+    /// The materials by index: those of the scene file, then those of OBJ meshes.
     pub list: Vec<Material>,
+    /// The name of each material by index, for messages.
     pub list_names: Vec<String>,
-    /// What nodes and meshes may name: `default`, and all `[materials.NAME]`.
+    /// The names that nodes and meshes may refer to: `default`, and all `[materials.NAME]`.
     pub names: Names<'a>,
 }
 
 impl Materials<'_> {
-    /// Adds a material and says its index.
+    /// Adds a material and returns its index. It can be referred to by name only after an entry in
+    /// [`Materials::names`].
     pub fn push(&mut self, name: impl Into<String>, material: Material) -> usize {
         self.list.push(material);
         self.list_names.push(name.into());
@@ -41,6 +44,8 @@ impl Materials<'_> {
     }
 }
 
+/// All `[materials.NAME]` in the order of the file, after the default; `textures` are the names that they may
+/// refer to. Fails if a key is unknown or a value is out of range.
 pub(super) fn materials<'a>(value: Option<Value<'a>>, textures: &Names) -> Result<Materials<'a>, LoadError> {
     let mut materials = Materials { list: Vec::new(), list_names: Vec::new(), names: Names::new("material") };
     materials.push("default", Material::default());
@@ -82,7 +87,8 @@ fn material(value: Value, textures: &Names) -> Result<Material, LoadError> {
     Ok(material)
 }
 
-/// The material that an MTL file describes, without its texture; on failure says what is wrong.
+/// The material that an MTL file describes, without its texture. Fails with a sentence if a colour is below 0
+/// or not finite, or if another value is out of range.
 pub(super) fn from_obj(obj: &ObjMaterial) -> Result<Material, String> {
     let default = Material::default();
     let color = |name: &str, color: Option<Vec3>, otherwise: Vec3| match color.unwrap_or(otherwise) {

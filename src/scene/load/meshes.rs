@@ -14,7 +14,9 @@ use crate::scene::{SceneMesh, ply};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// All `[meshes.NAME]`, with their names. Materials and textures that come with them join those of the scene.
+/// All `[meshes.NAME]` in the order of the file, with their names. Materials and textures that come with them
+/// are added to those of the scene. Fails if a file or a material is missing or malformed, or if subdivision
+/// would make more than 2^24 triangles.
 pub(super) fn meshes<'a>(
     value: Option<Value<'a>>,
     materials: &mut Materials,
@@ -39,7 +41,7 @@ pub(super) fn meshes<'a>(
     Ok((meshes, names))
 }
 
-/// Reads the file that `table` names. A PLY file is an OBJ file without materials.
+/// Reads the mesh file that `table` names. A PLY file is treated like an OBJ file without materials.
 fn read(table: &Table) -> Result<(PathBuf, ObjFile), LoadError> {
     let value = table.need("file", "\"bunny.ply\"")?;
     let file = files::find(value)?;
@@ -55,10 +57,10 @@ fn read(table: &Table) -> Result<(PathBuf, ObjFile), LoadError> {
     Ok((file, read))
 }
 
-/// The most triangles that dividing may lead to.
+/// The largest number of triangles of a subdivided mesh.
 const MOST_TRIANGLES: u64 = 1 << 24;
 
-/// How often each triangle becomes four.
+/// The number of subdivision steps; each makes four triangles of one.
 fn subdivisions(value: Value, mesh: &Mesh) -> Result<u32, LoadError> {
     let steps = value.whole(0..=12)?;
     let triangles = (mesh.triangles.len() as u64) << (2 * steps);
@@ -92,7 +94,8 @@ struct Adopter<'m, 's> {
 }
 
 impl Adopter<'_, '_> {
-    /// An index for each of `names`: a `[materials.NAME]` wins over a description that came with the mesh.
+    /// The index of the material for each of `names`. A `[materials.NAME]` has precedence over a material
+    /// that came with the mesh.
     fn indices(&mut self, names: &[String]) -> Result<Vec<usize>, LoadError> {
         names.iter().map(|name| self.index(name)).collect()
     }
@@ -124,7 +127,7 @@ impl Adopter<'_, '_> {
         Ok(self.materials.push(format!("{}/{name}", self.mesh.key), material))
     }
 
-    /// The index of the texture in the file `image`.
+    /// The index of the texture in the file `image`, which is read once.
     fn texture(&mut self, image: &Path) -> Result<usize, LoadError> {
         if let Some((_, index)) = self.images.iter().find(|(path, _)| path == image) {
             return Ok(*index);

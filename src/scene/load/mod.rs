@@ -28,7 +28,11 @@ use std::path::Path;
 const TABLES: [&str; 9] =
     ["film", "camera", "environment", "quality", "materials", "textures", "meshes", "lights", "nodes"];
 
-/// Reads a scene file and all files that it names.
+/// Reads the scene file `file`, and the meshes and textures that it names relative to its folder.
+///
+/// # Errors
+///
+/// If `file` does not exist, cannot be read or is not UTF-8, and in all cases in which [`parse`] fails.
 pub fn load(file: &Path) -> Result<Scene, LoadError> {
     let bytes = std::fs::read(file).map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
@@ -47,7 +51,15 @@ pub fn load(file: &Path) -> Result<Scene, LoadError> {
     }
 }
 
-/// Reads a scene from `text`; meshes and textures are sought from the folder of `file`, which need not exist.
+/// Reads a scene from `text`. Meshes and textures are searched for from the folder of `file`, which need not
+/// exist itself.
+///
+/// # Errors
+///
+/// If the text is not TOML, `[camera]` is missing, a key is unknown, a value is of the wrong type or out of
+/// range, a name is not defined, a shape or a transform is degenerate, the nodes form a loop, or a file that
+/// the scene names is missing or malformed. The error names the file with line and column, and mostly says
+/// how to repair it.
 pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
     let source = Source { file, text };
     let document = source.document()?;

@@ -1,4 +1,4 @@
-//! `[[nodes]]`: what stands where.
+//! Reads `[[nodes]]`: the scene graph with its shapes and transforms.
 
 use super::names::Names;
 use super::reader::{Table, Value};
@@ -11,7 +11,9 @@ use std::collections::BTreeSet;
 
 const KEYS: [&str; 6] = ["name", "material", "shape", "children", "transform", "transform_end"];
 
-/// All nodes, and the indices of those that have no parent.
+/// All nodes of `[[nodes]]` in the order of the file, and the indices of those without a parent. Fails if a
+/// name is unknown or given twice, if a shape or transform is degenerate, or if the graph is refused by
+/// `graph::check`.
 pub(super) fn nodes(
     value: Option<Value>,
     materials: &Names,
@@ -45,7 +47,7 @@ pub(super) fn nodes(
     Ok((nodes, roots))
 }
 
-/// The table of one node. That a shape stands in `shape` is easily forgotten, so it gets its own remedy.
+/// The table of one node. A shape outside of `shape` is a common mistake, so it gets advice of its own.
 fn table(value: Value<'_>) -> Result<Table<'_>, LoadError> {
     let table = value.any_table()?;
     match KINDS.iter().find(|kind| table.get(kind).is_some()) {

@@ -1,4 +1,5 @@
-//! Numbers, vectors and colours of a scene file. TOML has 64-bit numbers, `nan` and `inf`; a scene has finite `f32`.
+//! Numbers, vectors and colours of a scene file. TOML has 64-bit numbers, `nan` and `inf`; a scene has finite
+//! `f32` only.
 
 use super::reader::Value;
 use crate::scene::error::LoadError;
@@ -7,7 +8,7 @@ use std::ops::RangeInclusive;
 use toml::de::DeValue;
 
 impl<'a> Value<'a> {
-    /// A whole number in `range`.
+    /// The value as a whole number; fails if it is not an integer in the closed `range`.
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32, LoadError> {
         let DeValue::Integer(integer) = self.item() else { return Err(self.wrong("a whole number")) };
         // A number that does not even fit into 128 bits is out of any range.
@@ -18,7 +19,8 @@ impl<'a> Value<'a> {
             .ok_or_else(|| self.wrong(&format!("a whole number from {} to {}", range.start(), range.end())))
     }
 
-    /// A finite number.
+    /// The value as a finite number, rounded to `f32`; fails if it is `nan`, infinite, too large for an
+    /// `f32`, or rounded to 0 without being 0.
     pub fn number(&self) -> Result<f32, LoadError> {
         let exact: f64 = match self.item() {
             DeValue::Float(float) => float.as_str().parse().unwrap_or(f64::NAN),
@@ -43,7 +45,8 @@ impl<'a> Value<'a> {
         Err(self.error(format!("{} is {spelled}, which is {limit}", self.name())))
     }
 
-    /// A number of which `holds`; `condition` says so in words.
+    /// The value as a finite number for which `holds` is true, and fails otherwise; `condition` says in the
+    /// message which numbers are accepted.
     pub fn number_that(&self, condition: &str, holds: impl Fn(f32) -> bool) -> Result<f32, LoadError> {
         match self.number()? {
             number if holds(number) => Ok(number),
@@ -51,32 +54,34 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A number above 0.
+    /// The value as a finite number above 0; fails otherwise.
     pub fn positive(&self) -> Result<f32, LoadError> {
         self.number_that("above 0", |number| number > 0.0)
     }
 
-    /// A number of 0 or more.
+    /// The value as a finite number of at least 0; fails otherwise.
     pub fn not_negative(&self) -> Result<f32, LoadError> {
         self.number_that("at least 0", |number| number >= 0.0)
     }
 
-    /// A number from 0 to 1.
+    /// The value as a number in `0..=1`; fails otherwise.
     pub fn share(&self) -> Result<f32, LoadError> {
         self.number_that("from 0 to 1", |number| (0.0..=1.0).contains(&number))
     }
 
-    /// A point or an offset: three numbers.
+    /// The value as a point or an offset; fails if it is not a list of three finite numbers.
     pub fn vector(&self) -> Result<Vec3, LoadError> {
         Ok(Vec3::from_array(self.numbers("three numbers")?))
     }
 
-    /// A direction: three numbers that are not all zero, brought to unit length.
+    /// The value as a direction, scaled to unit length; fails if it is not a list of three finite numbers
+    /// that are not all 0.
     pub fn direction(&self) -> Result<Vec3, LoadError> {
         Ok(self.direction_f64()?.as_vec3())
     }
 
-    /// The same in double precision, in which the square of no `f32` overflows or vanishes.
+    /// The same as [`Value::direction`] in double precision, in which the square of no `f32` overflows or
+    /// vanishes.
     pub fn direction_f64(&self) -> Result<DVec3, LoadError> {
         let vector = self.vector()?.as_dvec3();
         vector.try_normalize().ok_or_else(|| {
@@ -85,19 +90,21 @@ impl<'a> Value<'a> {
         })
     }
 
-    /// A colour: a number for a grey or three for red, green and blue, none below 0.
+    /// The value as a linear colour: one number for a grey, or three for red, green and blue. Fails if one of
+    /// them is below 0 or not finite.
     pub fn color(&self) -> Result<Vec3, LoadError> {
         let color = self.one_or_three("a colour, that is one number or three")?;
         self.each_component(color, "at least 0", |number| number >= 0.0)
     }
 
-    /// Factors along the axes: one number for all three, or three; none is 0.
+    /// The value as scale factors along the axes: one number for all three, or three. Fails if one of them is
+    /// 0 or not finite.
     pub fn factors(&self) -> Result<Vec3, LoadError> {
         let factors = self.one_or_three("one number or three")?;
         self.each_component(factors, "other than 0", |number| number != 0.0)
     }
 
-    /// A list of exactly `N` numbers.
+    /// The value as a list of exactly `N` finite numbers; fails otherwise, with `wanted` in the message.
     pub fn numbers<const N: usize>(&self, wanted: &str) -> Result<[f32; N], LoadError> {
         let mut numbers = [0.0; N];
         for (number, item) in numbers.iter_mut().zip(self.list_of(N, wanted)?) {
@@ -106,7 +113,8 @@ impl<'a> Value<'a> {
         Ok(numbers)
     }
 
-    /// A list of exactly `count` values.
+    /// The items of the value as a list of exactly `count` items; fails otherwise, with `wanted` in the
+    /// message.
     pub fn list_of(&self, count: usize, wanted: &str) -> Result<Vec<Value<'a>>, LoadError> {
         let items = self.list(wanted)?;
         match items.len() {
@@ -122,7 +130,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// `vector`, which was read from this value, if all components are as they should be.
+    /// `vector`, which was read from this value, if `holds` is true for each component; fails otherwise.
     fn each_component(
         &self,
         vector: Vec3,

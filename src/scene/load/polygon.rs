@@ -1,14 +1,16 @@
-//! `polygon = { corners = [ … ] }`: flat, convex, and once around.
+//! Reads `polygon = { corners = [ … ] }` and checks that it is flat, convex and goes around once.
 
 use super::reader::Value;
 use crate::scene::error::LoadError;
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// How far corners may stray from a plane, as a share of the polygon's size: written with five digits, they do.
+/// The largest distance of a corner from the plane, relative to the size of the polygon: corners written with
+/// five digits are that far away.
 const FLATNESS: f64 = 1e-5;
 
-/// The corners of a sound polygon.
+/// The corners of a polygon, at least three and in order. Fails if two neighbours are the same point, if all
+/// lie on one line, if one lies outside of the common plane, or if the polygon is not convex.
 pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
     let list = value.table(&["corners"])?.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
     let items = list.list("a list of points")?;
@@ -41,12 +43,13 @@ pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
     Ok(corners)
 }
 
-/// The sum over all edges of the areas that they sweep around the first corner: the normal, as long as twice the area.
+/// The normal of the polygon, twice as long as its area: the sum over all edges of the parallelograms that
+/// they span with the first corner.
 fn area_vector(corners: &[DVec3]) -> DVec3 {
     corners.windows(2).map(|edge| (edge[0] - corners[0]).cross(edge[1] - corners[0])).sum()
 }
 
-/// The first corner that lies too far from the plane through the middle.
+/// The first corner that is too far from the plane through the mean of all corners.
 fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     let size = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
@@ -56,7 +59,7 @@ fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     corners.iter().position(|corner| (corner - middle).dot(normal).abs() > tolerance)
 }
 
-/// The first corner at which the outline turns the wrong way, or by which it has gone around more than once.
+/// The first corner at which the outline turns the wrong way, or at which it has gone around more than once.
 fn turns_back(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     let count = corners.len();
     let edge = |index: usize| (corners[(index + 1) % count] - corners[index % count]).normalize_or_zero();

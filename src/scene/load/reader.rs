@@ -1,5 +1,5 @@
-//! A small typed reader over TOML values. It knows where each value stands, so that every message is in the words of
-//! scenes and points at what is to blame. Numbers are read in `numbers`.
+//! A small typed reader over TOML values. Each value knows its place in the file, so that every message uses
+//! the words of scenes and points at the text that is wrong. `numbers` reads the numbers.
 
 use super::syntax;
 use super::words::{listed, nearest, one_line, quoted};
@@ -9,24 +9,27 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The file under examination.
+/// The scene file that is being read, for error messages.
 pub(super) struct Source<'a> {
+    /// The path of the file, which names it in messages and from whose folder other files are searched.
     pub file: &'a Path,
+    /// The content of the file.
     pub text: &'a str,
 }
 
 impl<'a> Source<'a> {
-    /// All tables of the file.
+    /// All tables of the file; fails if the text is not TOML.
     pub fn document(&self) -> Result<DeTable<'a>, LoadError> {
         DeTable::parse(self.text).map(Spanned::into_inner).map_err(|error| syntax::explain(self, &error))
     }
 
-    /// Trouble at the bytes `span`.
+    /// An error at the bytes `span` of the file.
     pub fn error(&self, span: Range<usize>, message: impl Into<String>) -> LoadError {
         LoadError::at(self.file, self.text, span, message)
     }
 
-    /// A name that nothing has; `what` says what sort of thing was sought.
+    /// The error for a name that is not among `known`, with the name that was probably meant; `what` is the
+    /// kind of name that was expected.
     pub fn unknown(&self, span: Range<usize>, what: &str, word: &str, known: &[&str]) -> LoadError {
         let message = format!("unknown {what} {}", quoted(word));
         match nearest(word, known.iter().copied()) {
@@ -46,12 +49,12 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    /// The whole file, which may hold the keys `known`.
+    /// The table of the whole file; fails if it has a key that is not among `known`.
     pub fn root(source: &'a Source<'a>, entries: &'a DeTable<'a>, known: &[&str]) -> Result<Self, LoadError> {
         Table { source, name: "the scene".into(), entries, span: 0..0 }.knowing(known)
     }
 
-    /// The same table, once it is certain that it holds no other keys than `known`.
+    /// The same table; fails if it has a key that is not among `known`.
     pub fn knowing(self, known: &[&str]) -> Result<Self, LoadError> {
         for value in self.values() {
             if !known.contains(&value.key) {
@@ -61,13 +64,13 @@ impl<'a> Table<'a> {
         Ok(self)
     }
 
-    /// The value of `key`, if there is one.
+    /// The value of `key`, or `None` if the table has no such key.
     pub fn get(&self, key: &str) -> Option<Value<'a>> {
         let (key, item) = self.entries.get_key_value(key)?;
         Some(Value { source: self.source, key: key.get_ref(), place: None, item })
     }
 
-    /// The value of `key`, which must be there; `example` is what one would write.
+    /// The value of `key`; fails if the table has no such key. `example` is a value for the advice.
     pub fn need(&self, key: &str, example: &str) -> Result<Value<'a>, LoadError> {
         self.get(key).ok_or_else(|| {
             self.error(format!("{} lacks `{key}`", self.name))
@@ -75,7 +78,7 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// The value of the one key among `keys` that is there.
+    /// The value of the one key among `keys` that the table has; fails if it has none of them, or several.
     pub fn one_of(&self, keys: &[&str]) -> Result<Value<'a>, LoadError> {
         let given: Vec<Value> = keys.iter().filter_map(|key| self.get(key)).collect();
         let all = listed(keys.iter().copied());
@@ -89,7 +92,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// All values, in the order of the file.
+    /// All values of the table, in the order of the file.
     pub fn values(&self) -> Vec<Value<'a>> {
         let mut entries: Vec<_> = self.entries.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
@@ -100,33 +103,36 @@ impl<'a> Table<'a> {
         entries.into_iter().map(value).collect()
     }
 
-    /// Where `key` is written.
+    /// The byte range of `key` in the file; that of the table if it has no such key.
     pub fn key_span(&self, key: &str) -> Range<usize> {
         self.entries.get_key_value(key).map_or(self.span.clone(), |(key, _)| key.span())
     }
 
-    /// Trouble with the table as a whole.
+    /// An error at the table as a whole.
     pub fn error(&self, message: impl Into<String>) -> LoadError {
         self.source.error(self.span.clone(), message)
     }
 }
 
-/// A value, the key under which it stands and, within a list, its place.
+/// A value, its key and, in a list, its index.
 #[derive(Clone, Copy)]
 pub(super) struct Value<'a> {
+    /// The file that the value stands in.
     pub source: &'a Source<'a>,
+    /// The key of the value or, in a list, of the list.
     pub key: &'a str,
     place: Option<usize>,
     item: &'a Spanned<DeValue<'a>>,
 }
 
 impl<'a> Value<'a> {
-    /// The bare TOML value.
+    /// The TOML value without its place in the file.
     pub fn item(&self) -> &'a DeValue<'a> {
         self.item.get_ref()
     }
 
-    /// How messages call the value.
+    /// The name of the value in messages: its key between backticks or, in a list, also its number, counted
+    /// from 1.
     pub fn name(&self) -> String {
         match self.place {
             Some(place) => format!("entry {} of {}", place + 1, quoted(self.key)),
@@ -134,22 +140,22 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Where the value is written.
+    /// The byte range of the value in the file.
     pub fn span(&self) -> Range<usize> {
         self.item.span()
     }
 
-    /// The value as the file spells it.
+    /// The value as it is written in the file, on one line and shortened to 60 characters.
     pub fn spelled(&self) -> String {
         one_line(self.source.text.get(self.item.span()).unwrap_or_default())
     }
 
-    /// Trouble with this value.
+    /// An error at this value.
     pub fn error(&self, message: impl Into<String>) -> LoadError {
         self.source.error(self.item.span(), message)
     }
 
-    /// The value is not `wanted` but something else.
+    /// The error that the value must be `wanted` but is something else.
     pub fn wrong(&self, wanted: &str) -> LoadError {
         let found = match self.item() {
             DeValue::String(_) => "text".into(),
@@ -161,12 +167,13 @@ impl<'a> Value<'a> {
         self.error(format!("{} must be {wanted}, and is {found}", self.name()))
     }
 
-    /// A table with no other keys than `known`.
+    /// The value as a table; fails if it is not a table or has a key that is not among `known`.
     pub fn table(&self, known: &[&str]) -> Result<Table<'a>, LoadError> {
         self.any_table()?.knowing(known)
     }
 
-    /// A table whose keys are names that the scene gives.
+    /// The value as a table with any keys, for example names that the scene gives; fails if it is not a
+    /// table.
     pub fn any_table(&self) -> Result<Table<'a>, LoadError> {
         match self.item() {
             DeValue::Table(entries) => {
@@ -176,7 +183,8 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A list of `wanted`.
+    /// The items of the value as a list; fails if it is not a list. `wanted` says in the message what is
+    /// expected.
     pub fn list(&self, wanted: &str) -> Result<Vec<Value<'a>>, LoadError> {
         let DeValue::Array(items) = self.item() else { return Err(self.wrong(wanted)) };
         Ok(items
@@ -186,17 +194,17 @@ impl<'a> Value<'a> {
             .collect())
     }
 
-    /// A text.
+    /// The value as a text; fails if it is not a text.
     pub fn text(&self) -> Result<&'a str, LoadError> {
         self.item().as_str().ok_or_else(|| self.wrong("text between quotes"))
     }
 
-    /// `true` or `false`.
+    /// The value as a `bool`; fails if it is neither `true` nor `false`.
     pub fn truth(&self) -> Result<bool, LoadError> {
         self.item().as_bool().ok_or_else(|| self.wrong("true or false"))
     }
 
-    /// One of a few words.
+    /// The choice whose word is the value; fails if the value is not one of these words.
     pub fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, LoadError> {
         let word = self.text()?;
         let words: Vec<&str> = choices.iter().map(|(word, _)| *word).collect();

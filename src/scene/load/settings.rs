@@ -1,4 +1,4 @@
-//! The tables of which a scene has one: `film`, `camera`, `environment` and `quality`.
+//! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
 use super::reader::Value;
 use crate::camera::{Camera, Lens, Shutter};
@@ -8,17 +8,20 @@ use crate::scene::error::LoadError;
 use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
 use glam::Vec3;
 
-/// The longest side of a picture, in pixels.
+/// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
-/// The most pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
+/// The largest number of pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
 const MAX_PIXELS: u64 = 1 << 28;
-/// Beyond a million samples, the rounding of their sum in `f32` outweighs what another one adds.
+/// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
+/// contribution of one more.
 const MAX_SAMPLES: u32 = 1 << 20;
-/// Each bounce is a call within a call, and a thread has a stack of 2 MiB.
+/// The largest number of reflections and refractions on a path.
 const MAX_DEPTH: u32 = 1000;
-/// 1024^3 cells of 4 bytes fill 4 GiB.
+/// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
 const MAX_GRID: u32 = 1024;
 
+/// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
+/// range or there are more than 2^28 pixels.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
     let Some(value) = value else { return Ok(film) };
@@ -41,6 +44,8 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     }
 }
 
+/// The camera of `[camera]`; `aspect` is width over height of the film. Fails if a value is missing or out of
+/// range, if the view direction is zero, or if `up` is parallel to it.
 pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
     let table =
         value.table(&["position", "look_at", "direction", "up", "vertical_fov", "lens", "shutter"])?;
@@ -92,14 +97,19 @@ fn shutter(value: Value) -> Result<Shutter, LoadError> {
     Ok(Shutter { open, close })
 }
 
-/// Light that comes from no lamp.
+/// Light that comes from no light source, from the table `[environment]`.
 #[derive(Default)]
 pub(super) struct Environment {
+    /// Linear radiance of rays that hit nothing, at least 0.
     pub background: Vec3,
+    /// Ambient light of the Phong model in linear RGB, at least 0.
     pub ambient: Vec3,
+    /// Whether light that bounces between surfaces is wanted.
     pub indirect_light: bool,
 }
 
+/// The values of `[environment]`, black and `false` where nothing else is given; fails if one is of the wrong
+/// type or below 0.
 pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError> {
     let Some(value) = value else { return Ok(Environment::default()) };
     let table = value.table(&["background", "ambient", "indirect_light"])?;
@@ -128,6 +138,8 @@ const QUALITY_KEYS: [&str; 15] = [
     "kd_heuristics",
 ];
 
+/// The settings of `[quality]`, with `Quality::default()` for keys that are missing; fails if a value is out
+/// of range.
 pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
     let mut quality = Quality::default();
     let Some(value) = value else { return Ok(quality) };

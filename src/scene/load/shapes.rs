@@ -1,4 +1,4 @@
-//! `shape = { … }` of a node. Shapes of which a ray could hit nothing are refused: they are slips.
+//! Reads `shape = { … }` of a node. Shapes that no ray can hit are refused, because they are mistakes.
 
 use super::names::Names;
 use super::polygon;
@@ -7,10 +7,12 @@ use crate::scene::error::LoadError;
 use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
 use glam::Vec3;
 
-/// All that may stand in `shape`.
+/// All kinds of shapes: exactly one of these keys must stand in `shape`.
 pub(super) const KINDS: [&str; 10] =
     ["sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "bezier", "mesh"];
 
+/// The shape of a node in the space of the node; `meshes` are the names that `mesh` may refer to. Fails if a
+/// value is missing or out of range, or if the shape is degenerate or exceeds the range of `f32`.
 pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     let kind = value.table(&KINDS)?.one_of(&KINDS)?;
     let shape = match kind.key {
@@ -33,6 +35,7 @@ pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     }
 }
 
+/// A sphere from its `center` and its `radius`, which must be above 0.
 pub(super) fn sphere(value: Value) -> Result<Sphere, LoadError> {
     let table = value.table(&["center", "radius"])?;
     Ok(Sphere { center: point(&table, "center")?, radius: radius(&table)? })
@@ -43,7 +46,7 @@ fn plane(value: Value) -> Result<Plane, LoadError> {
     Ok(Plane { point: point(&table, "point")?, normal: normal(&table)? })
 }
 
-/// Slivers and tiny triangles are fine; corners exactly on one line are not.
+/// A triangle. Slivers and tiny triangles are accepted; corners exactly on one line are not.
 fn triangle(value: Value) -> Result<Triangle, LoadError> {
     let table = value.table(&["a", "b", "c"])?;
     let [a, b, c] = [point(&table, "a")?, point(&table, "b")?, point(&table, "c")?];
@@ -54,7 +57,7 @@ fn triangle(value: Value) -> Result<Triangle, LoadError> {
     }
 }
 
-/// A box may be flat along one axis, which makes it a rectangle.
+/// A box, which may be flat along one axis; that makes it a rectangle.
 fn cuboid(value: Value) -> Result<Cuboid, LoadError> {
     let table = value.table(&["min", "max"])?;
     let [min, max] = [point(&table, "min")?, point(&table, "max")?];
@@ -83,12 +86,15 @@ fn cone(value: Value) -> Result<Cone, LoadError> {
     Ok(Cone { base, apex, radius: radius(&table)? })
 }
 
+/// A disk from its `center`, its `normal`, which is scaled to unit length, and its `radius`, which must be
+/// above 0.
 pub(super) fn disk(value: Value) -> Result<Disk, LoadError> {
     let table = value.table(&["center", "normal", "radius"])?;
     Ok(Disk { center: point(&table, "center")?, normal: normal(&table)?, radius: radius(&table)? })
 }
 
-/// A net that is partly folded together is fine: teapots have such; one of a single point is not.
+/// A Bézier patch. A net that is partly folded together is accepted, because teapots have such nets; a net of
+/// a single point is not.
 fn bezier(value: Value) -> Result<Shape, LoadError> {
     let table = value.table(&["rows", "steps"])?;
     let list = table.need("rows", "four rows of four points")?;
@@ -110,7 +116,7 @@ fn point(table: &Table, key: &str) -> Result<Vec3, LoadError> {
     table.need(key, "[0, 0, 0]")?.vector()
 }
 
-/// Of unit length, so that no square of a very short normal vanishes.
+/// A normal, scaled to unit length, so that the square of a very short one does not vanish.
 fn normal(table: &Table) -> Result<Vec3, LoadError> {
     table.need("normal", "[0, 1, 0]")?.direction()
 }
@@ -119,7 +125,7 @@ fn radius(table: &Table) -> Result<f32, LoadError> {
     table.need("radius", "1.0")?.positive()
 }
 
-/// Two points that differ.
+/// The two points of an axis, which must differ.
 fn ends(table: &Table, from: &str, to: &str) -> Result<(Vec3, Vec3), LoadError> {
     let start = table.need(from, "[0, 0, 0]")?.vector()?;
     let end_value = table.need(to, "[0, 1, 0]")?;

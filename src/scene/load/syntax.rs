@@ -1,10 +1,11 @@
-//! What is not even TOML, in plain words.
+//! Errors of the TOML parser, explained in plain words.
 
 use super::reader::Source;
 use super::words::{one_line, quoted};
 use crate::scene::error::LoadError;
 
-/// The parser's `error` as one of ours. The usual slips get words of their own; the rest keep the parser's.
+/// The parser's `error` as a [`LoadError`]. Common mistakes get a message and advice of their own; other
+/// errors keep the message of the parser.
 pub(super) fn explain(source: &Source, error: &toml::de::Error) -> LoadError {
     let end = source.text.len();
     let span = error.span().map_or(end..end, |span| span.start.min(end)..span.end.min(end));

@@ -1,4 +1,4 @@
-//! `[textures.NAME]`: images, decoded to linear light.
+//! Reads `[textures.NAME]`: images, decoded to linear light.
 
 use super::files;
 use super::names::Names;
@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 const WRAPS: [(&str, Wrap); 3] = [("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)];
 
-/// All `[textures.NAME]`, with their names.
+/// All `[textures.NAME]` in the order of the file, with their names. Fails if a file is missing or is not an
+/// image.
 pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Names<'a>), LoadError> {
     let (mut textures, mut names) = (Vec::new(), Names::new("texture"));
     let Some(value) = value else { return Ok((textures, names)) };
@@ -30,7 +31,8 @@ pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Na
     Ok((textures, names))
 }
 
-/// Reads an image; on failure says why.
+/// Reads an image file and decodes it from sRGB to linear light; formats with floating-point pixels are
+/// linear already. Fails with a sentence if the file cannot be read or has no pixels.
 pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
     let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
     let image = reader.map_err(|error| error.to_string())?.decode().map_err(|error| error.to_string())?;
@@ -41,7 +43,7 @@ pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
     Ok(Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap })
 }
 
-/// The pixels row by row, in linear light; transparency is left out.
+/// The pixels row by row from the top, in linear light; transparency is ignored.
 fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
     match image {
         // High dynamic range files store linear light already.
@@ -64,7 +66,7 @@ fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
     }
 }
 
-/// The sRGB curve backwards (IEC 61966-2-1): a line near black, a power above.
+/// The inverse of the sRGB curve (IEC 61966-2-1): linear near black, a power above; both values in `0..=1`.
 fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

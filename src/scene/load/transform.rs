@@ -1,10 +1,12 @@
-//! `transform = [ … ]` and `transform_end = [ … ]` of a node.
+//! Reads `transform = [ … ]` and `transform_end = [ … ]` of a node.
 
 use super::reader::{Table, Value};
 use crate::scene::error::LoadError;
 use glam::{Affine3A, DAffine3, DMat3, DVec3};
 
-/// Where a node stands at shutter time 0, and at time 1 if it moves.
+/// The transform of a node to its parent at shutter time 0, and at time 1 if the node moves. Fails if a step
+/// is malformed, if a transform cannot be inverted in single precision, or if the blend of the two is
+/// singular in between.
 pub(super) fn of_node(table: &Table) -> Result<(Affine3A, Option<Affine3A>), LoadError> {
     let start = table.get("transform").map_or(Ok(DAffine3::IDENTITY), steps)?;
     let Some(value) = table.get("transform_end") else { return Ok((single(start), None)) };
@@ -17,7 +19,7 @@ pub(super) fn of_node(table: &Table) -> Result<(Affine3A, Option<Affine3A>), Loa
     }
 }
 
-/// All steps of `value`, the first listed nearest to the shape.
+/// The product of all steps of `value`; the first one in the list is applied to the shape first.
 fn steps(value: Value) -> Result<DAffine3, LoadError> {
     let mut all = DAffine3::IDENTITY;
     for step_value in value.list("a list of steps")? {
@@ -52,7 +54,7 @@ fn step(value: Value) -> Result<DAffine3, LoadError> {
     })
 }
 
-/// Three rows of four numbers; the fourth row of an affine matrix is always 0, 0, 0, 1.
+/// An affine matrix from three rows of four numbers; its fourth row is always 0, 0, 0, 1.
 fn matrix(value: Value) -> Result<DAffine3, LoadError> {
     let mut rows = [[0.0; 4]; 3];
     for (row, row_value) in rows.iter_mut().zip(value.list_of(3, "three rows of four numbers")?) {
@@ -68,15 +70,17 @@ fn matrix(value: Value) -> Result<DAffine3, LoadError> {
     Ok(DAffine3::from_mat3_translation(linear, column(3)))
 }
 
-/// Whether the columns span a volume. Judged against the box that they would span at right angles, so neither large
-/// nor small scales matter; double precision leaves 1e-16 of it when numbers of `f32` span none. NaN spans none.
+/// Whether the columns span a volume. It is compared with the volume of columns of the same lengths at right
+/// angles, so that scales do not matter. If the columns are linearly dependent, double precision leaves about
+/// 1e-16 of that. False for NaN.
 fn spans_volume(matrix: &DMat3) -> bool {
     let right_angled = matrix.x_axis.length() * matrix.y_axis.length() * matrix.z_axis.length();
     matrix.determinant().abs() > 1e-12 * right_angled
 }
 
-/// Whether all blends of `start` and `end`, entry by entry, keep a millionth of their volume and the same side out.
-/// The volume is a cubic in time, so that sixteen steps see its sign change or its touch of zero at half a turn.
+/// Whether all blends of `start` and `end`, entry by entry, keep a millionth of the volume and the sign of
+/// the determinant. The volume is a cubic in time, so that sixteen steps find its change of sign, and its
+/// zero in the middle of a half turn.
 fn keeps_volume(start: &DMat3, end: &DMat3) -> bool {
     let (first, last) = (start.determinant(), end.determinant());
     let least = 1e-6 * first.abs().min(last.abs());

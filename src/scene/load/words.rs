@@ -1,6 +1,7 @@
-//! Names in messages: how they are shown, and which known one was probably meant.
+//! Names in messages: how they are shown, and which known name was probably meant.
 
-/// The known name that `word` is most likely a slip of, if any comes near: at most a third of its letters differ.
+/// The known name with the smallest Damerau-Levenshtein distance to `word`, without regard to case, if at
+/// most a third of the letters differ (or one). A name of more than 100 characters is never the answer.
 pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
     let word = word.to_lowercase();
     known
@@ -18,12 +19,13 @@ pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) 
         .map(|(_, name)| name)
 }
 
-/// `name` between backticks, on one line whatever it holds, and cut when it is long.
+/// The name between backticks, on one line and cut after 60 characters.
 pub(super) fn quoted(name: &str) -> String {
     format!("`{}`", one_line(name))
 }
 
-/// The first characters of `text`, on one line.
+/// The first 60 characters of `text` on one line, control characters escaped; an ellipsis stands for the
+/// rest.
 pub(super) fn one_line(text: &str) -> String {
     const LONGEST: usize = 60; // keeps a message with two names within two lines of a terminal
     let cut = text.char_indices().nth(LONGEST).map_or(text.len(), |(end, _)| end);
@@ -40,7 +42,8 @@ pub(super) fn one_line(text: &str) -> String {
     line
 }
 
-/// All of `names` for a sentence: "`a`, `b`, `c`".
+/// The names for a sentence, each between backticks: "`a`, `b`, `c`". After 16 names only the number of the
+/// others is given.
 pub(super) fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
     const MOST: usize = 16; // the most keys that a table has; a scene may define hundreds of materials
     let mut names = names.into_iter();

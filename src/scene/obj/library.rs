@@ -1,4 +1,4 @@
-//! Material libraries, the files with the ending `.mtl`.
+//! Material libraries of OBJ files: files with the extension `.mtl`.
 
 use super::ObjMaterial;
 use crate::scene::error::LoadError;
@@ -7,7 +7,8 @@ use glam::Vec3;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The libraries that an `mtllib` line names at `span` of the OBJ file.
+/// The paths of the libraries that an `mtllib` line names at the bytes `span` of the OBJ file; fails if one
+/// of them does not exist. Names are relative to the folder of the OBJ file.
 pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<PathBuf>, LoadError> {
     let directory = file.parent().unwrap_or(Path::new(""));
     let names = &text[span.clone()];
@@ -32,14 +33,17 @@ pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<P
         .collect()
 }
 
-/// Reads all materials of a library.
+/// Reads all materials of the library `file`, in the order of the file; fails if it cannot be read or is
+/// malformed.
 pub(super) fn read(file: &Path) -> Result<Vec<ObjMaterial>, LoadError> {
     parse(file, &read_bytes(file)?)
 }
 
-/// Reads all materials in the bytes of a library.
+/// Reads all materials from the bytes of a library; fails at the first malformed line, and at a value above
+/// the first `newmtl`.
 ///
-/// As in the OBJ file, `tobj` sees only lines that have been checked: a colour with two numbers makes it panic.
+/// As in the OBJ file, `tobj` gets only lines that have been checked, because a colour with two numbers makes
+/// it panic.
 pub(super) fn parse(file: &Path, bytes: &[u8]) -> Result<Vec<ObjMaterial>, LoadError> {
     let text = readable(bytes);
     let mut reader = Reader { file, text: &text, clean: String::new(), named: false };
@@ -116,7 +120,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A name, which may hold blanks.
+    /// A name, which may contain blanks.
     fn name(&self, keyword: &Word, rest: &[Word], help: &str) -> Result<String, LoadError> {
         match rest {
             [first, .., last] => Ok(self.text[first.span.start..last.span.end].into()),
@@ -128,7 +132,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Three numbers, or one for a grey.
+    /// Three numbers, or one for a grey, as text for `tobj`.
     fn colour(&self, keyword: &Word, values: &[Word]) -> Result<String, LoadError> {
         if let [word, ..] = values
             && ["spectral", "xyz"].contains(&word.text)
@@ -162,7 +166,7 @@ impl Reader<'_> {
     }
 }
 
-/// What follows the options of an image, as in `map_Kd -clamp on -s 2 2 1 wood.png`.
+/// The words after the options of an image, as in `map_Kd -clamp on -s 2 2 1 wood.png`.
 fn after_options<'a, 'b>(mut rest: &'b [Word<'a>]) -> &'b [Word<'a>] {
     while let [option, values @ ..] = rest {
         let most = match option.text {

@@ -6,27 +6,28 @@ use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
 
-/// What a file holds once all of its lines are found to be right.
+/// The content of an OBJ file, all of whose lines are correct.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// The file without anything that `tobj` does not need or gets wrong.
+    /// The lines that `tobj` needs, each in a form that it reads correctly.
     pub clean: String,
-    /// Number of `v` lines.
+    /// Number of `v` lines in the file.
     pub vertices: usize,
-    /// Number of `f` lines.
+    /// Number of `f` lines in the file, before polygons are cut into triangles.
     pub faces: usize,
-    /// The names behind `usemtl`, each once.
+    /// The names after `usemtl`, each once and in order of first use.
     pub material_names: Vec<String>,
-    /// What stands behind `mtllib`.
+    /// Byte ranges of the text after each `mtllib`, which is one file name or several.
     pub libraries: Vec<Range<usize>>,
     texture_coordinates: usize,
     normals: usize,
 }
 
-/// The keywords that are long enough to be misspelt, and their real neighbours in the format.
+/// The keywords that are long enough to be misspelt, and the similar keywords of the format.
 const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 
-/// Reads all lines of `text`.
+/// Checks all lines of `text` and returns their content; fails at the first line that is malformed or that
+/// names a vertex, texture coordinate or normal that is not above it.
 pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
     let mut reader = Reader { file, text, lines: Lines::default(), names: HashSet::new() };
     // The one library that `tobj` sees: it stands for all names of materials.
@@ -37,8 +38,8 @@ pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
     Ok(reader.lines)
 }
 
-/// The lines of a file, as bytes. One that ends in a backslash goes on in the next, unless it is a comment: those
-/// like to end in the name of a Windows directory.
+/// The byte ranges of the lines of a file. A line that ends in a backslash continues in the next one, unless
+/// it is a comment: comments often end in the name of a Windows directory.
 fn logical_lines(text: &str) -> impl Iterator<Item = Range<usize>> {
     let mut start = if text.starts_with('\u{feff}') { 3 } else { 0 };
     std::iter::from_fn(move || {
@@ -219,7 +220,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// All that stands behind a keyword. Names may hold blanks.
+    /// The byte range of everything after a keyword. Names may contain blanks.
     fn rest(&self, keyword: &Word, end: usize, help: &str) -> Result<Range<usize>, LoadError> {
         let rest = &self.text[keyword.span.end..end];
         let start = keyword.span.end + (rest.len() - rest.trim_start().len());
@@ -230,7 +231,8 @@ impl<'a> Reader<'a> {
         Ok(start..start + rest.trim().len())
     }
 
-    /// The format has many keywords that are none of our business, so only a near miss is an error.
+    /// Fails only if a keyword looks like a misspelt one, because the format has many keywords that a mesh
+    /// does not need.
     fn check_keyword(&self, keyword: &Word) -> Result<(), LoadError> {
         match nearest(keyword.text, LONG_KEYWORDS) {
             Some(meant) if meant != keyword.text && !keyword.text.starts_with('#') => Err(self
@@ -241,7 +243,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A name as `tobj` sees it: a line break, which only a backslash can bring in, would end its line.
+/// A name without line breaks, which only a backslash can bring in and which would end its line for `tobj`.
 fn one_line(name: &str) -> String {
     name.replace(['\n', '\r'], " ")
 }

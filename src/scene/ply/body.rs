@@ -1,4 +1,5 @@
-//! The numbers after the header, one at a time. Whoever asks knows from the header which kind comes next.
+//! The numbers after the header of a PLY file, read one at a time. The caller knows from the header which
+//! type comes next.
 
 use super::header::{Element, Encoding, Header, Kind, Property};
 use super::scalar::Scalar;
@@ -7,31 +8,36 @@ use crate::scene::error::LoadError;
 use std::ops::Range;
 use std::path::Path;
 
-/// The rest of the file behind a cursor.
+/// The numbers of a PLY file, with the position of the next one.
 pub(super) struct Body<'a> {
     file: &'a Path,
     bytes: &'a [u8],
     encoding: Encoding,
-    /// The byte after the number that was read last.
+    /// The offset of the byte after the number that was read last.
     at: usize,
-    /// Where that number stands, to point at if it makes no sense.
+    /// The byte range of that number, for error messages.
     last: Range<usize>,
 }
 
-/// What is being read, for messages: a property of the element with this number, counted from 0.
+/// The number that is being read, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
+    /// The kind of element, as the header declares it.
     pub element: &'a Element,
+    /// Which element of that kind, counted from 0.
     pub number: usize,
+    /// The property of that element.
     pub property: &'a Property,
 }
 
 impl<'a> Body<'a> {
+    /// A reader of `bytes` that stands at the end of `header`.
     pub fn new(file: &'a Path, bytes: &'a [u8], header: &Header) -> Self {
         Body { file, bytes, encoding: header.encoding, at: header.end, last: header.end..header.end }
     }
 
-    /// The next number.
+    /// Reads the next number, which is of type `scalar`, as an `f64`; it may be NaN or infinite. Fails at the
+    /// end of the file and at a word that is not a number.
     pub fn value(&mut self, scalar: Scalar, place: Place) -> Result<f64, LoadError> {
         self.advance(scalar, place)?;
         let bytes = &self.bytes[self.last.clone()];
@@ -41,7 +47,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The next number, which says how long a list is.
+    /// Reads the next number as the length of a list; fails if it is not a whole number in `0..=u32::MAX`.
     pub fn length(&mut self, scalar: Scalar, place: Place) -> Result<usize, LoadError> {
         let length = self.value(scalar, place)?;
         // Also false for a NaN. The bound is the largest `uint`, so that the number fits into a `usize`.
@@ -54,7 +60,8 @@ impl<'a> Body<'a> {
         ))
     }
 
-    /// Passes over a property that nobody wants. Its numbers are not even parsed.
+    /// Skips a property that is not needed. Fails at the end of the file; apart from the length of a list,
+    /// the numbers are not parsed.
     pub fn skip(&mut self, place: Place) -> Result<(), LoadError> {
         match (place.property.kind, self.encoding) {
             (Kind::One(scalar), _) => self.advance(scalar, place),
@@ -71,7 +78,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Passes over all elements of a kind that nobody wants.
+    /// Skips all elements of a kind that is not needed; fails at the end of the file.
     pub fn skip_element(&mut self, element: &Element) -> Result<(), LoadError> {
         if element.properties.is_empty() {
             return Ok(()); // and do not count to four billion for it
@@ -84,22 +91,24 @@ impl<'a> Body<'a> {
         Ok(())
     }
 
-    /// The most items of `size` numbers that the rest of the file can hold. The header may promise any number,
-    /// and memory is set aside only for what can come.
+    /// The smaller of `promised` and an upper bound for the number of items that the rest of the file can
+    /// hold, if an item has `numbers` numbers. The header may promise any number, and memory is reserved only
+    /// for items that can follow.
     pub fn at_most(&self, promised: usize, numbers: usize) -> usize {
         // A word and the blank after it take two bytes; one byte is the smallest number of a binary file.
         let smallest = if self.encoding == Encoding::Ascii { 2 } else { 1 };
         promised.min((self.bytes.len() - self.at) / (smallest * numbers.max(1)) + 1)
     }
 
-    /// A binary file must still hold `length` numbers: one look at its size, before anything is done for each.
+    /// Fails if a binary file ends before `length` more numbers of type `item`. One comparison with the file
+    /// size avoids a long loop over a length that cannot be right. An ASCII file always passes.
     pub fn check_left(&self, length: usize, item: Scalar, place: Place) -> Result<(), LoadError> {
         let left = (self.bytes.len() - self.at) / item.size();
         if self.encoding != Encoding::Ascii && length > left { Err(self.ends_early(place)) } else { Ok(()) }
     }
 
-    /// Nothing may follow the last element of an ASCII file. Binary files are left in peace, since some writers
-    /// pad them.
+    /// Fails if an ASCII file has a word after its last element. Binary files always pass, because some
+    /// writers pad them.
     pub fn finish(&mut self) -> Result<(), LoadError> {
         if self.encoding != Encoding::Ascii || !self.next_word() {
             return Ok(());
@@ -108,7 +117,8 @@ impl<'a> Body<'a> {
             .help("a count in the header is too small, or a row has a number too many"))
     }
 
-    /// Trouble with the number that was read last.
+    /// An error at the number that was read last: by line and column in an ASCII file, by property and byte
+    /// offset in a binary file.
     pub fn trouble(&self, place: Place, message: String) -> LoadError {
         match self.encoding {
             Encoding::Ascii => trouble_at(self.file, self.bytes, self.last.clone(), message),
@@ -122,7 +132,7 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Moves past the next number and remembers where it stands.
+    /// Skips the next number and remembers its byte range.
     fn advance(&mut self, scalar: Scalar, place: Place) -> Result<(), LoadError> {
         match self.encoding {
             Encoding::Ascii => {
@@ -141,8 +151,8 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// Moves past the next word, if there is one. Line ends are blanks like any other: a row of several vertices
-    /// and a vertex of several rows read the same.
+    /// Skips the next word, if there is one. Line ends count as blanks: several vertices in one row and a
+    /// vertex over several rows are read alike.
     fn next_word(&mut self) -> bool {
         let rest = &self.bytes[self.at..];
         let Some(blanks) = rest.iter().position(|byte| !byte.is_ascii_whitespace()) else { return false };

@@ -1,4 +1,4 @@
-//! The header: which elements follow, how many of each, and which numbers make one.
+//! The header of a PLY file: which elements follow, how many of each, and which numbers make one element.
 
 use super::scalar::{ByteOrder, Scalar};
 use super::text::{Word, guess, nearest, quote, readable, trouble_at, words};
@@ -9,47 +9,53 @@ use std::path::Path;
 /// How the numbers after the header are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
-    /// As words, with blanks and line ends between them.
+    /// As words, separated by blanks and line ends.
     Ascii,
-    /// As bytes, with nothing between them.
+    /// As bytes in this order, without separators.
     Binary(ByteOrder),
 }
 
-/// What one property holds.
+/// The value of one property: a number, or a list of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
-    /// One number.
+    /// One number of this type.
     One(Scalar),
-    /// A length, and that many numbers.
+    /// A number of type `length`, and that many numbers of type `item`.
     List { length: Scalar, item: Scalar },
 }
 
-/// `property float x`.
+/// A property of an element, from a line such as `property float x`.
 #[derive(Clone, Debug)]
 pub(super) struct Property {
+    /// The name of the property, for example `x`.
     pub name: String,
+    /// Whether it is a number or a list, and of which type.
     pub kind: Kind,
-    /// Where the header names it.
+    /// The byte range of the name in the header.
     pub span: Range<usize>,
 }
 
-/// `element vertex 8`, with the properties below it.
+/// A kind of element, from a line such as `element vertex 8`, with the properties in the lines below it.
 #[derive(Clone, Debug)]
 pub(super) struct Element {
+    /// The name of the element, for example `vertex`.
     pub name: String,
-    /// What the header promises; the file may hold less.
+    /// The number of elements that the header promises; the file may hold fewer.
     pub count: usize,
+    /// The properties in the order of their numbers in the file, each name once.
     pub properties: Vec<Property>,
-    /// Where the header names it.
+    /// The byte range of the name in the header.
     pub span: Range<usize>,
 }
 
-/// All that stands before the numbers.
+/// Everything that stands above the numbers of a PLY file.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
+    /// Whether the numbers are ASCII or binary, and in which byte order.
     pub encoding: Encoding,
+    /// The kinds of elements in the order of the file, each name once.
     pub elements: Vec<Element>,
-    /// The byte at which the numbers start.
+    /// The offset of the byte after the line `end_header`, where the numbers start.
     pub end: usize,
 }
 
@@ -62,7 +68,8 @@ const KEYWORDS: [&str; 6] = ["format", "comment", "obj_info", "element", "proper
 const TYPES: &str = "the types are char, uchar, short, ushort, int, uint, float and double, or int8, uint8, int16, \
                      uint16, int32, uint32, float32 and float64";
 
-/// Reads the header at the start of `bytes`.
+/// Reads the header at the start of `bytes`; fails at the first line that is malformed, and if `ply`,
+/// `format` or `end_header` is missing.
 pub(super) fn read(file: &Path, bytes: &[u8]) -> Result<Header, LoadError> {
     let mut lines = Lines::new(bytes);
     let mut draft = Draft { file, bytes, encoding: None, elements: Vec::new() };

@@ -1,7 +1,7 @@
 //! Reads PLY files (lectures "PLY Files" and "Additional Data").
 //!
 //! A PLY file describes itself: its header says which elements follow, how many of each, and which properties
-//! make one element. So a reader can pass over `fooness` and `barness` without knowing what they are.
+//! make one element. So a reader can skip `fooness` and `barness` without knowing what they mean.
 //!
 //! ```text
 //! ply
@@ -20,8 +20,8 @@
 //! 3 0 1 2
 //! ```
 //!
-//! After `end_header` come numbers and nothing else. `header` reads what stands above that line, `body` hands
-//! out the numbers below it, and `tables` sorts them into a [`Mesh`].
+//! Only numbers follow `end_header`. `header` reads the lines down to there, `body` reads the numbers one by
+//! one, and `tables` puts them into a [`Mesh`].
 
 mod body;
 mod header;
@@ -38,12 +38,28 @@ use glam::{Vec2, Vec3};
 use std::path::Path;
 use tables::Layout;
 
-/// Reads the mesh in a PLY file.
+/// Reads the mesh of the PLY file `file`, as [`parse`] does with its bytes.
+///
+/// # Errors
+///
+/// If `file` cannot be read, and in all cases in which [`parse`] fails.
 pub fn read(file: &Path) -> Result<Mesh, LoadError> {
     parse(file, &text::read_bytes(file)?)
 }
 
-/// Reads the mesh in the bytes of a PLY file; the name is for messages.
+/// Reads the mesh from the bytes of a PLY file, ASCII or binary of either byte order; `file` is its name in
+/// messages.
+///
+/// Positions are finite. A face with more than three corners is cut into triangles that share its first
+/// corner. Normals are scaled to unit length, and dropped all together if one of them has no direction.
+/// Texture coordinates are dropped all together if one of them is not finite.
+///
+/// # Errors
+///
+/// If the header is malformed or declares no vertices or no faces, if a number or the length of a list is
+/// malformed, if the file ends early, if an ASCII file goes on after its last element, if a face has fewer
+/// than three corners or names a vertex that does not exist, if a position is not finite, or if there are no
+/// triangles. An error at a place in an ASCII file names its line and column.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
     let header = header::read(file, bytes)?;
     let layout = Layout::of(file, bytes, &header)?;
@@ -72,16 +88,16 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
     Ok(mesh)
 }
 
-/// The normals at length 1, or none at all if one of them has no direction.
+/// The normals scaled to unit length, or none at all if one of them has no direction (zero, infinite or NaN).
 ///
-/// Some writers leave zeros for vertices that they know no normal of. A mesh has a normal for each vertex or for
-/// none, and a made-up one would show as a dark spot that nobody finds; without the table, normals are computed
-/// from the triangles, which is right everywhere.
+/// Some writers leave zeros for vertices whose normal they do not know. A mesh has a normal for each vertex
+/// or for none, and an invented one would be visible as a dark spot. Without the table, normals are computed
+/// from the triangles, which is correct everywhere.
 pub(crate) fn unit_normals(normals: Vec<Vec3>) -> Vec<Vec3> {
     normals.into_iter().map(Vec3::try_normalize).collect::<Option<_>>().unwrap_or_default()
 }
 
-/// The texture coordinates, or none at all if one of them names no place in an image.
+/// The texture coordinates, or none at all if one of them is not finite.
 fn finite_uvs(uvs: Vec<Vec2>) -> Vec<Vec2> {
     if uvs.iter().all(|uv| uv.is_finite()) { uvs } else { Vec::new() }
 }

@@ -1,6 +1,7 @@
-//! The eight kinds of numbers that a PLY file may hold.
+//! The eight number types of PLY files.
 
-/// A kind of number.
+/// A number type of a PLY file: a signed or unsigned integer of 8, 16 or 32 bits, or a float of 32 or 64
+/// bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     Int8,
@@ -13,7 +14,8 @@ pub(super) enum Scalar {
     Float64,
 }
 
-/// Which byte of a number comes first.
+/// The byte order of a binary file: whether the least (little-endian) or the most significant byte comes
+/// first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
     LittleEndian,
@@ -21,7 +23,7 @@ pub(super) enum ByteOrder {
 }
 
 impl Scalar {
-    /// Both spellings of each kind: that of the first PLY files, and the later one that tells the bits.
+    /// Both names of each type: that of the first PLY files, and the later one that gives the number of bits.
     pub const NAMES: [(&str, Scalar); 16] = [
         ("char", Scalar::Int8),
         ("uchar", Scalar::Uint8),
@@ -41,12 +43,12 @@ impl Scalar {
         ("float64", Scalar::Float64),
     ];
 
-    /// The kind with this name.
+    /// The type with this name in a header, if there is one; case matters.
     pub fn named(name: &str) -> Option<Scalar> {
         Self::NAMES.iter().find(|(known, _)| *known == name).map(|&(_, scalar)| scalar)
     }
 
-    /// Bytes that the number takes in a binary file.
+    /// The number of bytes of this type in a binary file.
     pub fn size(self) -> usize {
         match self {
             Scalar::Int8 | Scalar::Uint8 => 1,
@@ -56,7 +58,12 @@ impl Scalar {
         }
     }
 
-    /// The number in these [`Scalar::size`] bytes. An `f64` holds each of the eight kinds exactly.
+    /// The value of `bytes`, which must be [`Scalar::size`] bytes in byte order `order`. An `f64` represents
+    /// each value of the eight types exactly.
+    ///
+    /// # Panics
+    ///
+    /// If there are more than eight bytes.
     pub fn decode(self, bytes: &[u8], order: ByteOrder) -> f64 {
         // Turned round, a big-endian number is a little-endian one: that leaves one way to read each kind.
         let mut little = [0; 8];
@@ -79,8 +86,8 @@ impl Scalar {
         }
     }
 
-    /// The number that `word` spells in an ASCII file. The width of the kind does not matter there: 300 is a fine
-    /// `uchar`, since nobody packs it into a byte.
+    /// The number that `word` spells in an ASCII file, if it spells one; it may be NaN or infinite. The range
+    /// of an integer type is not checked: 300 is accepted as a `uchar`, because no byte has to hold it.
     pub fn parse(self, word: &[u8]) -> Option<f64> {
         let word = std::str::from_utf8(word).ok()?;
         match self {

@@ -9,9 +9,10 @@ use crate::scene::error::LoadError;
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
-/// Where the header puts the numbers that make a mesh. Everything else in the file is skipped.
+/// The positions in the file of the numbers that make a mesh. All other numbers are skipped.
 pub(super) struct Layout {
-    /// How many vertices the header promises; faces may come before them and are checked against this.
+    /// The number of vertices that the header promises. Faces may come before vertices, and their indices are
+    /// checked against this number.
     pub vertex_count: usize,
     /// For each property of a vertex its number's place in the row `x y z nx ny nz u v`, if it has one there.
     row: Vec<Option<usize>>,
@@ -21,12 +22,13 @@ pub(super) struct Layout {
     corners: usize,
 }
 
-/// Names of texture coordinates: one pair for each tool that has written PLY files.
+/// The names of texture coordinates: one pair for each tool that writes PLY files.
 const UV_NAMES: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
 const CORNER_NAMES: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl Layout {
-    /// Finds vertices and faces in the header.
+    /// Finds the properties of vertices and faces in the header; fails if an element, a coordinate or the
+    /// list of vertex indices is missing, or if there are more vertices than `u32::MAX`.
     pub fn of(file: &Path, bytes: &[u8], header: &Header) -> Result<Layout, LoadError> {
         let missing = Missing { file, bytes, header };
         let vertex =
@@ -75,7 +77,8 @@ impl Layout {
         })
     }
 
-    /// Reads all vertices.
+    /// Reads all vertices of `element` into the positions, normals and texture coordinates of `mesh`, rounded
+    /// to `f32`; fails if a number is missing or malformed.
     pub fn vertices(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
         let expected = body.at_most(element.count, element.properties.len());
         mesh.positions.reserve(expected);
@@ -104,7 +107,9 @@ impl Layout {
         Ok(())
     }
 
-    /// Reads all faces and cuts those with more than three corners into triangles.
+    /// Reads all faces of `element` into the triangles of `mesh`; a face with more than three corners is cut
+    /// into a fan of triangles around its first corner. Fails if a face has fewer than three corners or an
+    /// index names no vertex.
     pub fn faces(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
         mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
         for number in 0..element.count {
@@ -148,7 +153,7 @@ impl Layout {
         Ok(())
     }
 
-    /// One index into the table of vertices.
+    /// One index of a vertex; fails if there is no such vertex.
     fn corner(&self, body: &mut Body, place: Place, item: Scalar) -> Result<u32, LoadError> {
         let index = body.value(item, place)?;
         // Some writers spell indices as floats, which is fine as long as they count. False also for a NaN.

@@ -1,18 +1,21 @@
-//! Text from files that may hold any bytes: words with their places, quotations, and guesses at what was meant.
+//! Text from files that may hold any bytes: words with their places, quotations, and suggestions for misspelt
+//! words.
 
 use crate::scene::error::LoadError;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::Path;
 
-/// A word and the bytes where it stands.
+/// A word of a file without blanks, and its place.
 #[derive(Clone, Debug)]
 pub(crate) struct Word<'a> {
+    /// The characters of the word.
     pub text: &'a str,
+    /// The byte range of the word in its file.
     pub span: Range<usize>,
 }
 
-/// The whole file, or why it cannot be had.
+/// The content of `file`; fails with advice if it does not exist or cannot be read.
 pub(crate) fn read_bytes(file: &Path) -> Result<Vec<u8>, LoadError> {
     std::fs::read(file).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => LoadError::new(file, "there is no such file")
@@ -22,8 +25,8 @@ pub(crate) fn read_bytes(file: &Path) -> Result<Vec<u8>, LoadError> {
     })
 }
 
-/// The bytes as text, in which every byte keeps its place: one that is no UTF-8 becomes one `?`. Comments in
-/// older encodings are common, and a place in this text has to be the same place in the file.
+/// The bytes as text of the same length: each byte that is not valid UTF-8 becomes one `?`. Comments in older
+/// encodings are common, and a place in this text must be the same place in the file.
 pub(crate) fn readable(bytes: &[u8]) -> Cow<'_, str> {
     if let Ok(text) = std::str::from_utf8(bytes) {
         return Cow::Borrowed(text);
@@ -36,7 +39,12 @@ pub(crate) fn readable(bytes: &[u8]) -> Cow<'_, str> {
     Cow::Owned(text)
 }
 
-/// Trouble at the bytes `span`.
+/// An error at the bytes `span` of `bytes`, the content of `file`; lines may also end with a carriage return
+/// alone.
+///
+/// # Panics
+///
+/// If `span` ends after `bytes`.
 pub(crate) fn trouble_at(
     file: &Path,
     bytes: &[u8],
@@ -50,7 +58,7 @@ pub(crate) fn trouble_at(
     LoadError::at(file, &text, span, message)
 }
 
-/// The words of a line that starts at byte `start` of its file.
+/// The words of `line` between ASCII blanks; `start` is the byte of the file at which the line begins.
 pub(crate) fn words(line: &str, start: usize) -> Vec<Word<'_>> {
     line.split_ascii_whitespace()
         .map(|text| {
@@ -60,14 +68,16 @@ pub(crate) fn words(line: &str, start: usize) -> Vec<Word<'_>> {
         .collect()
 }
 
-/// The word in the quotes of our messages, short enough to be read aloud.
+/// The word between backticks, for messages: at most 24 of its characters, special characters escaped.
 pub(crate) fn quote(word: &str) -> String {
     const LONGEST: usize = 24;
     let start: String = word.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if word.chars().count() > LONGEST { format!("`{start}…`") } else { format!("`{start}`") }
 }
 
-/// The candidate that was probably meant by `word`, if one is near.
+/// The candidate with the smallest Damerau-Levenshtein distance to `word`, if it is a likely misspelling: a
+/// distance of at most 1 plus a fifth of the candidate's length. Case does not matter in `word`; a word of
+/// more than 40 bytes has no candidate.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // Longer words are no typing mistakes, and the distance takes time that is quadratic in the length.
     const LONGEST: usize = 40;
@@ -83,10 +93,11 @@ pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a s
         .map(|(_, candidate)| candidate)
 }
 
-/// Advice for the owner of an OBJ file with another name.
+/// The advice for an OBJ file that has another extension.
 pub(crate) const LOOKS_LIKE_OBJ: &str = "it looks like an OBJ file: give it the ending `.obj`";
 
-/// What a file might be, judged by its first bytes, with the advice that fits.
+/// Advice for a file that is not a mesh of the expected format, judged by its first bytes; `None` if they are
+/// not recognised. Leading blanks and comments are ignored.
 pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
     const SIGNS: [(&[u8], &str); 15] = [
         (b"ply", "it looks like a PLY file: give it the ending `.ply`"),
@@ -114,8 +125,8 @@ pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
     SIGNS.iter().find(|(sign, _)| bytes.starts_with(sign)).map(|&(_, advice)| advice)
 }
 
-/// Calls `check` with every beginning of `original`, and with a few thousand copies in which bytes have been
-/// changed, removed or repeated; the same ones each time.
+/// Calls `check` with every prefix of `original`, and with 5000 copies in which bytes have been changed,
+/// removed or repeated. The copies are the same in each run.
 #[cfg(test)]
 pub(crate) fn mutations(original: &[u8], mut check: impl FnMut(&[u8])) {
     (0..original.len()).for_each(|length| check(&original[..length]));
