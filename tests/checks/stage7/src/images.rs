@@ -180,7 +180,7 @@ const COLORS: [[f64; 3]; 3] =
     [[0.405_333, 0.653_333, 0.286_667], [0.0; 3], [0.361_333, 0.833_333, 0.226_667]];
 
 /// What mistakes make of the three places.
-const MISTAKES: [([[f64; 3]; 3], &str); 11] = [
+const MISTAKES: [([[f64; 3]; 3], &str); 12] = [
     (
         [[0.365_333, 0.553_333, 0.186_667], [0.0; 3], [0.481_333, 0.393_333, 0.466_667]],
         "the shares of columns and rows are exchanged",
@@ -202,6 +202,7 @@ const MISTAKES: [([[f64; 3]; 3], &str); 11] = [
         "rounded towards 0: left of the first middle the pixel before begins, so take floor",
     ),
     ([COLORS[0], COLORS[1], [0.8, 0.8, 0.4]], ANOTHER_WRAP),
+    ([COLORS[0], COLORS[1], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
     ([COLORS[0], [0.498, 0.230_333, 0.351_667], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
     (
         [COLORS[0], COLORS[1], [0.753_333, 0.74, 0.413_333]],
