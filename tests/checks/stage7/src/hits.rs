@@ -153,8 +153,11 @@ fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
     singles
 }
 
+/// Tables of a single hit or a single place, each with how often it is in a larger table.
+type Parts = Vec<(HitsQuery, u64)>;
+
 /// The table in parts: for each row one hit alone, and one place on each light alone, each with how often it is there.
-fn parts(query: &HitsQuery) -> Vec<(HitsQuery, u64)> {
+fn parts(query: &HitsQuery) -> Parts {
     let mut parts = Vec::new();
     for MaterialHits { material, hits, in_front } in &query.hits {
         let alone =
@@ -185,11 +188,11 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
         }
     }
     trial.forall(2000, hits_query(), |queries| {
-        let parts: Vec<Vec<(HitsQuery, u64)>> = queries.iter().map(parts).collect();
+        let parts: Vec<Parts> = queries.iter().map(parts).collect();
         let all: Vec<HitsQuery> = parts.iter().flatten().map(|(part, _)| part.clone()).collect();
         let mut alone = trial.kit.rays_of_hits(&all).into_iter();
         let whole = trial.kit.rays_of_hits(queries);
-        let judge = |((query, parts), yours): ((&HitsQuery, &Vec<(HitsQuery, u64)>), RayCounts)| {
+        let judge = |((query, parts), yours): ((&HitsQuery, &Parts), RayCounts)| {
             let mut sum = RayCounts::default();
             for ((_, times), one) in parts.iter().zip(alone.by_ref()) {
                 // Saturating: a wrong answer can be any number.

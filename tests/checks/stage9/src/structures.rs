@@ -66,13 +66,14 @@ pub(super) fn filled(bounds: Aabb, resolution: UVec3, lists: &[Vec<u32>]) -> Gri
 ///
 /// A search finds in it what it finds in a grid that lists boxes, because hits are all that it learns of primitives.
 pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), resolution: UVec3) -> Grid {
-    // Where the primitives are, whatever formula rounds `t`.
+    // Locate the hits, whatever formula rounds `t`.
     let hits = Scene { rough: false, ..scene.clone() }.hits(ray);
     let first = closest(&scene.hits(ray), ray).map(|(primitive, _)| primitive);
     let n_cells = resolution.element_product();
     let mut lists = vec![Vec::new(); n_cells as usize];
+    // Find the cells along the ray.
     let way = parts::near_grid(&filled(bounds, resolution, &lists), ray, room);
-    // From the largest number down: of two hits at one `t` the larger number comes first.
+    // List each primitive, from the largest number down: of two hits at one `t` the larger number comes first.
     for id in (0..hits.len() as u32).rev() {
         let t = f64::from(hits[id as usize]);
         // Eight times what `t` is rounded by.
@@ -83,13 +84,9 @@ pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), re
             // A hit out of the ray's range.
             cells = (0..n_cells).collect();
         }
-        if first != Some(id) {
-            cells.extend(
-                (0..n_cells)
-                    .filter(|cell| (cell + id) % 4 == 0 && !cells.contains(cell))
-                    .collect::<Vec<u32>>(),
-            );
-        }
+        let elsewhere = (0..n_cells).filter(|cell| first != Some(id) && (cell + id) % 4 == 0);
+        let elsewhere: Vec<u32> = elsewhere.filter(|cell| !cells.contains(cell)).collect();
+        cells.extend(elsewhere);
         cells.into_iter().for_each(|cell| lists[cell as usize].push(id));
     }
     filled(bounds, resolution, &lists)
