@@ -100,19 +100,19 @@ pub struct CachedQuery {
 
 impl CachedQuery {
     /// The search that the cache speeds up: it visits and tests every primitive whose box is entered before
-    /// `ray.t_max`, in ascending order, and returns the closest hit.
+    /// `ray.t_max`. Its answer is the smallest `t` of the table and does not depend on these tests.
     ///
     /// # Panics
     ///
-    /// If `entries` is shorter than `hits`.
+    /// If `hits` is shorter than `entries`.
     pub fn search(&self, probe: &mut CellsProbe<'_>, ray: &Ray) -> Option<PrimitiveHit> {
-        let near =
-            (0..self.hits.len() as u32).filter(|&primitive| self.entries[primitive as usize] < ray.t_max);
-        let hits = near.filter_map(|primitive| {
+        for (primitive, _) in (0..).zip(&self.entries).filter(|(_, entry)| **entry < ray.t_max) {
             probe.visit(primitive);
-            Some(PrimitiveHit { t: probe.hit(primitive, ray)?, primitive })
-        });
-        hits.min_by(|p, q| p.t.total_cmp(&q.t))
+            probe.hit(primitive, ray);
+        }
+        let t = self.hits.iter().copied().filter(|t| ray.contains(*t)).min_by(f32::total_cmp)?;
+        let primitive = self.hits.iter().position(|hit| *hit == t)? as u32;
+        Some(PrimitiveHit { t, primitive })
     }
 }
 

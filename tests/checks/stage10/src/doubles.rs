@@ -54,10 +54,12 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> Outcome {
         let queries = at_all_edges(trial, distribution.name);
         let answers = trial.kit.triangle_in_double(&queries);
         let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
+            if verdict_is_right(query, yours)? {
+                return None;
+            }
             let exact = meet(&query.ray, Body::Triangle(query.triangle))?;
             let margin = triangle::margin(&query.ray, &query.triangle)?;
-            let right = yours.is_some() == exact.verdict.is_hit() || margin <= IN_DOUBLE;
-            (!right).then_some(Wrong { query: *query, yours, exact: exact.t, margin })
+            Some(Wrong { query: *query, yours, exact: exact.t, margin })
         };
         let wrong: Vec<Wrong> = queries.iter().zip(answers).filter_map(judge).collect();
         let Some(worst) = wrong.iter().max_by(|p, q| p.margin.total_cmp(&q.margin)) else { continue };
@@ -86,8 +88,9 @@ fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str 
         let weights = triangle::weights(&query.ray, &query.triangle).flatten();
         weights.is_some_and(|[beta, gamma]| beta >= 0.0 && gamma >= 0.0)
     };
-    let explained = |rule: fn(&TriangleQuery) -> Option<f32>| {
-        wrong.iter().all(|one| rule(&one.query).is_some() == one.yours.is_some())
+    let converted_late = || {
+        let wrong = wrong.iter().map(|one| (&one.query, one.yours));
+        is_converted_late(trial, wrong, |query, yours| verdict_is_right(query, yours) == Some(true))
     };
     match yours {
         None if trial.kit.triangle_in_double(&[enlarged(query)])[0].is_some() => {
@@ -100,7 +103,7 @@ fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str 
             "outside where β + γ > 1: α = 1 - β - γ must not be below 0 either"
         }
         Some(_) if *margin > STABLE => "a hit where there is none: no weight may be below 0",
-        _ if explained(differences_in_single) => CONVERTED_LATE,
+        _ if converted_late() => CONVERTED_LATE,
         _ if *margin <= STABLE => "as wrong as single precision: something is rounded to f32 on the way",
         _ => "",
     }
@@ -118,15 +121,45 @@ fn enlarged(query: &TriangleQuery) -> TriangleQuery {
     }
 }
 
-/// A known mistake: Cramer's rule in double on differences in single.
-fn differences_in_single(TriangleQuery { ray, triangle }: &TriangleQuery) -> Option<f32> {
-    let Triangle { a, b, c } = *triangle;
-    let [u, v, s, d] = [b - a, c - a, ray.origin - a, ray.dir].map(Vec3::as_dvec3);
-    let (p, q) = (d.cross(v), s.cross(u));
-    let determinant = u.dot(p);
-    let (beta, gamma) = (s.dot(p) / determinant, d.dot(q) / determinant);
-    let t = (v.dot(q) / determinant) as f32;
-    (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0 && ray.contains(t)).then_some(t)
+/// The same triangle and origin as seen from `base`, with differences that are rounded to single precision. For code that
+/// converts those differences this is the same input; its answer may be wrong for `query` and right for this.
+fn seen_from(base: Vec3, query: &TriangleQuery) -> TriangleQuery {
+    let TriangleQuery { ray, triangle: Triangle { a, b, c } } = *query;
+    TriangleQuery {
+        ray: Ray { origin: ray.origin - base, ..ray },
+        triangle: Triangle { a: a - base, b: b - base, c: c - base },
+    }
+}
+
+/// Whether the student's code makes of all these inputs exactly what it makes of their rounded differences, for which
+/// `is_right` accepts it: differences to one of the corners or to the origin.
+fn is_converted_late<'a>(
+    trial: &Trial<'_>,
+    wrong: impl Iterator<Item = (&'a TriangleQuery, Option<TriangleHit>)> + Clone,
+    is_right: impl Fn(&TriangleQuery, Option<TriangleHit>) -> bool,
+) -> bool {
+    let bases: [fn(&TriangleQuery) -> Vec3; 4] =
+        [|q| q.triangle.a, |q| q.triangle.b, |q| q.triangle.c, |q| q.ray.origin];
+    bases.iter().any(|base| {
+        let seen: Vec<TriangleQuery> =
+            wrong.clone().map(|(query, _)| seen_from(base(query), query)).collect();
+        let answers = trial.kit.triangle_in_double(&seen);
+        let t = |hit: Option<TriangleHit>| hit.map(|hit| hit.t);
+        let mut each = wrong.clone().zip(&seen).zip(answers);
+        each.all(|(((_, yours), seen), answer)| t(yours) == t(answer) && is_right(seen, answer))
+    })
+}
+
+/// Whether hit or miss is what it exactly is, or nearer to flipping than [`IN_DOUBLE`]; `None` if nobody can say.
+fn verdict_is_right(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<bool> {
+    let exact = meet(&query.ray, Body::Triangle(query.triangle))?;
+    let margin = triangle::margin(&query.ray, &query.triangle)?;
+    Some(yours.is_some() == exact.verdict.is_hit() || margin <= IN_DOUBLE)
+}
+
+/// By how many steps of the last digit `t` is off; `None` for a miss, or if nobody can say.
+fn steps_off(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<f64> {
+    t_error_in_ulps(&query.ray, Body::Triangle(query.triangle), yours?.t)
 }
 
 pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
@@ -134,19 +167,20 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
         let queries = draw(trial, distribution.name, 400);
         let answers = trial.kit.triangle_in_double(&queries);
         let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
-            let (yours, body) = (yours?.t, Body::Triangle(query.triangle));
-            let off = t_error_in_ulps(&query.ray, body, yours)?;
+            let off = steps_off(query, yours)?;
             // Rounding what is right to more digits leaves half a step; a whole one says that t is one of two neighbours.
             (off.abs() > 1.0).then_some((*query, yours, off))
         };
         let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
         let Some((query, yours, off)) = wrong.first() else { continue };
-        let converted_late = wrong.iter().all(|(query, yours, _)| {
-            differences_in_single(query)
-                .is_some_and(|t| t == *yours || t.next_up() == *yours || t.next_down() == *yours)
-        });
+        let converted_late = || {
+            let wrong = wrong.iter().map(|(query, yours, _)| (query, *yours));
+            let is_right =
+                |query: &TriangleQuery, yours| steps_off(query, yours).is_some_and(|off| off.abs() <= 1.0);
+            is_converted_late(trial, wrong, is_right)
+        };
         let diagnosis = match () {
-            () if converted_late => CONVERTED_LATE,
+            () if converted_late() => CONVERTED_LATE,
             () if off.abs() < 1e5 => {
                 "t has the digits of single precision: round the quotient, and nothing before it"
             }
@@ -155,8 +189,12 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
         let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
         let expected =
             format!("{exact:?}, or a neighbour: this is {:.1} steps of the last digit off", off.abs());
-        let broken =
-            Broken::told(query.call("triangle_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
+        let broken = Broken::told(
+            query.call("triangle_in_double"),
+            format!("{:?}", yours.map(|hit| hit.t)),
+            expected,
+            "exactly",
+        );
         return Err(broken.looks_like(known(diagnosis)));
     }
     Ok(())

@@ -3,7 +3,7 @@
 use super::scenes::{ball_lamp, lamp};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
-use checks::judge::{compare, known};
+use checks::judge::known;
 use checks::paste::Paste;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
@@ -71,24 +71,241 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-/// What the material takes, by the definition.
-fn takes(query: &MaterialQuery) -> MaterialEffects {
-    let MaterialQuery { material, lights, quality } = query;
-    let meets = |light: &Light| {
-        let arrives = light.radiance();
-        (0..3).any(|i| arrives[i] > 0.0 && (material.diffuse[i] > 0.0 || material.specular[i] > 0.0))
-    };
-    let deep = quality.max_depth > 0;
-    let transmission = deep && material.transmission != Vec3::ZERO;
-    let mirror =
-        deep && (material.mirror != Vec3::ZERO || (transmission && material.fresnel != Fresnel::None));
-    MaterialEffects {
-        lights: (0..lights.len()).filter(|&i| meets(&lights[i])).collect(),
-        mirror,
-        transmission,
-        gloss: material.roughness > 0.0 && (mirror || transmission),
-        texture: material.texture.is_some() && (material.diffuse + material.ambient) != Vec3::ZERO,
+/// A material that shows nothing.
+fn black() -> Material {
+    Material {
+        ambient: Vec3::ZERO,
+        diffuse: Vec3::ZERO,
+        specular: Vec3::ZERO,
+        mirror: Vec3::ZERO,
+        transmission: Vec3::ZERO,
+        index_of_refraction: 1.5,
+        fresnel: Fresnel::None,
+        roughness: 0.0,
+        texture: None,
+        ..Material::default()
     }
+}
+
+/// Materials with few colours, `max_depth`, and what they take under a red, a green, a faint blue, a white and a black
+/// light. Written down from the doc comment of `material_effects`.
+fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
+    let (red, green, blue) = (vec3(0.5, 0.0, 0.0), vec3(0.0, 0.5, 0.0), vec3(0.0, 0.0, 0.5));
+    let faint = vec3(0.0, 0.0, 1e-4);
+    let (white, image, rough) = (Vec3::splat(0.5), Some(0), 0.25);
+    let lights = [red, green, faint, Vec3::ONE, Vec3::ZERO].map(|color| lamp(color, 1.0));
+    let nothing = MaterialEffects::default;
+    let lit = |lights: &[usize]| MaterialEffects { lights: lights.to_vec(), ..nothing() };
+    let reads = || MaterialEffects { texture: true, ..nothing() };
+    let mirrors = || MaterialEffects { mirror: true, ..nothing() };
+    let passes = || MaterialEffects { transmission: true, ..nothing() };
+    let splits = || MaterialEffects { transmission: true, ..mirrors() };
+    let blurs = |sharp: MaterialEffects| MaterialEffects { gloss: true, ..sharp };
+    let diffuse = |diffuse| Material { diffuse, ..black() };
+    let specular = |specular| Material { specular, ..black() };
+    let ambient = |ambient| Material { ambient, ..black() };
+    let mirror = |mirror| Material { mirror, ..black() };
+    let glass = |transmission, fresnel| Material { transmission, fresnel, ..black() };
+    let (none, schlick, exact) = (Fresnel::None, Fresnel::Schlick, Fresnel::Exact);
+    let cases = [
+        (black(), 2, nothing()),
+        (diffuse(red), 2, lit(&[0, 3])),
+        (diffuse(green), 0, lit(&[1, 3])),
+        (diffuse(blue), 1, lit(&[2, 3])),
+        (diffuse(faint), 1, lit(&[2, 3])),
+        (diffuse(white), 1, lit(&[0, 1, 2, 3])),
+        (specular(red), 0, lit(&[0, 3])),
+        (specular(green), 2, lit(&[1, 3])),
+        (specular(faint), 1, lit(&[2, 3])),
+        (Material { specular: green, ..diffuse(red) }, 1, lit(&[0, 1, 3])),
+        (ambient(white), 1, nothing()),
+        (mirror(red), 1, mirrors()),
+        (mirror(blue), 2, mirrors()),
+        (mirror(faint), 1, mirrors()),
+        (mirror(white), 0, nothing()),
+        (glass(green, none), 1, passes()),
+        (glass(faint, none), 2, passes()),
+        (glass(white, none), 0, nothing()),
+        (Material { index_of_refraction: 1.0, ..glass(white, none) }, 1, passes()),
+        (glass(green, schlick), 1, splits()),
+        (glass(red, exact), 2, splits()),
+        (glass(white, schlick), 0, nothing()),
+        (Material { mirror: red, ..glass(blue, none) }, 1, splits()),
+        (Material { mirror: red, ..glass(blue, exact) }, 0, nothing()),
+        (glass(Vec3::ZERO, schlick), 1, nothing()),
+        (glass(Vec3::ZERO, exact), 1, nothing()),
+        (Material { roughness: rough, ..black() }, 1, nothing()),
+        (Material { roughness: rough, ..diffuse(red) }, 1, lit(&[0, 3])),
+        (Material { roughness: rough, ..mirror(red) }, 1, blurs(mirrors())),
+        (Material { roughness: rough, ..glass(green, none) }, 1, blurs(passes())),
+        (Material { roughness: rough, ..glass(green, exact) }, 2, blurs(splits())),
+        (Material { roughness: rough, ..mirror(white) }, 0, nothing()),
+        (Material { roughness: rough, ..glass(white, none) }, 0, nothing()),
+        (Material { texture: image, ..black() }, 1, nothing()),
+        (Material { texture: image, ..specular(red) }, 1, lit(&[0, 3])),
+        (Material { texture: image, ..mirror(red) }, 1, mirrors()),
+        (Material { texture: image, ..glass(red, none) }, 1, passes()),
+        (Material { texture: image, ..ambient(blue) }, 1, reads()),
+        (Material { texture: image, ..ambient(faint) }, 0, reads()),
+        (Material { texture: image, ..diffuse(red) }, 1, MaterialEffects { lights: vec![0, 3], ..reads() }),
+        (Material { texture: image, ..diffuse(faint) }, 0, MaterialEffects { lights: vec![2, 3], ..reads() }),
+    ];
+    let query = |(material, max_depth, expected)| {
+        let quality = Quality { max_depth, ..Quality::default() };
+        (MaterialQuery { material, lights: lights.to_vec(), quality }, expected)
+    };
+    cases.into_iter().map(query).collect()
+}
+
+/// The material with all but one of its colours black, for each of them.
+fn by_color(query: &MaterialQuery) -> Vec<MaterialQuery> {
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
+    let colors = [ambient, diffuse, specular, mirror, transmission];
+    let alone = |kept: usize| {
+        let mut left = [Vec3::ZERO; N_COLORS];
+        left[kept] = colors[kept];
+        with_colors(query, left)
+    };
+    (0..N_COLORS).map(alone).collect()
+}
+
+fn with_colors(query: &MaterialQuery, colors: [Vec3; N_COLORS]) -> MaterialQuery {
+    let [ambient, diffuse, specular, mirror, transmission] = colors;
+    let material = Material { ambient, diffuse, specular, mirror, transmission, ..query.material.clone() };
+    MaterialQuery { material, ..query.clone() }
+}
+
+/// The same with every colour changed, of the material and of its lights.
+fn recolored(query: &MaterialQuery, change: impl Fn(Vec3) -> Vec3) -> MaterialQuery {
+    let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
+    let changed = with_colors(query, [ambient, diffuse, specular, mirror, transmission].map(&change));
+    let lights = query.lights.iter().map(|light| Light { color: change(light.color), ..light.clone() });
+    MaterialQuery { lights: lights.collect(), ..changed }
+}
+
+/// The same in one channel only, for each of them.
+fn by_channel(query: &MaterialQuery) -> Vec<MaterialQuery> {
+    [Vec3::X, Vec3::Y, Vec3::Z].map(|channel| recolored(query, |color| color * channel)).to_vec()
+}
+
+const N_COLORS: usize = 5;
+const N_CHANNELS: usize = 3;
+
+/// The other materials that a material is compared with.
+struct Others {
+    /// Its colours alone, its channels alone, and its variants.
+    asked: Vec<MaterialQuery>,
+    /// What the variants must take.
+    expected: Vec<MaterialEffects>,
+}
+
+impl Others {
+    fn of((query, yours): (&MaterialQuery, &MaterialEffects)) -> Others {
+        let (variants, expected): (Vec<_>, Vec<_>) = variants(query, yours).into_iter().unzip();
+        Others { asked: [by_color(query), by_channel(query), variants].concat(), expected }
+    }
+}
+
+/// Whatever any of the answers says.
+fn together(answers: &[MaterialEffects]) -> MaterialEffects {
+    let any = |said: fn(&MaterialEffects) -> bool| answers.iter().any(said);
+    let mut lights: Vec<usize> = answers.iter().flat_map(|one| one.lights.clone()).collect();
+    lights.sort_unstable();
+    lights.dedup();
+    MaterialEffects {
+        lights,
+        mirror: any(|one| one.mirror),
+        transmission: any(|one| one.transmission),
+        gloss: any(|one| one.gloss),
+        texture: any(|one| one.texture),
+    }
+}
+
+/// Other channels in other amounts, and black where it was black.
+fn turned(color: Vec3) -> Vec3 {
+    vec3(color.z, color.x, color.y).map(|share| if share > 0.0 { 1e-5 / share } else { 0.0 })
+}
+
+/// Variants of a material, each with what it must take if the material takes `yours`.
+fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuery, MaterialEffects)> {
+    let with = |material: Material| MaterialQuery { material, ..query.clone() };
+    let material = || query.material.clone();
+    let depth =
+        |max_depth| MaterialQuery { quality: Quality { max_depth, ..query.quality }, ..query.clone() };
+    let under = |lights: &[Light]| MaterialQuery { lights: lights.to_vec(), ..query.clone() };
+    let (first, others) = query.lights.split_at(query.lights.len().min(1));
+    let same = || yours.clone();
+    let no_glass = query.material.transmission == Vec3::ZERO;
+    let fresnel = match query.material.fresnel {
+        Fresnel::None if no_glass => Fresnel::Schlick,
+        Fresnel::None => Fresnel::None,
+        Fresnel::Schlick => Fresnel::Exact,
+        Fresnel::Exact => Fresnel::Schlick,
+    };
+    let mut variants = vec![
+        // Neither the order of channels matters, nor how much of a colour there is.
+        (recolored(query, turned), same()),
+        (with(Material { index_of_refraction: 1.25, ..material() }), same()),
+        (with(Material { fresnel, ..material() }), same()),
+        (with(Material { texture: None, ..material() }), MaterialEffects { texture: false, ..same() }),
+        (with(Material { roughness: 0.0, ..material() }), MaterialEffects { gloss: false, ..same() }),
+        (depth(0), MaterialEffects { mirror: false, transmission: false, gloss: false, ..same() }),
+        // Each light matters or not by itself.
+        (
+            under(first),
+            MaterialEffects { lights: yours.lights.iter().copied().filter(|i| *i == 0).collect(), ..same() },
+        ),
+        (
+            under(others),
+            MaterialEffects {
+                lights: yours.lights.iter().filter_map(|i| i.checked_sub(1)).collect(),
+                ..same()
+            },
+        ),
+    ];
+    if query.quality.max_depth > 0 {
+        variants.push((depth(3), same()));
+    }
+    variants
+}
+
+/// What the difference looks like.
+fn diagnosis(query: &MaterialQuery, yours: &MaterialEffects, expected: &MaterialEffects) -> &'static str {
+    let shown = query.quality.max_depth > 0;
+    match () {
+        () if yours.lights.len() > expected.lights.len() => {
+            "a light whose every channel meets a 0 adds nothing: no ray should ask for it"
+        }
+        () if yours.lights.len() < expected.lights.len() => {
+            "a light is missing: one channel is enough, diffuse or specular, and faint light is light"
+        }
+        () if !shown && (yours.mirror || yours.transmission) => "with max_depth 0 no ray goes on",
+        () if yours.mirror != expected.mirror && query.material.mirror == Vec3::ZERO => {
+            "with fresnel, what lets light through mirrors part of it; without any light through, nothing"
+        }
+        () if yours.mirror != expected.mirror => "rays are mirrored if some channel of mirror is not 0",
+        () if yours.transmission != expected.transmission => {
+            "rays go through if some channel of transmission is not 0, whatever the index and the angle"
+        }
+        () if yours.gloss != expected.gloss => "rough matters only where rays are mirrored or go through",
+        () if yours.texture != expected.texture => {
+            "an image matters if diffuse or ambient, which it multiplies, is not 0"
+        }
+        () => "",
+    }
+}
+
+fn compare_effects(
+    query: &MaterialQuery,
+    yours: &MaterialEffects,
+    expected: &MaterialEffects,
+    source: &'static str,
+) -> Outcome {
+    if yours == expected {
+        return Ok(());
+    }
+    let broken = Broken::new(told(query), yours, expected, source);
+    Err(broken.looks_like(known(diagnosis(query, yours, expected))))
 }
 
 fn color() -> impl Strategy<Value = Vec3> + Clone {
@@ -152,37 +369,35 @@ fn told(query: &MaterialQuery) -> String {
     )
 }
 
+/// Recorded answers for simple materials, and laws that lead from any material to simple ones: it takes what its colours
+/// take one by one, and what its channels take one by one; and settings change only what they are about.
 pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> Outcome {
-    trial.forall(4000, material_query(), |queries| {
-        compare(queries, trial.kit.material_effects(queries), |query, yours| {
-            let expected = takes(query);
-            if yours == expected {
-                return Ok(());
-            }
-            let m = &query.material;
-            let shown = query.quality.max_depth > 0;
-            let diagnosis = match () {
-                () if yours.lights.len() > expected.lights.len() => {
-                    "a light whose every channel meets a 0 adds nothing: no ray should ask for it"
-                }
-                () if yours.lights.len() < expected.lights.len() => {
-                    "a light is missing: one channel is enough, diffuse or specular, and faint light is light"
-                }
-                () if !shown && (yours.mirror || yours.transmission) => "with max_depth 0 no ray goes on",
-                () if yours.mirror != expected.mirror && m.mirror == Vec3::ZERO => {
-                    "with fresnel, what lets light through mirrors part of it; without any light through, nothing"
-                }
-                () if yours.mirror != expected.mirror => "rays are mirrored if some channel of mirror is not 0",
-                () if yours.transmission != expected.transmission => {
-                    "rays go through if some channel of transmission is not 0, whatever the index and the angle"
-                }
-                () if yours.gloss != expected.gloss => "rough matters only where rays are mirrored or go through",
-                () if yours.texture != expected.texture => {
-                    "an image matters if diffuse or ambient, which it multiplies, is not 0"
-                }
-                () => "",
-            };
-            Err(Broken::new(told(query), yours, expected, "the definition").looks_like(known(diagnosis)))
-        })
+    let recorded = recorded();
+    let queries: Vec<MaterialQuery> = recorded.iter().map(|(query, _)| query.clone()).collect();
+    for ((query, expected), yours) in recorded.iter().zip(trial.kit.material_effects(&queries)) {
+        compare_effects(query, &yours, expected, "the definition")?;
+    }
+    trial.forall(1000, material_query(), |queries| {
+        let yours = trial.kit.material_effects(queries);
+        let others: Vec<Others> = queries.iter().zip(&yours).map(Others::of).collect();
+        let asked: Vec<MaterialQuery> = others.iter().flat_map(|others| others.asked.clone()).collect();
+        let mut answers = trial.kit.material_effects(&asked).into_iter();
+        let judge = |((query, yours), others): ((&MaterialQuery, &MaterialEffects), &Others)| {
+            let answers: Vec<MaterialEffects> = answers.by_ref().take(others.asked.len()).collect();
+            let (parts, variants) = answers.split_at(N_COLORS + N_CHANNELS);
+            let (colors, channels) = parts.split_at(N_COLORS);
+            compare_effects(
+                query,
+                yours,
+                &together(colors),
+                "your answers for each of its colours, together",
+            )?;
+            compare_effects(query, yours, &together(channels), "your answers for each channel, together")?;
+            let asked = &others.asked[N_COLORS + N_CHANNELS..];
+            asked.iter().zip(&others.expected).zip(variants).try_for_each(|((variant, expected), yours)| {
+                compare_effects(variant, yours, expected, "what your answer for another material implies")
+            })
+        };
+        queries.iter().zip(&yours).zip(&others).map(judge).collect()
     })
 }

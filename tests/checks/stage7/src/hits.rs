@@ -2,47 +2,63 @@
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
-use checks::judge::{compare, known};
+use checks::judge::known;
 use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
 use raykata::scene::Quality;
 
+/// What one hit sends on: `(mirror, transmission, gloss)`, then the rays mirrored and the rays that go through with
+/// `gloss_samples` 1, and with `gloss_samples` 4. Written down from the doc comment of `rays_of_hits`.
+type Kind = ([bool; 3], [u64; 2], [u64; 2]);
+
+const KINDS: [Kind; 7] = [
+    ([false, false, false], [0, 0], [0, 0]),
+    ([true, false, false], [1, 0], [1, 0]),
+    ([false, true, false], [0, 1], [0, 1]),
+    ([true, true, false], [1, 1], [1, 1]),
+    ([true, false, true], [1, 0], [4, 0]),
+    ([false, true, true], [0, 1], [0, 4]),
+    ([true, true, true], [1, 1], [4, 4]),
+];
+
+fn material(kind: &Kind, lights: Vec<usize>) -> MaterialEffects {
+    let [mirror, transmission, gloss] = kind.0;
+    MaterialEffects { lights, mirror, transmission, gloss, texture: false }
+}
+
+fn light(samples: u32, shadows: bool) -> LightEffects {
+    LightEffects { samples, area: samples > 1, shadows }
+}
+
+fn row(material: usize, hits: u64, in_front: [u64; 3]) -> MaterialHits {
+    MaterialHits { material, hits, in_front: in_front.to_vec() }
+}
+
 fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
-    let light = (0..4u32, any::<bool>()).prop_map(|(samples, shadows)| LightEffects {
-        samples,
-        area: samples > 1,
-        shadows,
-    });
-    let lights = prop::collection::vec(light, 3);
-    let takes = (prop::collection::vec(any::<bool>(), 3), any::<[bool; 3]>()).prop_map(
-        |(lit, [mirror, transmission, gloss])| MaterialEffects {
-            lights: (0..3).filter(|&i| lit[i]).collect(),
-            mirror,
-            transmission,
-            gloss: gloss && (mirror || transmission),
-            texture: false,
-        },
-    );
-    let materials = prop::collection::vec(takes, 3);
-    let hits = (0..3usize, 0..100u64, prop::collection::vec(0..100u64, 3))
-        .prop_map(|(material, hits, in_front)| MaterialHits { material, hits, in_front });
-    let table = prop::collection::vec(hits, 0..4);
-    (lights, materials, table, 1..5u32).prop_map(|(lights, materials, hits, gloss_samples)| HitsQuery {
-        hits,
-        effects: Effects { lights, materials, ..Effects::default() },
-        quality: Quality { gloss_samples, ..Quality::default() },
+    let lights = prop::collection::vec((0..4u32, any::<bool>()), 3);
+    let materials = prop::collection::vec((0..KINDS.len(), prop::collection::vec(any::<bool>(), 3)), 3);
+    let rows = (0..3usize, 0..100u64, prop::array::uniform3(0..100u64))
+        .prop_map(|(material, hits, in_front)| row(material, hits, in_front));
+    let table = prop::collection::vec(rows, 0..4);
+    (lights, materials, table, 1..5u32).prop_map(|(lights, materials, hits, gloss_samples)| {
+        let lit = |lit: &[bool]| (0..3).filter(|&i| lit[i]).collect();
+        HitsQuery {
+            hits,
+            effects: Effects {
+                lights: lights.iter().map(|&(samples, shadows)| light(samples, shadows)).collect(),
+                materials: materials.iter().map(|(kind, on)| material(&KINDS[*kind], lit(on))).collect(),
+                ..Effects::default()
+            },
+            quality: Quality { gloss_samples, ..Quality::default() },
+        }
     })
 }
 
 /// A table on which all mistakes give different counts.
 fn drawn() -> HitsQuery {
-    let light = |samples, shadows| LightEffects { samples, area: samples > 1, shadows };
-    let plain = MaterialEffects { lights: vec![0, 2], ..MaterialEffects::default() };
-    let glass =
-        MaterialEffects { lights: vec![0, 1], mirror: true, transmission: true, gloss: true, texture: false };
-    let row =
-        |material, hits, in_front: [u64; 3]| MaterialHits { material, hits, in_front: in_front.to_vec() };
+    let plain = material(&KINDS[0], vec![0, 2]);
+    let glass = material(&KINDS[6], vec![0, 1]);
     HitsQuery {
         hits: vec![row(1, 10, [3, 20, 5]), row(0, 7, [4, 31, 6])],
         effects: Effects {
@@ -54,71 +70,147 @@ fn drawn() -> HitsQuery {
     }
 }
 
-/// What can go wrong in counting, and how it is told.
-const MISTAKES: [&str; 10] = [
-    "lights that do not matter to the material cost no ray",
-    "lights that cast no shadows cost no ray",
-    "hits times lights: in_front says how many places really lie on the lit side",
-    "in_front counts places on lamps already, over all hits: do not multiply it again",
-    "a rough surface sends gloss_samples rays",
-    "a rough surface sends gloss_samples rays through as well as back",
-    "only what mirrors sends mirrored rays, only what lets light through sends rays through",
-    "the rows of the table add up, and this is but the last one",
-    "each row names its material: effects.materials[row.material]",
-    "each hit was made by one ray: primary is the sum of hits",
+/// The rays of [`drawn`], counted by hand. Shadow: the glass asks lights 0 and 1 (3 + 20), the plain material light 0 (4);
+/// light 2 casts no shadows. The 10 hits of rough glass send 3 rays each way.
+const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
+
+/// What mistakes make of [`drawn`], counted by hand in the same way, and how they are told.
+const MISTAKES: [(RayCounts, &str); 10] = [
+    // 3 + 20, 4 + 31; and light 2 casts no shadows.
+    (RayCounts { shadow: 58, ..DRAWN }, "lights that do not matter to the material cost no ray"),
+    // 3 + 20, 4 + 6.
+    (RayCounts { shadow: 33, ..DRAWN }, "lights that cast no shadows cost no ray"),
+    // 10 hits times 1 + 4 samples, and 7 times 1.
+    (
+        RayCounts { shadow: 57, ..DRAWN },
+        "hits times lights: in_front says how many places really lie on the lit side",
+    ),
+    // 3 + 4 · 20 + 4.
+    (
+        RayCounts { shadow: 87, ..DRAWN },
+        "in_front counts places on lamps already, over all hits: do not multiply it again",
+    ),
+    (RayCounts { reflection: 10, transmission: 10, ..DRAWN }, "a rough surface sends gloss_samples rays"),
+    (
+        RayCounts { transmission: 10, ..DRAWN },
+        "a rough surface sends gloss_samples rays through as well as back",
+    ),
+    // 3 · 10 + 7.
+    (
+        RayCounts { reflection: 37, transmission: 37, ..DRAWN },
+        "only what mirrors sends mirrored rays, only what lets light through sends rays through",
+    ),
+    (
+        RayCounts { primary: 7, shadow: 4, reflection: 0, transmission: 0 },
+        "the rows of the table add up, and this is but the last one",
+    ),
+    // The plain material asks light 0 (3), the glass lights 0 and 1 (4 + 31) and sends 3 · 7 rays each way.
+    (
+        RayCounts { primary: 17, shadow: 38, reflection: 21, transmission: 21 },
+        "each row names its material: effects.materials[row.material]",
+    ),
+    (RayCounts { primary: 2, ..DRAWN }, "each hit was made by one ray: primary is the sum of hits"),
 ];
 
-/// Counts one by one, with the mistake of this index.
-fn counted(query: &HitsQuery, mistake: Option<usize>) -> RayCounts {
-    let is = |index: usize| mistake == Some(index);
-    let mut rays = RayCounts::default();
-    for (row, MaterialHits { material, hits, in_front }) in query.hits.iter().enumerate() {
-        let takes = &query.effects.materials[if is(8) { row } else { *material }];
-        let samples = u64::from(query.quality.gloss_samples);
-        let parts = if takes.gloss && !is(4) { samples } else { 1 };
-        if is(7) {
-            rays = RayCounts::default();
-        }
-        rays.primary += if is(9) { 1 } else { *hits };
-        for (light, places) in in_front.iter().enumerate() {
-            let LightEffects { samples, shadows, .. } = query.effects.lights[light];
-            let matters = (takes.lights.contains(&light) || is(0)) && (shadows || is(1));
-            rays.shadow += match matters {
-                true if is(2) => hits * u64::from(samples),
-                true if is(3) => places * u64::from(samples),
-                true => *places,
-                false => 0,
-            };
-        }
-        rays.reflection += if takes.mirror || is(6) { hits * parts } else { 0 };
-        let parts = if is(5) { 1 } else { parts };
-        rays.transmission += if takes.transmission || is(6) { hits * parts } else { 0 };
-    }
-    rays
+fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
+    let input = format!(
+        "rays_of_hits(&{:?},\n&{:?},\ngloss_samples {})",
+        query.hits, query.effects.materials, query.quality.gloss_samples
+    );
+    Broken::new(input, yours, expected, source)
 }
 
+/// A single hit of each kind, and a single place on a light, each with the rays that it takes.
+fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
+    let query =
+        |kind: &Kind, lights: Vec<usize>, casts: bool, row: MaterialHits, gloss_samples: u32| HitsQuery {
+            hits: vec![row],
+            effects: Effects {
+                lights: vec![light(2, casts), light(3, casts), light(1, casts)],
+                materials: vec![material(kind, lights)],
+                ..Effects::default()
+            },
+            quality: Quality { gloss_samples, ..Quality::default() },
+        };
+    let mut singles = Vec::new();
+    for kind in &KINDS {
+        for (gloss_samples, [reflection, transmission]) in [(1, kind.1), (4, kind.2)] {
+            let expected = RayCounts { primary: 1, shadow: 0, reflection, transmission };
+            let hit = query(kind, vec![0, 1, 2], true, row(0, 1, [0, 0, 0]), gloss_samples);
+            singles.push((hit, expected));
+        }
+        // A place on light 1: whether that light matters and casts shadows, and the shadow rays.
+        for (lights, casts, shadow) in [
+            (vec![0, 1, 2], true, 1),
+            (vec![0, 1, 2], false, 0),
+            (vec![0, 2], true, 0),
+            (vec![0, 2], false, 0),
+        ] {
+            let place = query(kind, lights, casts, row(0, 0, [0, 1, 0]), 4);
+            singles.push((place, RayCounts { shadow, ..RayCounts::default() }));
+        }
+    }
+    singles
+}
+
+/// Tables of a single hit or a single place, each with how often it is in a larger table.
+type Parts = Vec<(HitsQuery, u64)>;
+
+/// The table in parts: for each row one hit alone, and one place on each light alone, each with how often it is there.
+fn parts(query: &HitsQuery) -> Parts {
+    let mut parts = Vec::new();
+    for MaterialHits { material, hits, in_front } in &query.hits {
+        let alone =
+            |hits, in_front| HitsQuery { hits: vec![row(*material, hits, in_front)], ..query.clone() };
+        parts.push((alone(1, [0, 0, 0]), *hits));
+        for (light, &places) in in_front.iter().enumerate() {
+            let mut one = [0, 0, 0];
+            one[light] = 1;
+            parts.push((alone(0, one), places));
+        }
+    }
+    parts
+}
+
+/// Checks known counts: the drawn table, single hits and single places. All other tables must be sums of those.
 pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
-    let judge = |queries: &[HitsQuery]| {
-        compare(queries, trial.kit.rays_of_hits(queries), |query, yours| {
-            let expected = counted(query, None);
-            if yours == expected {
-                return Ok(());
+    let query = drawn();
+    let yours = trial.kit.rays_of_hits(std::slice::from_ref(&query)).remove(0);
+    if yours != DRAWN {
+        let mistake = MISTAKES.iter().find(|(counts, _)| *counts == yours).map(|(_, diagnosis)| *diagnosis);
+        return Err(broken(&query, yours, DRAWN, "counted by hand").looks_like(mistake));
+    }
+    let singles = single_hits_and_places();
+    let queries: Vec<HitsQuery> = singles.iter().map(|(query, _)| query.clone()).collect();
+    for ((query, expected), yours) in singles.iter().zip(trial.kit.rays_of_hits(&queries)) {
+        if yours != *expected {
+            return Err(broken(query, yours, *expected, "a single hit, or a single place on a light"));
+        }
+    }
+    trial.forall(2000, hits_query(), |queries| {
+        let parts: Vec<Parts> = queries.iter().map(parts).collect();
+        let all: Vec<HitsQuery> = parts.iter().flatten().map(|(part, _)| part.clone()).collect();
+        let mut alone = trial.kit.rays_of_hits(&all).into_iter();
+        let whole = trial.kit.rays_of_hits(queries);
+        let judge = |((query, parts), yours): ((&HitsQuery, &Parts), RayCounts)| {
+            let mut sum = RayCounts::default();
+            for ((_, times), one) in parts.iter().zip(alone.by_ref()) {
+                // Saturating: a wrong answer can be any number.
+                let add = |sum: &mut u64, one: u64| *sum = sum.saturating_add(times.saturating_mul(one));
+                add(&mut sum.primary, one.primary);
+                add(&mut sum.shadow, one.shadow);
+                add(&mut sum.reflection, one.reflection);
+                add(&mut sum.transmission, one.transmission);
             }
-            // Materials may have fewer entries than the table has rows.
-            let possible =
-                |mistake: &usize| *mistake != 8 || query.hits.len() <= query.effects.materials.len();
-            let mistake =
-                (0..MISTAKES.len()).filter(possible).find(|mistake| counted(query, Some(*mistake)) == yours);
-            let input = format!(
-                "rays_of_hits(&{:?},\n&{:?},\ngloss_samples {})",
-                query.hits, query.effects.materials, query.quality.gloss_samples
-            );
-            Err(Broken::new(input, yours, expected, "counted one by one")
-                .looks_like(mistake.map(|mistake| MISTAKES[mistake])))
-        })
-    };
-    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
-    trial.forall(2000, hits_query(), judge)
+            match yours == sum {
+                true => Ok(()),
+                false => {
+                    Err(broken(query, yours, sum, "your counts for each hit and each place alone, added up"))
+                }
+            }
+        };
+        queries.iter().zip(&parts).zip(whole).map(judge).collect()
+    })
 }
 
 pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Outcome {

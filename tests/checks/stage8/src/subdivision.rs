@@ -6,7 +6,6 @@ use checks::broken::{Broken, Outcome};
 use checks::judge::known;
 use glam::{DVec3, Vec3, vec2, vec3};
 use raykata::mesh::Mesh;
-use std::collections::{BTreeMap, BTreeSet};
 
 fn tetrahedron() -> Mesh {
     Mesh {
@@ -67,54 +66,25 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     let mut lonely = tetrahedron();
     lonely.positions.push(vec3(5.0, 5.0, 5.0));
     vec![
-        ("a tetrahedron", tetrahedron()),
         ("an octahedron with normals", round),
+        ("a tetrahedron", tetrahedron()),
         ("a single triangle", Mesh { triangles: vec![[0, 1, 2]], face_materials: vec![1], ..sheet(1) }),
         ("a sheet of 3 by 3 squares", sheet(3)),
         ("a tetrahedron and a vertex of no triangle", lonely),
     ]
 }
 
-/// The edges, the smaller end first, each with the third corners of its triangles.
-fn edges(mesh: &Mesh) -> BTreeMap<(u32, u32), Vec<u32>> {
-    let mut edges: BTreeMap<(u32, u32), Vec<u32>> = BTreeMap::new();
-    for &[a, b, c] in &mesh.triangles {
-        for (p, q, r) in [(a, b, c), (b, c, a), (c, a, b)] {
-            edges.entry((p.min(q), p.max(q))).or_default().push(r);
-        }
-    }
-    edges
+/// The edges, the smaller end first: all pairs of vertices that some triangle has.
+fn edges(mesh: &Mesh) -> Vec<(u32, u32)> {
+    let n = mesh.positions.len() as u32;
+    let pairs = (0..n).flat_map(|q| (0..q).map(move |p| (p, q)));
+    pairs.filter(|&edge| !opposite(mesh, edge).is_empty()).collect()
 }
 
-/// Where the vertices belong: the old ones by number, the new ones by edge.
-fn places(mesh: &Mesh) -> (Vec<DVec3>, BTreeMap<(u32, u32), DVec3>) {
-    let at = |vertex: u32| mesh.positions[vertex as usize].as_dvec3();
-    let edges = edges(mesh);
-    let on_edge = |(&(p, q), opposite): (&(u32, u32), &Vec<u32>)| {
-        let place = match opposite[..] {
-            [r, s] => 0.375 * (at(p) + at(q)) + 0.125 * (at(r) + at(s)),
-            _ => 0.5 * (at(p) + at(q)),
-        };
-        ((p, q), place)
-    };
-    let moved = |vertex: u32| {
-        let around: Vec<(u32, bool)> = edges
-            .iter()
-            .filter(|((p, q), _)| *p == vertex || *q == vertex)
-            .map(|((p, q), opposite)| (p + q - vertex, opposite.len() == 1))
-            .collect();
-        let border: Vec<u32> = around.iter().filter(|(_, border)| *border).map(|(other, _)| *other).collect();
-        match (border[..].len(), around.len()) {
-            (_, 0) => at(vertex),
-            (0, n) => {
-                let beta = if n == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * n as f64) };
-                let sum: DVec3 = around.iter().map(|(other, _)| at(*other)).sum();
-                (1.0 - n as f64 * beta) * at(vertex) + beta * sum
-            }
-            _ => 0.75 * at(vertex) + 0.125 * (at(border[0]) + at(border[1])),
-        }
-    };
-    ((0..mesh.positions.len() as u32).map(moved).collect(), edges.iter().map(on_edge).collect())
+/// The third corners of the triangles that have both vertices.
+fn opposite(mesh: &Mesh, (p, q): (u32, u32)) -> Vec<u32> {
+    let both = mesh.triangles.iter().filter(|triangle| triangle.contains(&p) && triangle.contains(&q));
+    both.flat_map(|triangle| triangle.iter().copied().filter(|&vertex| vertex != p && vertex != q)).collect()
 }
 
 /// What came back, what should have, and what that looks like.
@@ -179,84 +149,194 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
 const BORDER: &str = "a border depends on its own vertices only, or two sheets side by side would part";
 const FROM_BEFORE: &str = "all places are from before the step: what has moved already pulls others too far";
 
-/// Where a vertex of an edge belongs if the old ones had moved before.
-fn between_moved_ones(mesh: &Mesh, yours: &Mesh, edge: (u32, u32)) -> DVec3 {
-    let n_old = mesh.positions.len();
-    let moved = Mesh { positions: yours.positions[..n_old].to_vec(), ..mesh.clone() };
-    places(&moved).1[&edge]
+/// How far a vertex is moved to see which others follow. A fraction of an edge of all meshes, so that no two meet.
+const STEP: f32 = 0.25;
+
+/// A weight is a difference of two sums of a handful of numbers up to 9, each rounded to a few units of 1e-6, divided by
+/// [`STEP`]. The rule has no two weights nearer than 1/32.
+const NEAR_WEIGHT: f64 = 1e-3;
+
+/// A mesh, what came of it, and how it depends on the vertices.
+struct Step<'a> {
+    mesh: &'a Mesh,
+    yours: &'a Mesh,
+    /// For each vertex that came back how far it follows each old one, as a share of that one's way.
+    weights: Vec<Vec<f64>>,
 }
 
-/// What has gone wrong with an old vertex.
-fn of_an_old_vertex(mesh: &Mesh, yours: &Mesh, vertex: usize, border: bool) -> &'static str {
-    let near = |right: DVec3| (yours.positions[vertex].as_dvec3() - right).length() <= 1e-5;
-    let mut half_moved = mesh.clone();
-    half_moved.positions[..vertex].copy_from_slice(&yours.positions[..vertex]);
-    let neighbours: BTreeSet<usize> = mesh
-        .triangles
-        .iter()
-        .filter(|triangle| triangle.contains(&(vertex as u32)))
-        .flat_map(|triangle| triangle.map(|other| other as usize))
-        .filter(|&other| other != vertex)
-        .collect();
-    let (old, n) = (mesh.positions[vertex].as_dvec3(), neighbours.len() as f64);
-    let beta = if neighbours.len() == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) };
-    let sum: DVec3 = neighbours.iter().map(|&other| mesh.positions[other].as_dvec3()).sum();
-    match () {
-        () if neighbours.is_empty() => "a vertex of no triangle stays where it is",
-        () if near(old) => "old vertices move, too",
-        () if near(places(&half_moved).0[vertex]) => FROM_BEFORE,
-        () if border && near((1.0 - n * beta) * old + beta * sum) => BORDER,
-        () if border => "3/4 of itself and 1/8 of either neighbour along the border",
-        () if near((1.0 - beta) * old + beta * sum) => {
-            "the weights must add up to 1: each of the n neighbours takes β, and 1 - n β is left"
-        }
-        () => "β is 3/16 for three neighbours, and 3/8 divided by their number otherwise",
+/// The meshes with one vertex after the other moved by [`STEP`] along x.
+fn moved(mesh: &Mesh) -> Vec<Mesh> {
+    let with = |vertex: usize| {
+        let mut moved = mesh.clone();
+        moved.positions[vertex].x += STEP;
+        moved
+    };
+    (0..mesh.positions.len()).map(with).collect()
+}
+
+/// What each of `n` neighbours gives to an old vertex inside. Recorded from the rule for the vertices of these meshes: 3/16
+/// for 3 neighbours, and 3/8n otherwise.
+fn inner_share(n: usize) -> f64 {
+    match n {
+        0 => 0.0,
+        2 | 3 => 0.1875,
+        4 => 0.093_75,
+        6 => 0.0625,
+        _ => f64::NAN,
     }
 }
 
-/// The vertices of edges, each found as the nearest of the new ones.
-fn compare_places(mesh: &Mesh, yours: &Mesh, border: bool) -> Result<(), Unlike> {
-    let (old, new) = places(mesh);
-    let edges = edges(mesh);
-    let on_border: BTreeSet<u32> =
-        edges.iter().filter(|(_, opposite)| opposite.len() == 1).flat_map(|((p, q), _)| [*p, *q]).collect();
-    // Sums of a handful of numbers up to 9.
-    let near = |yours: Vec3, right: DVec3| (yours.as_dvec3() - right).length() <= 1e-5;
-    for (vertex, right) in
-        old.iter().enumerate().filter(|(vertex, _)| on_border.contains(&(*vertex as u32)) == border)
-    {
-        let Some(&place) = yours.positions.get(vertex) else { break };
-        if !near(place, *right) {
-            let diagnosis = of_an_old_vertex(mesh, yours, vertex, border);
-            return Err((format!("vertex {vertex} at {place}"), format!("{}", right.as_vec3()), diagnosis));
-        }
+/// How much a vertex must take of some old ones. It takes nothing of all others.
+type Shares = Vec<(u32, f64)>;
+
+/// The shares of a vertex that takes `share` of each of the others, and the rest of itself.
+fn shared(vertex: u32, others: &[u32], share: f64) -> Shares {
+    let own = (vertex, 1.0 - share * others.len() as f64);
+    [own].into_iter().chain(others.iter().map(|&other| (other, share))).collect()
+}
+
+fn told(shares: &Shares) -> String {
+    let one = |(old, share): &(u32, f64)| format!("{share} of vertex {old}");
+    shares.iter().map(one).collect::<Vec<String>>().join(", ")
+}
+
+impl<'a> Step<'a> {
+    /// `moved` is what came of the meshes of [`moved`].
+    fn new(mesh: &'a Mesh, yours: &'a Mesh, moved: &[Mesh]) -> Step<'a> {
+        let weight = |vertex: usize, moved: &Mesh| {
+            let place = moved.positions.get(vertex).map_or(f64::NAN, |place| f64::from(place.x));
+            (place - f64::from(yours.positions[vertex].x)) / f64::from(STEP)
+        };
+        let weights = |vertex| moved.iter().map(|moved| weight(vertex, moved)).collect();
+        Step { mesh, yours, weights: (0..yours.positions.len()).map(weights).collect() }
     }
-    for (edge, right) in new.iter().filter(|(edge, _)| (edges[*edge].len() == 1) == border) {
-        let fresh = yours.positions.get(mesh.positions.len()..).unwrap_or_default();
-        if !fresh.iter().any(|&place| near(place, *right)) {
-            let middle = 0.5 * (mesh.positions[edge.0 as usize] + mesh.positions[edge.1 as usize]);
-            let at_middle = fresh.iter().any(|&place| near(place, middle.as_dvec3()));
-            let moved = between_moved_ones(mesh, yours, *edge);
-            let diagnosis = match () {
-                () if fresh.iter().any(|&place| near(place, moved)) => FROM_BEFORE,
-                () if border => BORDER,
-                () if at_middle => "the middle of the edge is for borders: inside, the third corners pull",
-                () => "3/8 of both ends and 1/8 of both third corners",
-            };
-            return Err((
-                format!("no new vertex for the edge {} {}", edge.0, edge.1),
-                format!("one at {}", right.as_vec3()),
-                diagnosis,
-            ));
-        }
+
+    /// Whether a vertex takes these shares of old ones, and nothing of all others.
+    fn takes(&self, vertex: usize, shares: &Shares) -> bool {
+        let right =
+            |old: usize| shares.iter().find(|(other, _)| *other as usize == old).map_or(0.0, |one| one.1);
+        self.weights[vertex].iter().enumerate().all(|(old, yours)| (yours - right(old)).abs() <= NEAR_WEIGHT)
     }
-    Ok(())
+
+    /// Whether a vertex takes anything of old ones other than these.
+    fn takes_of_others(&self, vertex: usize, than: &[u32]) -> bool {
+        let mut weights = self.weights[vertex].iter().enumerate();
+        weights.any(|(old, weight)| weight.abs() > NEAR_WEIGHT && !than.contains(&(old as u32)))
+    }
+
+    /// Whether every vertex lies where its weights put it, so that the weights are all there is.
+    fn is_linear(&self) -> Result<(), Unlike> {
+        for (vertex, weights) in self.weights.iter().enumerate() {
+            let parts = weights.iter().zip(&self.mesh.positions);
+            let sum: DVec3 = parts.map(|(weight, old)| *weight * old.as_dvec3()).sum();
+            let place = self.yours.positions[vertex];
+            // Up to 16 weights, each off by the rounding of two sums over STEP, which is 1e-5, times coordinates up to 5.
+            if !((place.as_dvec3() - sum).length() <= 1e-3) {
+                let expected = format!("{}, as far as it follows the old ones", sum.as_vec3());
+                return Err((format!("vertex {vertex} at {place}"), expected, ""));
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a vertex is, and what it takes of the old ones.
+    fn told(&self, vertex: usize) -> String {
+        let weights = self.weights[vertex].iter().enumerate();
+        // Rounded to four digits.
+        let rounded = weights.map(|(old, weight)| (old as u32, (1e4 * weight).round() / 1e4));
+        let shares: Shares = rounded.filter(|(_, weight)| *weight != 0.0).collect();
+        format!("vertex {vertex} at {}: {}", self.yours.positions[vertex], told(&shares))
+    }
+
+    /// The vertices at the other ends of the edges of an old one: all of them, and those along a border.
+    fn neighbours(&self, vertex: u32) -> (Vec<u32>, Vec<u32>) {
+        let others = (0..self.mesh.positions.len() as u32).filter(|&other| other != vertex);
+        let joined: Vec<(u32, usize)> = others
+            .map(|other| (other, opposite(self.mesh, (vertex, other)).len()))
+            .filter(|(_, triangles)| *triangles > 0)
+            .collect();
+        let border = joined.iter().filter(|(_, triangles)| *triangles == 1);
+        (joined.iter().map(|(other, _)| *other).collect(), border.map(|(other, _)| *other).collect())
+    }
+
+    /// Judges an old vertex by what it follows.
+    fn judge_old(&self, vertex: u32, border: bool) -> Result<(), Unlike> {
+        let index = vertex as usize;
+        let (around, along) = self.neighbours(vertex);
+        let others = if border { &along } else { &around };
+        let shares = shared(vertex, others, if border { 0.125 } else { inner_share(others.len()) });
+        if self.takes(index, &shares) {
+            return Ok(());
+        }
+        let sum: f64 = self.weights[index].iter().sum();
+        let diagnosis = match () {
+            () if around.is_empty() => "a vertex of no triangle stays where it is",
+            () if self.takes(index, &vec![(vertex, 1.0)]) => "old vertices move, too",
+            () if self.takes_of_others(index, &[&around[..], &[vertex]].concat()) => FROM_BEFORE,
+            () if border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))) => BORDER,
+            () if border => "3/4 of itself and 1/8 of either neighbour along the border",
+            () if (sum - 1.0).abs() > NEAR_WEIGHT => {
+                "the weights must add up to 1: each of the n neighbours takes β, and 1 - n β is left"
+            }
+            () => "β is 3/16 for three neighbours, and 3/8 divided by their number otherwise",
+        };
+        Err((self.told(index), told(&shares), diagnosis))
+    }
+
+    /// Judges the new vertex of an edge: one of the new ones has to take the right shares.
+    fn judge_edge(&self, (p, q): (u32, u32), border: bool) -> Result<(), Unlike> {
+        let third = opposite(self.mesh, (p, q));
+        let ends = vec![(p, 0.5), (q, 0.5)];
+        let shares = match (border, &third[..]) {
+            (false, [r, s]) => vec![(p, 0.375), (q, 0.375), (*r, 0.125), (*s, 0.125)],
+            _ => ends.clone(),
+        };
+        let mut fresh = self.mesh.positions.len()..self.yours.positions.len();
+        if fresh.clone().any(|vertex| self.takes(vertex, &shares)) {
+            return Ok(());
+        }
+        let around: Vec<u32> = third.into_iter().chain([p, q]).collect();
+        let diagnosis = match () {
+            () if border => BORDER,
+            () if fresh.clone().any(|vertex| self.takes(vertex, &ends)) => {
+                "the middle of the edge is for borders: inside, the third corners pull"
+            }
+            () if fresh.all(|vertex| self.takes_of_others(vertex, &around)) => FROM_BEFORE,
+            () => "3/8 of both ends and 1/8 of both third corners",
+        };
+        Err((format!("no new vertex for the edge {p} {q}"), format!("one with {}", told(&shares)), diagnosis))
+    }
+
+    /// Judges the vertices of a border, or those that are not.
+    fn judge(&self, border: bool) -> Result<(), Unlike> {
+        let n_old = self.mesh.positions.len().min(self.yours.positions.len());
+        for vertex in 0..n_old as u32 {
+            if self.neighbours(vertex).1.is_empty() != border {
+                self.judge_old(vertex, border)?;
+            }
+        }
+        let is_border = |edge: &(u32, u32)| opposite(self.mesh, *edge).len() == 1;
+        let edges = edges(self.mesh);
+        edges
+            .into_iter()
+            .filter(|edge| is_border(edge) == border)
+            .try_for_each(|edge| self.judge_edge(edge, border))?;
+        if border { Ok(()) } else { self.is_linear() }
+    }
+}
+
+/// Moves each vertex a little: those that follow, and how far, are the weights of the rule.
+fn judge_weights(trial: &Trial<'_>, border: bool) -> Outcome {
+    judge(trial, |mesh, yours| {
+        let moved = trial.kit.loop_subdivide(&moved(mesh));
+        Step::new(mesh, yours, &moved).judge(border)
+    })
 }
 
 pub(super) fn loop_places_vertices_by_the_rule(trial: &Trial<'_>) -> Outcome {
-    judge(trial, |mesh, yours| compare_places(mesh, yours, false))
+    judge_weights(trial, false)
 }
 
 pub(super) fn loop_borders_depend_on_borders(trial: &Trial<'_>) -> Outcome {
-    judge(trial, |mesh, yours| compare_places(mesh, yours, true))
+    judge_weights(trial, true)
 }

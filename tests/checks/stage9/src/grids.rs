@@ -3,8 +3,8 @@
 use super::lists::{bounds_fault, is_far_off, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, ball, rays, wall};
-use super::searches::{Searcher, agrees, judge, judge_visits};
-use super::structures::{grid, grid_within};
+use super::searches::{Searcher, agrees, grid_queries, judge, judge_visits};
+use super::structures::{around_loosely, filled};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::{compare, known};
@@ -98,11 +98,9 @@ pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> Outcome {
     let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
     let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25), ball(0.0, 3.0, 0.0, 0.5)]);
     let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
-    // The box of the large ball is made to begin at 0, as that of a longer thing would.
-    let mut boxes: Vec<(u32, Aabb)> = scene.boxes().into_iter().zip(0..).map(|(one, id)| (id, one)).collect();
-    boxes[0].1.min.x = 0.0;
+    // The large ball is listed from the first cell on, as a longer thing would be.
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 4.5, 4.0));
-    let cells = grid_within(&boxes, bounds, uvec3(4, 1, 1));
+    let cells = filled(bounds, uvec3(4, 1, 1), &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
     let hits = scene.hits(&ray);
     let yours = trial.kit.grid_search(&[CellsQuery { cells, ray, hits: hits.clone() }]).remove(0);
     judge("grid of 4 cells along x; primitive 0 reaches through all", &ray, &hits, &yours).map_err(|broken| {
@@ -126,9 +124,9 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
     })?;
     // A row of balls of which the first is hit: what lies behind is not visited.
     let row = Scene::new((0..32).map(|i| ball(i as f32, 0.0, 0.0, 0.25)).collect());
-    let cells = grid(&row.boxes(), uvec3(32, 1, 1));
-    for ray in [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)] {
-        let query = CellsQuery { cells: cells.clone(), ray, hits: row.hits(&ray) };
+    let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
+    for query in grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1)) {
+        let ray = query.ray;
         let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
         judge_visits("grid over a row of 32 balls", &ray, &parts::of_grid(&query.cells, &ray), &yours, true)?;
     }
@@ -258,11 +256,9 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ou
     ] {
         let scene = Scene::new(things);
         // No room around all: walls lie exactly in the faces of the grid.
-        let boxes: Vec<(u32, Aabb)> = scene.boxes().into_iter().zip(0..).map(|(one, id)| (id, one)).collect();
-        let all = checks::tree::around(boxes.iter().map(|(_, one)| one));
-        let cells = grid_within(&boxes, all, resolution);
-        let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
-        let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
+        let boxes = scene.boxes();
+        let all = checks::tree::around(&boxes);
+        let queries = grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution);
         for (query, yours) in queries.iter().zip(trial.kit.grid_search(&queries)) {
             judge(&format!("grid of {resolution} cells over {name}"), &query.ray, &query.hits, &yours)?;
         }

@@ -28,6 +28,13 @@ pub(super) fn of_grid(grid: &Grid, ray: &Ray) -> Parts {
     numbered(grid).filter_map(|(i, cell)| part(ray, &cell).map(|(near, far)| (i, near, far))).collect()
 }
 
+/// The cells that the ray goes through, or passes by within `room`.
+pub(super) fn near_grid(grid: &Grid, ray: &Ray, room: f64) -> Parts {
+    numbered(grid)
+        .filter_map(|(i, cell)| part_of(ray, &cell, room).map(|(near, far)| (i, near, far)))
+        .collect()
+}
+
 /// The cells that the ray goes through well inside of their faces.
 pub(super) fn inside_grid(grid: &Grid, ray: &Ray) -> Parts {
     numbered(grid)

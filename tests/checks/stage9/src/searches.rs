@@ -7,7 +7,9 @@ use checks::broken::{Broken, Outcome};
 use checks::judge::known;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
+use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, Kit};
+use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -48,8 +50,8 @@ impl Searcher {
         let boxes = scene.boxes();
         match self {
             Searcher::Grid => {
-                let grid = structures::grid(&boxes, UVec3::new(5, 4, 3));
-                kit.grid_search(&queries(&grid, scene, rays))
+                let bounds = structures::around_loosely(&boxes);
+                kit.grid_search(&grid_queries(scene, rays, bounds, UVec3::new(5, 4, 3)))
             }
             Searcher::OctreeByCells => {
                 kit.octree_by_cells(&queries(&structures::octree(&boxes, depth), scene, rays))
@@ -64,6 +66,21 @@ impl Searcher {
 /// One query a ray.
 pub(super) fn queries<S: Clone>(cells: &S, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
     let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
+    rays.iter().map(query).collect()
+}
+
+/// One query a ray, each with a grid of its own.
+pub(super) fn grid_queries(
+    scene: &Scene,
+    rays: &[Ray],
+    bounds: (Aabb, f64),
+    resolution: UVec3,
+) -> Vec<CellsQuery<Grid>> {
+    let query = |ray: &Ray| CellsQuery {
+        cells: structures::grid_for(ray, scene, bounds, resolution),
+        ray: *ray,
+        hits: scene.hits(ray),
+    };
     rays.iter().map(query).collect()
 }
 

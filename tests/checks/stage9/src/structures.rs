@@ -1,11 +1,14 @@
 //! Structures to search. Where they divide follows a pattern that knows nothing of the primitives, and each leaf lists what
 //! touches it, by the definition. The last cell lists one primitive too many, wherever that primitive is: a search must
-//! allow for it, and as answers to the exercises these structures are wrong.
+//! allow for it, and as answers to the exercises these structures are wrong. A grid is made for one ray, from its hits.
 
+use super::parts;
+use super::scenes::{Scene, closest};
 use checks::tree::around;
-use glam::{DVec3, UVec3, Vec3, uvec3};
+use glam::{DVec3, UVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree};
+use raykata::ray::Ray;
 
 /// Boxes with room for rounding, numbered; what is not a number is left out.
 fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {
@@ -41,22 +44,52 @@ fn listed(boxes: &[(u32, Aabb)], cell: &Cell, is_last: bool) -> Vec<u32> {
     inside
 }
 
-/// A grid of so many cells.
-pub(super) fn grid(boxes: &[Aabb], resolution: UVec3) -> Grid {
-    let (boxes, bounds) = loose(boxes);
-    grid_within(&boxes, bounds, resolution)
+/// The box around all with room for rounding, and that room.
+pub(super) fn around_loosely(boxes: &[Aabb]) -> (Aabb, f64) {
+    let (_, all) = loose(boxes);
+    let room = f64::from(all.min.abs().max_element().max(all.max.abs().max_element())) * (-20f64).exp2();
+    (all, room)
 }
 
-/// A grid in a given box.
-pub(super) fn grid_within(boxes: &[(u32, Aabb)], bounds: Aabb, resolution: UVec3) -> Grid {
+/// A grid with these lists, one for each cell.
+pub(super) fn filled(bounds: Aabb, resolution: UVec3, lists: &[Vec<u32>]) -> Grid {
     let mut grid = Grid { bounds, resolution, starts: vec![0], items: Vec::new() };
-    let UVec3 { x: nx, y: ny, z: nz } = resolution;
-    for number in 0..nx * ny * nz {
-        let cell = grid.cell(uvec3(number % nx, number / nx % ny, number / (nx * ny)));
-        grid.items.extend(listed(boxes, &cell, number + 1 == nx * ny * nz));
+    for list in lists {
+        grid.items.extend(list);
         grid.starts.push(grid.items.len() as u32);
     }
     grid
+}
+
+/// A grid for one ray only: a primitive is listed in the cells in which the ray is when it hits the primitive. Those that are
+/// not hit first, or not hit at all, are listed in some others as well, so that what a cell lists may lie far off.
+///
+/// A search finds in it what it finds in a grid that lists boxes, because hits are all that it learns of primitives.
+pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), resolution: UVec3) -> Grid {
+    // Locate the hits, whatever formula rounds `t`.
+    let hits = Scene { rough: false, ..scene.clone() }.hits(ray);
+    let first = closest(&scene.hits(ray), ray).map(|(primitive, _)| primitive);
+    let n_cells = resolution.element_product();
+    let mut lists = vec![Vec::new(); n_cells as usize];
+    // Find the cells along the ray.
+    let way = parts::near_grid(&filled(bounds, resolution, &lists), ray, room);
+    // List each primitive, from the largest number down: of two hits at one `t` the larger number comes first.
+    for id in (0..hits.len() as u32).rev() {
+        let t = f64::from(hits[id as usize]);
+        // Eight times what `t` is rounded by.
+        let slack = (-21f64).exp2() * t.abs();
+        let at_hit = way.iter().filter(|(_, near, far)| near - slack <= t && t <= far + slack);
+        let mut cells: Vec<u32> = at_hit.map(|(cell, ..)| *cell).collect();
+        if cells.is_empty() && t.is_finite() {
+            // A hit out of the ray's range.
+            cells = (0..n_cells).collect();
+        }
+        let elsewhere = (0..n_cells).filter(|cell| first != Some(id) && (cell + id) % 4 == 0);
+        let elsewhere: Vec<u32> = elsewhere.filter(|cell| !cells.contains(cell)).collect();
+        cells.extend(elsewhere);
+        cells.into_iter().for_each(|cell| lists[cell as usize].push(id));
+    }
+    filled(bounds, resolution, &lists)
 }
 
 /// An octree over the box around all: of eight octants three are divided again.

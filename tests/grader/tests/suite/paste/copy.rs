@@ -7,7 +7,7 @@ use syn::{Item, Visibility};
 
 /// Copies the folders of `root` that the reference and its checks need, all items of `open` folders made public.
 pub fn copy(root: &Path, to: &Path, open: &[String]) {
-    for folder in ["src", "solutions/src", "tests/checks", "tests/oracle", "tests/golden"] {
+    for folder in ["src", "solutions/src", "tests/checks", "tests/judge", "tests/oracle", "tests/golden"] {
         copy_folder(root, to, folder, open);
     }
     for file in ["Cargo.lock", ".cargo/config.toml", "tests/rubric.toml", "solutions/tests/stages.rs"] {
