@@ -118,8 +118,8 @@ fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
 /// The best place for a plane across `axis`, if the cell has any extent there.
 fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeuristics) -> Option<f32> {
     let (low, high) = (cell.min[axis], cell.max[axis]);
-    let between = |p: f32, q: f32| 0.5 * p + 0.5 * q;
-    let middle = between(low, high);
+    let midpoint = |p: f32, q: f32| 0.5 * p + 0.5 * q;
+    let middle = midpoint(low, high);
     let inside = |at: &f32| low < *at && *at < high;
     if !heuristics.balanced_counts && !heuristics.few_straddlers {
         return Some(middle).filter(inside);
@@ -134,7 +134,7 @@ fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeurist
     let (begins, ends) = (sorted(|one| one.min), sorted(|one| one.max));
     let mut edges: Vec<f32> = begins.iter().chain(&ends).copied().collect();
     edges.sort_by(f32::total_cmp);
-    let gaps = edges.windows(2).map(|pair| between(pair[0], pair[1]));
+    let gaps = edges.windows(2).map(|pair| midpoint(pair[0], pair[1]));
 
     let cost = |at: f32| {
         let n_left = begins.partition_point(|begin| *begin <= at);

@@ -12,7 +12,7 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
     let lamps = |wants: &dyn Fn(usize) -> bool| {
         (0..scene.lights.len())
             .filter(|&light| seen(light) && wants(light))
-            .map(|light| lamp(scene, light))
+            .map(|light| light_name(scene, light))
             .collect()
     };
     let materials = |wants: &dyn Fn(usize) -> bool| {
@@ -91,7 +91,7 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
     }
 }
 
-fn lamp(scene: &Scene, light: usize) -> String {
+fn light_name(scene: &Scene, light: usize) -> String {
     let kind = match &scene.lights[light].emitter {
         Emitter::Point { .. } => "point",
         Emitter::Directional { .. } => "directional",

@@ -83,14 +83,14 @@ impl Workshop {
             // The versions that the kit uses. Cargo strikes out what is not needed here.
             write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
         }
-        mirror(&root.join("src"), &workshop.folder.join("src"))?;
+        copy_folder(&root.join("src"), &workshop.folder.join("src"))?;
         workshop.reset()?;
         Ok(workshop)
     }
 
     /// Makes the solutions here those of the kit again.
     fn reset(&self) -> Result<()> {
-        mirror(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))
+        copy_folder(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))
     }
 
     /// Takes over what another workshop has built of foreign crates, which saves building them again.
@@ -212,7 +212,7 @@ fn write_if_new(file: &Path, text: &str) -> Result<()> {
 }
 
 /// Makes `to` hold the texts of `from` and nothing else.
-fn mirror(from: &Path, to: &Path) -> Result<()> {
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     let mut wanted = BTreeSet::new();
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
         let entry = entry?;
@@ -222,7 +222,7 @@ fn mirror(from: &Path, to: &Path) -> Result<()> {
             // A package of its own, which the solutions do not need.
             wanted.remove(&entry.file_name());
         } else if entry.file_type()?.is_dir() {
-            mirror(&entry.path(), &target)?;
+            copy_folder(&entry.path(), &target)?;
         } else {
             write_if_new(&target, &read(&entry.path())?)?;
         }
@@ -273,11 +273,11 @@ mod tests {
         let (from, to) = (folder.path().join("from"), folder.path().join("to"));
         write_if_new(&from.join("a/b.txt"), "b").unwrap();
         write_if_new(&to.join("old.txt"), "old").unwrap();
-        mirror(&from, &to).unwrap();
+        copy_folder(&from, &to).unwrap();
         assert!(!to.join("old.txt").exists());
         let time = || fs::metadata(to.join("a/b.txt")).unwrap().modified().unwrap();
         let before = time();
-        mirror(&from, &to).unwrap();
+        copy_folder(&from, &to).unwrap();
         assert_eq!(before, time());
     }
 }

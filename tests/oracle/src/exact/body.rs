@@ -92,7 +92,7 @@ impl Body {
             Body::Sphere(_) => sphere::bits(place, dir),
             Body::Cuboid(_) => {
                 let ratio = RootBits { p: place, a: dir, disc: 0 };
-                (ratio, ratio.between(ratio))
+                (ratio, ratio.bits_to_compare(ratio))
             }
             Body::Cylinder(_) => quadric::cylinder_bits(place, dir),
             Body::Cone(_) => quadric::cone_bits(place, dir),
@@ -285,7 +285,7 @@ impl Question for Order<'_> {
     fn bits(&self, frame: &Frame) -> u32 {
         let (one, most) = self.one.first_bits(self.ray, frame);
         let (other, most_other) = self.other.first_bits(self.ray, frame);
-        most.max(most_other).max(one.between(other))
+        most.max(most_other).max(one.bits_to_compare(other))
     }
 
     fn ask<R: Ring>(&self, frame: &Frame) -> Option<Self::Answer> {

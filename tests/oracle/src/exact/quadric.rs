@@ -75,7 +75,7 @@ pub(super) fn cylinder_bits(place: u32, dir: u32) -> (RootBits, u32) {
     let (p, a) = (dir + 3 * place + 4, 2 * dir + 2 * place + 4);
     let side = RootBits { p, a, disc: 2 * dir + 6 * place + 10 };
     let end = RootBits { p: 2 * place + 3, a: dir + place + 2, disc: 0 };
-    (side, side.between(end).max(end.between(end)).max(4 * place + 6))
+    (side, side.bits_to_compare(end).max(end.bits_to_compare(end)).max(4 * place + 6))
 }
 
 /// Inside is `|w|² |x × w|² <= r² (x·w)²` and `0 <= x·w <= w·w` with `w = base - apex`; the slab cuts off the mirror
@@ -133,5 +133,5 @@ pub(super) fn cone_bits(place: u32, dir: u32) -> (RootBits, u32) {
     let (p, a) = (dir + 5 * place + 8, 2 * dir + 4 * place + 7);
     let side = RootBits { p, a, disc: 2 * dir + 10 * place + 14 };
     let end = RootBits { p: 2 * place + 3, a: dir + place + 2, disc: 0 };
-    (side, side.between(end).max(end.between(end)).max(6 * place + 7))
+    (side, side.bits_to_compare(end).max(end.bits_to_compare(end)).max(6 * place + 7))
 }

@@ -40,7 +40,7 @@ impl RootBits {
     }
 
     /// Bits that suffice for [`Root::compare`].
-    pub fn between(self, other: RootBits) -> u32 {
+    pub fn bits_to_compare(self, other: RootBits) -> u32 {
         let p = (self.p + other.a).max(other.p + self.a) + 1;
         let square = 2 * p;
         let discs = (self.disc + 2 * other.a).max(other.disc + 2 * self.a);
