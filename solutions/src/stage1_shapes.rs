@@ -98,7 +98,7 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
 }
 
 /// `normal`, turned so that it points to the side from which a ray of direction `dir` comes.
-pub fn face_viewer(normal: Vec3, dir: Vec3) -> Vec3 {
+pub fn face_forward(normal: Vec3, dir: Vec3) -> Vec3 {
     // <solution>
     if normal.dot(dir) > 0.0 { -normal } else { normal }
     // <stub> todo!("negate the normal if it points the way the ray goes")

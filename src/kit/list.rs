@@ -48,9 +48,9 @@ macro_rules! student_functions {
                 |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) }
                 /// `normal`, negated if necessary, so that it points to the side from which a ray of
                 /// direction `dir` comes.
-                FaceViewer fn face_viewer(normal: Vec3, dir: Vec3) -> Vec3
-                    = stage1_shapes::face_viewer;
-                |(normal, dir): (Vec3, Vec3)| -> Vec3 { F::face_viewer(*normal, *dir) }
+                FaceForward fn face_forward(normal: Vec3, dir: Vec3) -> Vec3
+                    = stage1_shapes::face_forward;
+                |(normal, dir): (Vec3, Vec3)| -> Vec3 { F::face_forward(*normal, *dir) }
             }
 
             /// Stage 2: triangles and meshes. Each function gives one answer per query, in the same order,

@@ -76,7 +76,7 @@ impl SurfaceInteraction {
             Target::Instance(outer, inner) => in_instance::<F>(world, looks, ray, outer, inner, hit.detail),
         };
         let Point { point, error, normal, smooth } = point;
-        let geometric_normal = if looks.facing { F::face_viewer(normal, ray.dir) } else { normal };
+        let geometric_normal = if looks.facing { F::face_forward(normal, ray.dir) } else { normal };
         let shading_normal = match smooth {
             Some(_) => F::shading_normal(geometric_normal, smooth, ray.dir),
             None => geometric_normal,

@@ -48,7 +48,7 @@ impl Plan {
             view: choose_view(job.view, written, &mut notes),
             world: WorldFunctions::of::<F>(&|function| written.has(function)),
             smooth: written.has_all(&[Function::shading_normal, Function::interpolate]),
-            facing: written.has(Function::face_viewer),
+            facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
             weights: written.has_all(&[Function::develop, Function::gaussian_weight]),
             effects,
@@ -103,7 +103,7 @@ impl Plan {
         }
         self.note_if(
             !self.facing,
-            "surfaces that are seen from inside are dark: `face_viewer` of stage 1 is not written yet",
+            "surfaces that are seen from inside are dark: `face_forward` of stage 1 is not written yet",
         );
     }
 

@@ -10,7 +10,7 @@ mod spheres;
 
 use picture::picture_of_a_ball_on_a_plane;
 use planes::{
-    face_viewer_turns_the_normal_to_the_ray, plane_agrees_with_double_precision, plane_far_from_the_origin,
+    face_forward_turns_the_normal_to_the_ray, plane_agrees_with_double_precision, plane_far_from_the_origin,
     plane_is_missed_by_rays_along_it,
 };
 use roots::{nearest_root_is_the_smaller_one_that_counts, nearest_root_of_nan_is_the_other_one};
@@ -47,6 +47,6 @@ checks::stage! { ($ crate) 1 [
     plane_agrees_with_double_precision
     plane_is_missed_by_rays_along_it
     plane_far_from_the_origin
-    face_viewer_turns_the_normal_to_the_ray
+    face_forward_turns_the_normal_to_the_ray
     picture_of_a_ball_on_a_plane
 ] }

@@ -23,7 +23,7 @@ pub(super) fn picture_of_a_ball_on_a_plane(trial: &Trial<'_>) -> Outcome {
         .zip(outwards)
         .map(|((ray, t), out)| (t.map_or(Vec3::Y, |_| out), ray.dir))
         .collect();
-    let facing = trial.kit.face_viewer(&normals);
+    let facing = trial.kit.face_forward(&normals);
     // The ball hides the floor wherever both are hit: it stands between the floor and the eye.
     let hit = on_floor.iter().zip(&on_ball).map(|(floor, ball)| floor.is_some() || ball.is_some());
     let colors =

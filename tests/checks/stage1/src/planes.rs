@@ -92,14 +92,14 @@ pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
         .map_err(|broken| if broken.diagnosis.is_some() { broken } else { broken.looks_like(Some(cancels)) })
 }
 
-pub(super) fn face_viewer_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Outcome {
+pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, (direction(), direction()), |queries| {
-        compare(queries, trial.kit.face_viewer(queries), |(normal, dir), yours| {
+        compare(queries, trial.kit.face_forward(queries), |(normal, dir), yours| {
             let expected = if normal.dot(*dir) > 0.0 { -*normal } else { *normal };
             // At a right angle either side will do.
             let right = yours == expected || (normal.dot(*dir) == 0.0 && yours == -expected);
             let diagnosis = (yours == -expected).then_some("the normal points away from the viewer");
-            let input = format!("face_viewer({}, {})", normal.paste(), dir.paste());
+            let input = format!("face_forward({}, {})", normal.paste(), dir.paste());
             if right {
                 Ok(())
             } else {

@@ -47,6 +47,6 @@ pub fn plane(_: &Ray, _: Vec3, _: Vec3) -> Liar {
     Liar
 }
 
-pub fn face_viewer(_: Vec3, _: Vec3) -> Liar {
+pub fn face_forward(_: Vec3, _: Vec3) -> Liar {
     Liar
 }

@@ -81,7 +81,7 @@ fn body(function: &Function, table: &str) -> Result<String> {
         }
         "plane" => ("[ray.words(), point.words(), normal.words()]", "found", 2),
         "sphere_normal" => ("[center.words(), point.words()]", "vector", 3),
-        "face_viewer" => ("[normal.words(), dir.words()]", "vector", 3),
+        "face_forward" => ("[normal.words(), dir.words()]", "vector", 3),
         other => bail!("nobody knows how to learn `{other}` by heart"),
     };
     let answer = match answer {
@@ -165,7 +165,7 @@ impl Transport for Listener {
                 };
                 pairs(asked, given, words, |normal| normal.to_array().map(f32::to_bits).to_vec())
             }
-            ("face_viewer", Request::FaceViewer(asked), Answer::FaceViewer(given)) => {
+            ("face_forward", Request::FaceForward(asked), Answer::FaceForward(given)) => {
                 let words = |(normal, dir): &(glam::Vec3, glam::Vec3)| {
                     vec![normal.to_array().to_vec(), dir.to_array().to_vec()]
                 };
@@ -203,10 +203,10 @@ mod tests {
 
     #[test]
     fn the_answers_of_the_reference_are_written_down() {
-        let known = known("face_viewer").unwrap();
+        let known = known("face_forward").unwrap();
         assert!(known.len() > 500, "{}", known.len());
-        let stub = "use glam::Vec3;\npub fn face_viewer(normal: Vec3, dir: Vec3) -> Vec3 { todo!() }\n";
-        let text = by_heart(stub, &["face_viewer".into()]).unwrap();
+        let stub = "use glam::Vec3;\npub fn face_forward(normal: Vec3, dir: Vec3) -> Vec3 { todo!() }\n";
+        let text = by_heart(stub, &["face_forward".into()]).unwrap();
         assert!(text.contains("static KNOWN") && !text.contains("todo!"));
         assert!(by_heart(stub, &["plan".into()]).unwrap_err().to_string().contains("`plan`"));
     }

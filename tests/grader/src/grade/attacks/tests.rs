@@ -109,7 +109,7 @@ fn bodies_are_right_or_wrong_as_a_step_says() {
     assert!(shapes_of("base = \"solutions\"").contains("let discriminant ="));
     let wrong = shapes_of("base = \"wrong\"");
     assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let discriminant ="));
-    let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_viewer\"\ntext = \"if true @right@ else @wrong@\"";
+    let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_forward\"\ntext = \"if true @right@ else @wrong@\"";
     let both = shapes_of(step);
     assert!(both.contains("if normal.dot(dir) > 0.0 { -normal } else { normal }"));
     assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
@@ -175,7 +175,7 @@ fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given
     assert_eq!(told("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
     assert_eq!(told("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal), [""; 0]);
     let both = told("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
-    assert!(both.len() == 1 && both[0].contains("face_viewer_turns") && both[0].contains("not earned"));
+    assert!(both.len() == 1 && both[0].contains("face_forward_turns") && both[0].contains("not earned"));
     let none = told("earned = { at_least_all_but = [\"plane_*\"] }", &normal);
     assert!(none.len() == 1 && none[0].contains("should pass and is: too long"), "{none:?}");
     assert_eq!(told("earned = { at_most = [\"plane_*\"] }", &normal).len(), 20);
