@@ -124,20 +124,20 @@ impl CameraSample {
     }
 }
 
-/// Renders a picture: calls `radiance` for the colour and weight of each sample, and `develop` for the colour
+/// Renders a picture: calls `radiance` for the colour and weight of each sample, and `filter` for the colour
 /// that the samples of a pixel make. Colours are linear radiance. Each tile has a tally of its own; the
 /// counts of the result are their sum. The same settings give the same picture for any number of threads.
 /// `None` if `watch` cancelled the frame.
 ///
 /// # Panics
 ///
-/// A panic of `radiance` or `develop` is passed on to the caller, as a [`Mishap`] with the place where it
+/// A panic of `radiance` or `filter` is passed on to the caller, as a [`Mishap`] with the place where it
 /// happened.
 pub fn render<T: Tally>(
     settings: &FrameSettings,
     watch: &dyn Watch,
     radiance: impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync,
-    develop: impl Fn(&[WeightedColor]) -> Vec3 + Sync,
+    filter: impl Fn(&[WeightedColor]) -> Vec3 + Sync,
 ) -> Option<(Film, Counts)> {
     let FrameSettings { width, height, .. } = *settings;
     let total = u64::from(width) * u64::from(height);
@@ -148,7 +148,7 @@ pub fn render<T: Tally>(
             return Ok(None);
         }
         // Caught where it happens: a panic that crosses threads forgets its file and line.
-        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance, &develop))
+        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
             .map_err(|mishap| (mishap, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.pixels.len() as u64;
@@ -203,7 +203,7 @@ fn render_tile<T: Tally>(
     settings: &FrameSettings,
     (x, y): (u32, u32),
     radiance: &(impl Fn(&CameraSample, &mut T) -> WeightedColor + Sync),
-    develop: &(impl Fn(&[WeightedColor]) -> Vec3 + Sync),
+    filter: &(impl Fn(&[WeightedColor]) -> Vec3 + Sync),
 ) -> Tile {
     let right = settings.width.min(x + TILE);
     let bottom = settings.height.min(y + TILE);
@@ -218,11 +218,11 @@ fn render_tile<T: Tally>(
     };
     let mut render_pixel = |(column, row)| {
         if settings.samples_per_pixel == 1 {
-            return develop(&[sample_pixel(column, row, 0)]);
+            return filter(&[sample_pixel(column, row, 0)]);
         }
         samples.clear();
         samples.extend((0..settings.samples_per_pixel).map(|sample| sample_pixel(column, row, sample)));
-        develop(&samples)
+        filter(&samples)
     };
     let pixels = (y..bottom)
         .flat_map(|row| (x..right).map(move |column| (column, row)))

@@ -44,7 +44,7 @@ pub fn gaussian_weight(offset: Vec2) -> f32 {
 ///
 /// Where the formula lies: divided by their number instead of by the sum of their weights, samples make the picture
 /// darker or brighter.
-pub fn develop(samples: &[WeightedColor]) -> Vec3 {
+pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
     todo!("divide the sum of weighted colours by the sum of weights")
 }
 

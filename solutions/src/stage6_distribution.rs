@@ -65,7 +65,7 @@ pub fn gaussian_weight(offset: Vec2) -> f32 {
 ///
 /// Where the formula lies: divided by their number instead of by the sum of their weights, samples make the picture
 /// darker or brighter.
-pub fn develop(samples: &[WeightedColor]) -> Vec3 {
+pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
     // <solution>
     let color: Vec3 = samples.iter().map(|sample| sample.weight * sample.color).sum();
     let weight: f32 = samples.iter().map(|sample| sample.weight).sum();

@@ -315,9 +315,9 @@ macro_rules! student_functions {
                 |offset: Vec2| -> f32 { F::gaussian_weight(*offset) }
                 /// The colour of a pixel in linear light: the weighted mean of its samples, black if the sum
                 /// of the weights is 0.
-                Develop fn develop(samples: &[WeightedColor]) -> Vec3
-                    = stage6_distribution::develop;
-                |samples: Vec<WeightedColor>| -> Vec3 { F::develop(samples) }
+                FilterPixel fn filter_pixel(samples: &[WeightedColor]) -> Vec3
+                    = stage6_distribution::filter_pixel;
+                |samples: Vec<WeightedColor>| -> Vec3 { F::filter_pixel(samples) }
                 /// A uniformly distributed point of the disk of radius 1 around the origin.
                 OnDisk fn on_disk(u: Vec2) -> Vec2
                     = stage6_distribution::on_disk;

@@ -90,13 +90,13 @@ impl<F: StudentFunctions> CameraSampler<F> {
     }
 
     /// The linear colour of a pixel from its samples: the colour of a single sample, the weighted mean by
-    /// `develop`, or the plain mean if the filter functions are not written. Without samples the plain mean
+    /// `filter_pixel`, or the plain mean if the filter functions are not written. Without samples the plain mean
     /// is NaN.
     #[inline(always)]
     pub fn filter_pixel(&self, samples: &[WeightedColor]) -> Vec3 {
         match samples {
             [only] => only.color,
-            _ if self.weights => F::develop(samples),
+            _ if self.weights => F::filter_pixel(samples),
             _ => samples.iter().map(|sample| sample.color).sum::<Vec3>() / samples.len() as f32,
         }
     }

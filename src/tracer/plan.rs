@@ -50,7 +50,7 @@ impl Plan {
             smooth: written.has_all(&[Function::shading_normal, Function::interpolate]),
             facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
-            weights: written.has_all(&[Function::develop, Function::gaussian_weight]),
+            weights: written.has_all(&[Function::filter_pixel, Function::gaussian_weight]),
             effects,
             notes,
         };
@@ -146,7 +146,7 @@ impl Plan {
         );
         self.note_if(
             quality.sampler == Sampler::Gaussian && !self.weights,
-            "all samples of a pixel count alike: `develop` and `gaussian_weight` of stage 6 are not written yet",
+            "all samples of a pixel count alike: `filter_pixel` and `gaussian_weight` of stage 6 are not written yet",
         );
         let jittered = written.has(Function::jittered);
         if !(jittered && written.has_all(&[Function::on_disk, Function::lens_ray])) {

@@ -35,7 +35,7 @@ pub fn rays(eye: Vec3, target: Vec3) -> Vec<Ray> {
 }
 
 /// The picture that these colours make, in the order of [`rays`].
-pub fn develop(pixels: Vec<Vec3>) -> Film {
+pub fn film_of(pixels: Vec<Vec3>) -> Film {
     Film { width: WIDTH, height: HEIGHT, pixels }
 }
 

@@ -29,5 +29,5 @@ pub(super) fn picture_of_a_ball_on_a_plane(trial: &Trial<'_>) -> Outcome {
     let colors =
         hit.zip(facing).map(|(hit, normal)| if hit { picture::normal_color(normal) } else { Vec3::ZERO });
     // The outline of the ball crosses about 60 of 4800 pixels, and a ray that only just hits may fall either way.
-    picture::compare("stage1_ball_on_a_plane", &picture::develop(colors.collect()), &rays, 0.001)
+    picture::compare("stage1_ball_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
 }

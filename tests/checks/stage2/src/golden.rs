@@ -64,6 +64,6 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> Outcome {
         }
     }
     // The outline is about 120 of 4800 pixels long; a ray that only just hits may fall either way.
-    let film = picture::develop(nearest.into_iter().map(|(_, color)| color).collect());
+    let film = picture::film_of(nearest.into_iter().map(|(_, color)| color).collect());
     picture::compare("stage2_octahedron", &film, &rays, 0.002)
 }

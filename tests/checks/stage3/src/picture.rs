@@ -33,5 +33,5 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
         .into_iter()
         .map(|answer| answer.hit.map_or(0.0, |hit| ((11.0 - hit.t) / 6.0).clamp(0.0, 1.0)));
     // The answers come from a table, so no pixel may differ.
-    picture::compare("stage3_depth", &picture::develop(depths.map(Vec3::splat).collect()), &rays, 0.0)
+    picture::compare("stage3_depth", &picture::film_of(depths.map(Vec3::splat).collect()), &rays, 0.0)
 }

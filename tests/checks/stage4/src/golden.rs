@@ -70,5 +70,5 @@ pub(super) fn picture_of_a_lit_ball(trial: &Trial<'_>) -> Outcome {
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
     // The points are given, so only light on the horizon may round either way: a few of 4800 pixels.
-    picture::compare("stage4_lit_ball", &picture::develop(colors.collect()), &rays, 0.001)
+    picture::compare("stage4_lit_ball", &picture::film_of(colors.collect()), &rays, 0.001)
 }

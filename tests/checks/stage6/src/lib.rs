@@ -25,7 +25,7 @@ use motion::{
     temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
 };
 use pixels::{
-    develop_is_the_weighted_mean, develop_of_nothing_is_black, each_sampler_has_its_places,
+    filter_pixel_is_the_weighted_mean, filter_pixel_of_nothing_is_black, each_sampler_has_its_places,
     gaussian_weight_is_a_bell_that_ends, jittered_samples_cover_the_pixel_evenly,
     jittered_samples_stay_in_their_cells,
 };
@@ -46,8 +46,8 @@ checks::stage! { ($ crate) 6 [
     jittered_samples_cover_the_pixel_evenly
     each_sampler_has_its_places
     gaussian_weight_is_a_bell_that_ends
-    develop_is_the_weighted_mean
-    develop_of_nothing_is_black
+    filter_pixel_is_the_weighted_mean
+    filter_pixel_of_nothing_is_black
     places_on_the_disk_are_places
     places_on_the_disk_are_even
     lens_without_width_is_a_pinhole

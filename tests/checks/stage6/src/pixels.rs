@@ -164,7 +164,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome 
                 () if near(expected * std::f64::consts::FRAC_2_PI)
                     || near(expected * std::f64::consts::FRAC_2_PI.sqrt()) =>
                 {
-                    "a factor on all weights: develop divides by their sum, so none is needed"
+                    "a factor on all weights: filter_pixel divides by their sum, so none is needed"
                 }
                 () if outside && yours > 0.0 => {
                     "two factors below 0 make a weight above 0: each is 0 from FILTER_RADIUS on"
@@ -185,16 +185,16 @@ fn paste_samples(samples: &[WeightedColor]) -> String {
     let one = |sample: &WeightedColor| {
         format!("WeightedColor {{ color: {}, weight: {} }}", sample.color.paste(), sample.weight.paste())
     };
-    format!("develop(&[{}])", samples.iter().map(one).collect::<Vec<_>>().join(", "))
+    format!("filter_pixel(&[{}])", samples.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
-pub(super) fn develop_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
+pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
     let share = || (0..=16i32).prop_map(|n| n as f32 / 8.0);
     let color = (share(), share(), share()).prop_map(|(r, g, b)| vec3(r, g, b));
     let sample = (color, share()).prop_map(|(color, weight)| WeightedColor { color, weight });
     let samples = prop::collection::vec(sample, 1..8);
     let judge = |queries: &[Vec<WeightedColor>]| {
-        compare(queries, trial.kit.develop(queries), |samples, yours| {
+        compare(queries, trial.kit.filter_pixel(queries), |samples, yours| {
             let weight: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
             let sum: glam::DVec3 =
                 samples.iter().map(|sample| f64::from(sample.weight) * sample.color.as_dvec3()).sum();
@@ -230,9 +230,9 @@ pub(super) fn develop_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, samples, judge)
 }
 
-pub(super) fn develop_of_nothing_is_black(trial: &Trial<'_>) -> Outcome {
+pub(super) fn filter_pixel_of_nothing_is_black(trial: &Trial<'_>) -> Outcome {
     let nothing = [vec![], vec![WeightedColor { color: Vec3::ONE, weight: 0.0 }; 3]];
-    for (samples, yours) in nothing.iter().zip(trial.kit.develop(&nothing)) {
+    for (samples, yours) in nothing.iter().zip(trial.kit.filter_pixel(&nothing)) {
         if yours != Vec3::ZERO {
             let broken = Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition");
             return Err(broken.looks_like(yours.is_nan().then_some("0 / 0: nothing weighs anything here")));
