@@ -119,11 +119,11 @@ pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 
 /// Where the formula lies: `start + t (end - start)` misses the end by a rounding, and
 /// `(1 - t) start + t end` moves a point that stands still. Be exact at both ends, stand still where nothing moves, and
 /// never leave the way between: boxes rely on it.
-pub fn between(start: Vec3, end: Vec3, time: f32) -> Vec3 {
+pub fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3 {
     todo!("blend start and end, and stay between them")
 }
 
 /// The box around all places of something that moves evenly from box `start` to box `end`.
-pub fn sweep(start: &Aabb, end: &Aabb) -> Aabb {
+pub fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb {
     todo!("where can a corner be between the two?")
 }

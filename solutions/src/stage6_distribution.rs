@@ -214,7 +214,7 @@ pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 
 /// Where the formula lies: `start + t (end - start)` misses the end by a rounding, and
 /// `(1 - t) start + t end` moves a point that stands still. Be exact at both ends, stand still where nothing moves, and
 /// never leave the way between: boxes rely on it.
-pub fn between(start: Vec3, end: Vec3, time: f32) -> Vec3 {
+pub fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3 {
     // <solution>
     let blended = (1.0 - time) * start + time * end;
     blended.max(start.min(end)).min(start.max(end))
@@ -223,7 +223,7 @@ pub fn between(start: Vec3, end: Vec3, time: f32) -> Vec3 {
 }
 
 /// The box around all places of something that moves evenly from box `start` to box `end`.
-pub fn sweep(start: &Aabb, end: &Aabb) -> Aabb {
+pub fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb {
     // <solution>
     // Corners move along straight lines, so whatever lies within both boxes' bounds at the ends does so in between.
     Aabb::new(start.min.min(end.min), start.max.max(end.max))

@@ -357,14 +357,14 @@ macro_rules! student_functions {
                 |q: TimeQuery| -> f32 { F::time_in_shutter(&q.shutter, q.slot, q.slots, q.u) }
                 /// Linear interpolation (`lerp`) of a point from `start` at time 0 to `end` at time 1, exact
                 /// at both ends.
-                Between fn between(start: Vec3, end: Vec3, time: f32) -> Vec3
-                    = stage6_distribution::between;
-                |(start, end, time): (Vec3, Vec3, f32)| -> Vec3 { F::between(*start, *end, *time) }
+                Lerp fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3
+                    = stage6_distribution::lerp;
+                |(start, end, time): (Vec3, Vec3, f32)| -> Vec3 { F::lerp(*start, *end, *time) }
                 /// The box around everything that moves linearly from box `start` to box `end` (motion
                 /// bounds).
-                Sweep fn sweep(start: &Aabb, end: &Aabb) -> Aabb
-                    = stage6_distribution::sweep;
-                |(start, end): (Aabb, Aabb)| -> Aabb { F::sweep(start, end) }
+                MotionBounds fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb
+                    = stage6_distribution::motion_bounds;
+                |(start, end): (Aabb, Aabb)| -> Aabb { F::motion_bounds(start, end) }
             }
 
             /// Stage 7: the effects analysis, which computes only what a scene needs. Each function gives one

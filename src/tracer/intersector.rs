@@ -160,6 +160,6 @@ fn bounds_of<F: StudentFunctions>(world: &World, parts: &[Aabb], primitive: &Pri
     let start = bounds(&primitive.geometry);
     match primitive.end.get() {
         None => start,
-        Some(end) => F::sweep(&start, &bounds(&world.ends[end])),
+        Some(end) => F::motion_bounds(&start, &bounds(&world.ends[end])),
     }
 }

@@ -19,8 +19,8 @@ pub fn geometry_at<F: StudentFunctions>(world: &World, primitive: &Primitive, ti
 fn moved<F: StudentFunctions>(start: &Geometry, end: &Geometry, time: f32) -> Geometry {
     match (start, end) {
         (Geometry::Sphere(start), Geometry::Sphere(end)) => Geometry::Sphere(Sphere {
-            center: F::between(start.center, end.center, time),
-            radius: F::between(Vec3::splat(start.radius), Vec3::splat(end.radius), time).x,
+            center: F::lerp(start.center, end.center, time),
+            radius: F::lerp(Vec3::splat(start.radius), Vec3::splat(end.radius), time).x,
         }),
         (Geometry::Triangle(start), Geometry::Triangle(end)) => {
             Geometry::Triangle(triangle_at::<F>(start, end, time))
@@ -31,9 +31,9 @@ fn moved<F: StudentFunctions>(start: &Geometry, end: &Geometry, time: f32) -> Ge
 
 fn triangle_at<F: StudentFunctions>(start: &Triangle, end: &Triangle, time: f32) -> Triangle {
     Triangle {
-        a: F::between(start.a, end.a, time),
-        b: F::between(start.b, end.b, time),
-        c: F::between(start.c, end.c, time),
+        a: F::lerp(start.a, end.a, time),
+        b: F::lerp(start.b, end.b, time),
+        c: F::lerp(start.c, end.c, time),
     }
 }
 

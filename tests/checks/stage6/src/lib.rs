@@ -21,7 +21,7 @@ use lens::{
     places_on_the_disk_are_even, places_on_the_disk_are_places, plane_of_focus_is_sharp,
 };
 use motion::{
-    between_is_exact_where_it_must, between_stays_on_the_way, sweep_covers_the_way_and_no_more,
+    lerp_is_exact_where_it_must, lerp_stays_on_the_way, motion_bounds_covers_the_way_and_no_more,
     temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
 };
 use pixels::{
@@ -67,7 +67,7 @@ checks::stage! { ($ crate) 6 [
     temporal_table_has_each_time_once
     times_lie_in_their_slots
     times_are_even
-    between_is_exact_where_it_must
-    between_stays_on_the_way
-    sweep_covers_the_way_and_no_more
+    lerp_is_exact_where_it_must
+    lerp_stays_on_the_way
+    motion_bounds_covers_the_way_and_no_more
 ] }

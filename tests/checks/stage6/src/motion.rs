@@ -147,15 +147,15 @@ pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
 type Move = (Vec3, Vec3, f32);
 
 fn told((start, end, time): &Move) -> String {
-    call("between", &[start, end, time])
+    call("lerp", &[start, end, time])
 }
 
-pub(super) fn between_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     let ends = || (rough_point(1000.0), rough_point(1000.0));
     let time = prop_oneof![Just(0.0f32), Just(1.0f32)];
     let at_ends = (ends(), time).prop_map(|((start, end), time)| (start, end, time));
     trial.forall(1000, at_ends, |queries| {
-        compare(queries, trial.kit.between(queries), |query, yours| {
+        compare(queries, trial.kit.lerp(queries), |query, yours| {
             let expected = if query.2 == 0.0 { query.0 } else { query.1 };
             let broken = || Broken::new(told(query), yours, expected, "bit for bit");
             let near = (yours - expected).length() < 1e-3;
@@ -172,7 +172,7 @@ pub(super) fn between_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     })?;
     let still = (rough_point(1000.0), 0.0..=1.0f32).prop_map(|(place, time)| (place, place, time));
     trial.forall(2000, still, |queries| {
-        compare(queries, trial.kit.between(queries), |query, yours| match yours == query.0 {
+        compare(queries, trial.kit.lerp(queries), |query, yours| match yours == query.0 {
             true => Ok(()),
             false => Err(Broken::new(told(query), yours, query.0, "what does not move stands still")
                 .looks_like(Some(
@@ -182,12 +182,12 @@ pub(super) fn between_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn between_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
     let near_each_other = (point(4), point(4), magnitude(-7.0, 3.0))
         .prop_map(|(start, step, scale)| (start, start + scale * step));
     let queries = (near_each_other, 0.0..=1.0f32).prop_map(|((start, end), time)| (start, end, time));
     let judge = |queries: &[Move]| {
-        compare(queries, trial.kit.between(queries), |query, yours| {
+        compare(queries, trial.kit.lerp(queries), |query, yours| {
             let (start, end, time) = *query;
             let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
             // Three roundings of the larger end.
@@ -218,11 +218,11 @@ pub(super) fn between_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
     trial.forall(4000, queries, judge)
 }
 
-pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
+pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
     let around = || (point(4), point(2)).prop_map(|(min, size)| Aabb::new(min, min + size.abs()));
     let ways = (around(), around()).prop_map(|(start, end)| (start, end));
     let judge = |queries: &[(Aabb, Aabb)]| {
-        compare(queries, trial.kit.sweep(queries), |(start, end), yours| {
+        compare(queries, trial.kit.motion_bounds(queries), |(start, end), yours| {
             let expected = Aabb::new(start.min.min(end.min), start.max.max(end.max));
             if yours == expected {
                 return Ok(());
@@ -254,7 +254,7 @@ pub(super) fn sweep_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
                 }
                 () => "right, but larger than need be",
             };
-            let input = call("sweep", &[start, end]);
+            let input = call("motion_bounds", &[start, end]);
             Err(Broken::new(input, yours, expected, "the corners move along straight lines")
                 .looks_like(known(diagnosis)))
         })

@@ -156,10 +156,10 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
         {
             "gamma: the pixels of the image are linear light already"
         }
-        () if signs.iter().any(|&x| signs.iter().any(|&y| between(x, y))) => {
+        () if signs.iter().any(|&x| signs.iter().any(|&y| lerp(x, y))) => {
             "half a pixel off: the colour of a pixel belongs to its middle"
         }
-        () if signs.iter().any(|&one| between(one, 0) || between(0, one)) => {
+        () if signs.iter().any(|&one| lerp(one, 0) || lerp(0, one)) => {
             "half a pixel off along one axis: the colour of a pixel belongs to its middle"
         }
         () if apart(yours[0], corner_to_corner) < NEAR_A_MISTAKE => {

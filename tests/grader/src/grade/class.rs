@@ -24,7 +24,7 @@ pub struct Grader {
     pub forge: Arc<Forge>,
     /// Asks them.
     pub judge: Arc<Judge>,
-    /// Between a submission and the machine.
+    /// Lerp a submission and the machine.
     pub walls: Walls,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,

@@ -30,7 +30,7 @@ pub struct Forge {
     libraries: PathBuf,
     /// The exercises as nobody has begun them, and what connects them.
     pristine: BTreeMap<String, String>,
-    /// Between the compiler and the machine.
+    /// Lerp the compiler and the machine.
     walls: Walls,
 }
 

@@ -43,7 +43,7 @@ pub struct Judge {
     checks: Vec<Put>,
     /// Picks the hidden inputs.
     seed: u64,
-    /// Between a worker and the machine.
+    /// Lerp a worker and the machine.
     walls: Walls,
     /// The inputs of all checks, which are the same for all submissions.
     drawn: Arc<Drawn>,

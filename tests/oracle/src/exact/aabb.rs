@@ -36,7 +36,7 @@ pub(super) fn span<R: Ring>(ray: &Ray, cuboid: &Cuboid, frame: &Frame) -> Option
             exits[axis] = Some(Root { p: -low[axis], a: -d[axis], surd: None });
         }
     }
-    Some(Span::Between(entries, exits))
+    Some(Span::Lerp(entries, exits))
 }
 
 /// How the segment `t_min <= t <= t_max` of a ray meets a closed box.
@@ -96,7 +96,7 @@ impl Segment<'_> {
     fn margin(&self) -> f64 {
         use super::ring::Estimate;
         let span = span::<Estimate>(self.ray, &self.cuboid, &Frame::UNSCALED);
-        let Some(Span::Between(entries, exits)) = span else {
+        let Some(Span::Lerp(entries, exits)) = span else {
             return f64::INFINITY;
         };
         let mut least = f64::INFINITY;
@@ -153,7 +153,7 @@ impl Question for Segment<'_> {
             let inside = Aabb::new(self.cuboid.min, self.cuboid.max).contains(self.ray.origin);
             return Some(if inside { Verdict::In } else { Verdict::Out });
         }
-        let Span::Between(entries, exits) = span::<R>(self.ray, &self.cuboid, frame)? else {
+        let Span::Lerp(entries, exits) = span::<R>(self.ray, &self.cuboid, frame)? else {
             return Some(Verdict::Out);
         };
         // The sign of "later than": 1 is a miss, 0 a touch. A miss counts whatever else is undecided.

@@ -151,7 +151,7 @@ pub fn meet_with(tier: Tier, ray: &Ray, body: Body) -> Option<Meeting> {
     };
     let t = match rounded {
         Rounded::Known(t) => t,
-        Rounded::Between(low, high) => {
+        Rounded::Lerp(low, high) => {
             let half_way = root::half_way(low, high);
             root::nearest(low, high, decide(&Against { ray, body, t: half_way }, tier)?)
         }

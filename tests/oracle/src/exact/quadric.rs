@@ -12,7 +12,7 @@ use raykata::shape::{Cone, Cylinder};
 /// The line between the planes `x·w = 0` and `x·w = w·w`: the two roots in order, or for a line along the planes
 /// whether it runs between them.
 enum Slab<R> {
-    Between(Root<R>, Root<R>),
+    Lerp(Root<R>, Root<R>),
     Always,
     Never,
 }
@@ -23,7 +23,7 @@ fn slab<R: Ring>(slope: R, height: R, full: R) -> Option<Slab<R>> {
         0 => Some(Slab::Always),
         sign => {
             let (at_zero, at_full) = (Root::ratio(-height, slope)?, Root::ratio(full - height, slope)?);
-            Some(if sign > 0 { Slab::Between(at_zero, at_full) } else { Slab::Between(at_full, at_zero) })
+            Some(if sign > 0 { Slab::Lerp(at_zero, at_full) } else { Slab::Lerp(at_full, at_zero) })
         }
     }
 }
@@ -32,8 +32,8 @@ fn slab<R: Ring>(slope: R, height: R, full: R) -> Option<Slab<R>> {
 fn joined<R>(slab: Slab<R>, entry: Option<Root<R>>, exit: Option<Root<R>>) -> Span<R> {
     match slab {
         Slab::Never => Span::Empty,
-        Slab::Always => Span::Between([entry, None, None], [exit, None, None]),
-        Slab::Between(low, high) => Span::Between([Some(low), entry, None], [Some(high), exit, None]),
+        Slab::Always => Span::Lerp([entry, None, None], [exit, None, None]),
+        Slab::Lerp(low, high) => Span::Lerp([Some(low), entry, None], [Some(high), exit, None]),
     }
 }
 

@@ -132,7 +132,7 @@ impl<R: Ring> Root<R> {
 pub(super) enum Rounded {
     Known(f32),
     /// The lower neighbour and the upper one.
-    Between(f32, f32),
+    Lerp(f32, f32),
 }
 
 impl Rounded {
@@ -146,7 +146,7 @@ impl Rounded {
         if low == high {
             return Some(Rounded::Known(t as f32));
         }
-        (low.next_up() == high).then_some(Rounded::Between(low, high))
+        (low.next_up() == high).then_some(Rounded::Lerp(low, high))
     }
 }
 

@@ -12,13 +12,13 @@ pub(super) enum Span<R> {
     /// No point is inside.
     Empty,
     /// `t` is inside if it is not below any of the first and not above any of the second; there is one of each.
-    Between([Option<Root<R>>; 3], [Option<Root<R>>; 3]),
+    Lerp([Option<Root<R>>; 3], [Option<Root<R>>; 3]),
 }
 
 /// The first point in the range of the ray where it enters or leaves.
 #[inline(always)]
 pub(super) fn first<R: Ring>(span: Span<R>, ray: &Ray, frame: &Frame) -> Option<Option<Hit<R>>> {
-    let Span::Between(entries, exits) = span else {
+    let Span::Lerp(entries, exits) = span else {
         return Some(None);
     };
     // Looked at pair by pair, since one pair in the wrong order is a miss whatever else is undecided.

@@ -24,7 +24,7 @@ pub(super) fn span<R: Ring>(ray: &Ray, sphere: &Sphere, frame: &Frame) -> Option
     }
     let (p, c) = (-dot(f, d), dot(f, f) - square);
     let [near, far] = [-1, 1].map(|sign| Some(Root { p, a, surd: Some(Surd { sign, disc, c }) }));
-    Some(Span::Between([near, None, None], [far, None, None]))
+    Some(Span::Lerp([near, None, None], [far, None, None]))
 }
 
 /// Bits of the roots for coordinates of these bits.
@@ -71,7 +71,7 @@ impl Question for Both<'_> {
     }
 
     fn ask<R: Ring>(&self, frame: &Frame) -> Option<Roots> {
-        let Span::Between([Some(near), ..], [Some(far), ..]) = span::<R>(self.ray, self.sphere, frame)?
+        let Span::Lerp([Some(near), ..], [Some(far), ..]) = span::<R>(self.ray, self.sphere, frame)?
         else {
             return Some(Roots { discriminant: -1, near_counts: false, far_counts: false });
         };
