@@ -52,7 +52,7 @@ pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
 ///
 /// Where the formula lies: with the distance from the middle even in `0..1`, half of all places lie on a quarter of the
 /// disk. And corners of the square are not on the disk.
-pub fn on_disk(u: Vec2) -> Vec2 {
+pub fn sample_disk(u: Vec2) -> Vec2 {
     todo!("map the unit square to the disk, area for area")
 }
 
@@ -67,12 +67,12 @@ pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> R
 }
 
 /// A point of the rectangle with this corner and these edges, everywhere equally likely.
-pub fn on_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
+pub fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
     todo!("go along both edges")
 }
 
 /// A point of the disk, everywhere equally likely.
-pub fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3 {
+pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     todo!("carry a place on the unit disk to this one")
 }
 
@@ -80,7 +80,7 @@ pub fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3 {
 ///
 /// Where the formula lies: `1 - cos θ` of a far ball is rounded to 0, and its shadows turn sharp. With
 /// `sin θ = radius / distance` it is `sin²θ / (1 + cos θ)`.
-pub fn toward_ball(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
+pub fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     todo!("a direction in the cone around the centre: 1 - cos θ even between 0 and that of the rim")
 }
 

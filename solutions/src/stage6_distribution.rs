@@ -78,7 +78,7 @@ pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
 ///
 /// Where the formula lies: with the distance from the middle even in `0..1`, half of all places lie on a quarter of the
 /// disk. And corners of the square are not on the disk.
-pub fn on_disk(u: Vec2) -> Vec2 {
+pub fn sample_disk(u: Vec2) -> Vec2 {
     // <solution>
     // Squares around the middle become circles, so that places far apart in the square stay far apart (Shirley and
     // Chiu, "A low distortion map between disk and square", 1997).
@@ -117,7 +117,7 @@ pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> R
 }
 
 /// A point of the rectangle with this corner and these edges, everywhere equally likely.
-pub fn on_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
+pub fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
     // <solution>
     corner + u.x * edges.0 + u.y * edges.1
     // <stub> todo!("go along both edges")
@@ -125,10 +125,10 @@ pub fn on_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
 }
 
 /// A point of the disk, everywhere equally likely.
-pub fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3 {
+pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     // <solution>
     let (x, y) = disk.normal.normalize().any_orthonormal_pair();
-    let place = disk.radius * on_disk(u);
+    let place = disk.radius * sample_disk(u);
     disk.center + place.x * x + place.y * y
     // <stub> todo!("carry a place on the unit disk to this one")
     // </solution>
@@ -138,7 +138,7 @@ pub fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3 {
 ///
 /// Where the formula lies: `1 - cos θ` of a far ball is rounded to 0, and its shadows turn sharp. With
 /// `sin θ = radius / distance` it is `sin²θ / (1 + cos θ)`.
-pub fn toward_ball(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
+pub fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     // <solution>
     let to_center = ball.center - from;
     let sin_squared = ball.radius * ball.radius / to_center.length_squared();

@@ -44,7 +44,7 @@ pub struct RectangleQuery {
 
 /// Asks which direction towards a sphere two random numbers sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BallQuery {
+pub struct SphereSampleQuery {
     /// The sphere to which the direction leads.
     pub ball: Sphere,
     /// The point from which the sphere is seen, in world units.

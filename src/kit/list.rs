@@ -319,27 +319,27 @@ macro_rules! student_functions {
                     = stage6_distribution::filter_pixel;
                 |samples: Vec<WeightedColor>| -> Vec3 { F::filter_pixel(samples) }
                 /// A uniformly distributed point of the disk of radius 1 around the origin.
-                OnDisk fn on_disk(u: Vec2) -> Vec2
-                    = stage6_distribution::on_disk;
-                |u: Vec2| -> Vec2 { F::on_disk(*u) }
+                SampleDisk fn sample_disk(u: Vec2) -> Vec2
+                    = stage6_distribution::sample_disk;
+                |u: Vec2| -> Vec2 { F::sample_disk(*u) }
                 /// The ray, of unit direction, that leaves the lens at `on_lens` (a point of the disk of
                 /// radius 1) and meets the pinhole ray on the focal plane.
                 LensRay fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray
                     = stage6_distribution::lens_ray;
                 |q: LensQuery| -> Ray { F::lens_ray(&q.camera, &q.pinhole, &q.lens, q.on_lens) }
                 /// A uniformly distributed point of a rectangle, in world units.
-                OnRectangle fn on_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3
-                    = stage6_distribution::on_rectangle;
-                |q: RectangleQuery| -> Vec3 { F::on_rectangle(q.corner, q.edges, q.u) }
+                SampleRectangle fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3
+                    = stage6_distribution::sample_rectangle;
+                |q: RectangleQuery| -> Vec3 { F::sample_rectangle(q.corner, q.edges, q.u) }
                 /// A uniformly distributed point of a disk, in world units.
-                OnLampDisk fn on_lamp_disk(disk: &Disk, u: Vec2) -> Vec3
-                    = stage6_distribution::on_lamp_disk;
-                |(disk, u): (Disk, Vec2)| -> Vec3 { F::on_lamp_disk(disk, *u) }
+                SampleLightDisk fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3
+                    = stage6_distribution::sample_light_disk;
+                |(disk, u): (Disk, Vec2)| -> Vec3 { F::sample_light_disk(disk, *u) }
                 /// A unit direction from `from` to a sphere, uniformly distributed over the solid angle of
                 /// the sphere; from inside the sphere, over all directions.
-                TowardBall fn toward_ball(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3
-                    = stage6_distribution::toward_ball;
-                |q: BallQuery| -> Vec3 { F::toward_ball(&q.ball, q.from, q.u) }
+                SampleSphere fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3
+                    = stage6_distribution::sample_sphere;
+                |q: SphereSampleQuery| -> Vec3 { F::sample_sphere(&q.ball, q.from, q.u) }
                 /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
                 /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
                 Gloss fn gloss(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3

@@ -46,7 +46,7 @@ impl<F: StudentFunctions> CameraSampler<F> {
         let on_film = (uvec2(sample.column, sample.row).as_vec2() + self.place(sample)) / self.film;
         let mut ray = self.camera.ray(on_film.x, on_film.y);
         if let (Some(lens), Some(stratum)) = (&self.camera.lens, &sample.lens) {
-            ray = F::lens_ray(&self.camera, &ray, lens, F::on_disk(F::jittered(stratum)));
+            ray = F::lens_ray(&self.camera, &ray, lens, F::sample_disk(F::jittered(stratum)));
         }
         ray.time = self.time(sample);
         ray

@@ -149,12 +149,12 @@ impl Plan {
             "all samples of a pixel count alike: `filter_pixel` and `gaussian_weight` of stage 6 are not written yet",
         );
         let jittered = written.has(Function::jittered);
-        if !(jittered && written.has_all(&[Function::on_disk, Function::lens_ray])) {
+        if !(jittered && written.has_all(&[Function::sample_disk, Function::lens_ray])) {
             let lens = scene.camera.lens.is_some_and(|lens| lens.aperture > 0.0);
             self.note_if(lens, "the lens is a pinhole: stage 6 is not written yet");
             self.effects.lens = false;
         }
-        let area_lights = [Function::on_rectangle, Function::on_lamp_disk, Function::toward_ball];
+        let area_lights = [Function::sample_rectangle, Function::sample_light_disk, Function::sample_sphere];
         if !(jittered && written.has_all(&area_lights)) {
             let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
             self.note_if(

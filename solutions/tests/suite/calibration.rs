@@ -8,7 +8,7 @@ use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
 use glam::{Vec2, Vec3, vec2};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, BallQuery, Door, GlossQuery, Kit, Request, StudentKit, Transport};
+use raykata::kit::{Answer, SphereSampleQuery, Door, GlossQuery, Kit, Request, StudentKit, Transport};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -97,24 +97,24 @@ fn each<Q, A>(queries: &[Q], answer: impl Fn(&Q) -> A) -> Vec<A> {
 
 fn disk(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
     match request {
-        Request::OnDisk(queries) => Some(Answer::OnDisk(each(queries, |u| place(*u)))),
+        Request::SampleDisk(queries) => Some(Answer::SampleDisk(each(queries, |u| place(*u)))),
         _ => None,
     }
 }
 
 fn round_lamp(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    let Request::OnLampDisk(queries) = request else { return None };
+    let Request::SampleLightDisk(queries) = request else { return None };
     let point = |(disk, u): &(raykata::shape::Disk, Vec2)| {
         let (x, y) = disk.normal.normalize().any_orthonormal_pair();
         let place = disk.radius * place(*u);
         disk.center + place.x * x + place.y * y
     };
-    Some(Answer::OnLampDisk(each(queries, point)))
+    Some(Answer::SampleLightDisk(each(queries, point)))
 }
 
 fn rectangle(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
-    let Request::OnRectangle(queries) = request else { return None };
-    Some(Answer::OnRectangle(each(queries, |query| {
+    let Request::SampleRectangle(queries) = request else { return None };
+    Some(Answer::SampleRectangle(each(queries, |query| {
         let shares = place(query.u);
         query.corner + shares.x * query.edges.0 + shares.y * query.edges.1
     })))
@@ -122,8 +122,8 @@ fn rectangle(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
 
 /// Directions to a ball from its rim's sine and cosine and two random numbers.
 fn ball(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<Answer> {
-    let Request::TowardBall(queries) = request else { return None };
-    Some(Answer::TowardBall(each(queries, |BallQuery { ball, from, u }| {
+    let Request::SampleSphere(queries) = request else { return None };
+    Some(Answer::SampleSphere(each(queries, |SphereSampleQuery { ball, from, u }| {
         let to_center = ball.center - *from;
         let sin_rim = ball.radius / to_center.length();
         around(to_center.normalize_or(Vec3::Y), cosine(sin_rim, u.x), u.y)
@@ -200,10 +200,10 @@ const WRONG: &[Wrong] = &[
     ("ball: inside, θ even", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| (PI * u).cos())),
     ("ball: inside, half of it", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| u)),
     ("ball: half of the rim", "half_a_ball_makes_half_a_shadow", |r| {
-        let Request::TowardBall(queries) = r else { return None };
-        let halved = |query: &BallQuery| BallQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
+        let Request::SampleSphere(queries) = r else { return None };
+        let halved = |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
         Some(
-            Request::TowardBall(each(queries, halved))
+            Request::SampleSphere(each(queries, halved))
                 .answer(&*solutions::Kit.door(), &raykata::frame::Unwatched),
         )
     }),

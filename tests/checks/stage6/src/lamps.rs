@@ -6,14 +6,14 @@ use checks::broken::{Broken, Outcome};
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
 use glam::{DVec3, Vec2, Vec3, vec3};
-use raykata::kit::{BallQuery, RectangleQuery};
+use raykata::kit::{SphereSampleQuery, RectangleQuery};
 use raykata::shape::{Disk, Sphere};
 
 pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
     let (corner, edges) = (vec3(1.0, 5.0, -2.0), (vec3(3.0, 0.0, 0.0), vec3(0.5, 0.0, 2.0)));
     let queries: Vec<RectangleQuery> =
         pairs(trial.seed, SAMPLES).into_iter().map(|u| RectangleQuery { corner, edges, u }).collect();
-    let answers = trial.kit.on_rectangle(&queries);
+    let answers = trial.kit.sample_rectangle(&queries);
     let mut shares = Vec::new();
     for (query, point) in queries.iter().zip(answers) {
         // Solved for the shares of both edges: the second one alone reaches along z.
@@ -24,7 +24,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
         if !(inside(u) && inside(v) && from_corner.y.abs() < 1e-6) {
             let broken = Broken::new(
                 format!(
-                    "on_rectangle({}, ({}, {}), {})",
+                    "sample_rectangle({}, ({}, {}), {})",
                     corner.paste(),
                     edges.0.paste(),
                     edges.1.paste(),
@@ -49,7 +49,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
         }
         shares.push((u, v));
     }
-    covers_evenly("on_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
+    covers_evenly("sample_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
         // 28 of 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
         if hit == 36 { "a triangle: half of the rectangle is left out" } else { "" }
@@ -63,12 +63,12 @@ pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
     let normal = disk.normal.normalize();
     let (x, y) = normal.any_orthonormal_pair();
     let mut places = Vec::new();
-    for (u, point) in u.iter().zip(trial.kit.on_lamp_disk(&queries)) {
+    for (u, point) in u.iter().zip(trial.kit.sample_light_disk(&queries)) {
         let offset = point - disk.center;
         // A few roundings of coordinates up to 5.
         if !(offset.dot(normal).abs() < 5e-6 && offset.length() < disk.radius + 5e-6) {
             let input = format!(
-                "on_lamp_disk(&Disk {{ center: {}, normal: {}, radius: {} }}, {})",
+                "sample_light_disk(&Disk {{ center: {}, normal: {}, radius: {} }}, {})",
                 disk.center.paste(),
                 disk.normal.paste(),
                 disk.radius.paste(),
@@ -87,21 +87,21 @@ pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
         }
         places.push(polar(Vec2::new(offset.dot(x), offset.dot(y)) / disk.radius));
     }
-    covers_evenly("on_lamp_disk(…, u)", &places, ["radius²", "angle"], uneven_disk)
+    covers_evenly("sample_light_disk(…, u)", &places, ["radius²", "angle"], uneven_disk)
 }
 
 /// The directions to a ball, as shares of the solid angle under which it is seen: from its middle to its rim, and
 /// around it.
 fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, Broken> {
-    let queries: Vec<BallQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| BallQuery { ball, from, u }).collect();
+    let queries: Vec<SphereSampleQuery> =
+        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { ball, from, u }).collect();
     let to_center = ball.center.as_dvec3() - from.as_dvec3();
     let sin_squared = f64::from(ball.radius).powi(2) / to_center.length_squared();
     let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
     let axis = to_center.normalize();
     let (x, y) = axis.any_orthonormal_pair();
     let mut shares = Vec::new();
-    for (query, direction) in queries.iter().zip(trial.kit.toward_ball(&queries)) {
+    for (query, direction) in queries.iter().zip(trial.kit.sample_sphere(&queries)) {
         let dir = direction.as_dvec3();
         // 1 - cos θ from the sine, which keeps the digits of small angles.
         let sine_squared = dir.cross(axis).length_squared();
@@ -113,7 +113,7 @@ fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, 
         let unit = (dir.length() - 1.0).abs() < 1e-5;
         if !(unit && share <= 1.0 + slack) {
             let input = format!(
-                "toward_ball(&Sphere {{ center: {}, radius: {} }}, {}, {})",
+                "sample_sphere(&Sphere {{ center: {}, radius: {} }}, {}, {})",
                 ball.center.paste(),
                 ball.radius.paste(),
                 from.paste(),
@@ -138,7 +138,7 @@ pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
     let ball = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
     let from = vec3(1.0, 1.0, 2.0);
     let shares = seen(trial, ball, from)?;
-    covers_evenly("toward_ball from 1.25 radii away", &shares, AXES, |counts| {
+    covers_evenly("sample_sphere from 1.25 radii away", &shares, AXES, |counts| {
         let rings = columns(counts);
         if rings[7] == 0 {
             "part of the ball is never asked: it is seen up to its rim, where sin θ is radius / distance"
@@ -153,7 +153,7 @@ pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
     // The light that a surface facing the ball gets: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
     let cos_rim = 0.6; // its sine is 2.4 / 3
     let cosines: Vec<f64> = shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
-    has_mean("the cosine of toward_ball with the way to the centre", &cosines, 0.5 * (1.0 + cos_rim), "")
+    has_mean("the cosine of sample_sphere with the way to the centre", &cosines, 0.5 * (1.0 + cos_rim), "")
 }
 
 pub(super) fn a_far_ball_is_still_a_ball(trial: &Trial<'_>) -> Outcome {
@@ -161,7 +161,7 @@ pub(super) fn a_far_ball_is_still_a_ball(trial: &Trial<'_>) -> Outcome {
     let ball = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
     let rounded = "1 - cos θ is rounded to 0 and all directions to one: take sin²θ / (1 + cos θ)";
     let shares = seen(trial, ball, Vec3::ZERO)?;
-    covers_evenly("toward_ball from 10,000 radii away", &shares, AXES, |counts| {
+    covers_evenly("sample_sphere from 10,000 radii away", &shares, AXES, |counts| {
         // Directions are rounded to a thousandth of the rim's angle, which moves none by more than a cell.
         if counts.iter().max() > Some(&(SAMPLES as u64 / 8)) { rounded } else { "" }
     })
@@ -170,17 +170,17 @@ pub(super) fn a_far_ball_is_still_a_ball(trial: &Trial<'_>) -> Outcome {
 pub(super) fn from_inside_a_ball_it_is_everywhere(trial: &Trial<'_>) -> Outcome {
     let ball = Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 };
     let shares = seen(trial, ball, vec3(0.5, 0.0, 0.5))?;
-    covers_evenly("toward_ball from inside", &shares, AXES, |counts| {
+    covers_evenly("sample_sphere from inside", &shares, AXES, |counts| {
         let rings = columns(counts);
         if rings[4..].iter().sum::<u64>() == 0 { "only half of all directions" } else { "" }
     })?;
     // From its very middle no direction is special, and none may be NaN.
-    let query = BallQuery { ball, from: ball.center, u: Vec2::splat(0.25) };
-    let direction = trial.kit.toward_ball(&[query])[0];
+    let query = SphereSampleQuery { ball, from: ball.center, u: Vec2::splat(0.25) };
+    let direction = trial.kit.sample_sphere(&[query])[0];
     if (direction.length() - 1.0).abs() < 1e-5 {
         return Ok(());
     }
-    let input = format!("toward_ball from the centre of the ball, {}", call("u =", &[&query.u]));
+    let input = format!("sample_sphere from the centre of the ball, {}", call("u =", &[&query.u]));
     Err(Broken::new(input, direction, "any unit direction", "the definition")
         .looks_like(direction.is_nan().then_some("the way to the centre has no direction")))
 }
@@ -188,14 +188,14 @@ pub(super) fn from_inside_a_ball_it_is_everywhere(trial: &Trial<'_>) -> Outcome 
 /// The share of a ball that is seen past the straight edge of a wall.
 pub(super) fn half_a_ball_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
     let ball = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
-    let queries: Vec<BallQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| BallQuery { ball, from: Vec3::ZERO, u }).collect();
-    let directions = trial.kit.toward_ball(&queries);
+    let queries: Vec<SphereSampleQuery> =
+        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { ball, from: Vec3::ZERO, u }).collect();
+    let directions = trial.kit.sample_sphere(&queries);
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
         let seen: Vec<f64> =
             directions.iter().map(|dir| f64::from(u8::from(dir.as_dvec3().dot(normal) > 0.0))).collect();
         has_mean(
-            "toward_ball past a wall that hides just half of the ball",
+            "sample_sphere past a wall that hides just half of the ball",
             &seen,
             0.5,
             "one side of the ball is asked more often than the other",

@@ -34,18 +34,18 @@ pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
 
 pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
     let u = pairs(trial.seed, SAMPLES);
-    let places = trial.kit.on_disk(&u);
+    let places = trial.kit.sample_disk(&u);
     for (u, place) in u.iter().zip(&places) {
         // A radius of 1 and a few roundings.
         if !(place.length() <= 1.0 + 1e-6) {
-            let broken = Broken::new(call("on_disk", &[u]), place, "a length of 1 at most", "the definition");
+            let broken = Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
             return Err(broken.looks_like(Some("outside the disk: corners of the square are not on it")));
         }
     }
     let polar: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
-    covers_evenly("on_disk(u)", &polar, ["radius²", "angle"], uneven_disk)?;
+    covers_evenly("sample_disk(u)", &polar, ["radius²", "angle"], uneven_disk)?;
     let radii: Vec<f64> = polar.iter().map(|(squared, _)| squared.sqrt()).collect();
-    has_mean("the length of on_disk(u)", &radii, 2.0 / 3.0, "")
+    has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, "")
 }
 
 pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
@@ -53,12 +53,12 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
     // The middle of the square and its diagonals are where formulas divide by 0.
     let corners = [0.0, 0.25, 0.5, 0.75].map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)]);
     let judge = |queries: &[Vec2]| {
-        compare(queries, trial.kit.on_disk(queries), |u, yours| {
+        compare(queries, trial.kit.sample_disk(queries), |u, yours| {
             if yours.length() <= 1.0 + 1e-6 {
                 return Ok(());
             }
             let nan = yours.is_nan().then_some("0 / 0: the middle of the square is a place, too");
-            Err(Broken::new(call("on_disk", &[u]), yours, "a length of 1 at most", "the definition")
+            Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
                 .looks_like(nan))
         })
     };
