@@ -47,7 +47,7 @@ pub struct MaterialEffects {
     /// Whether surfaces of the material spawn refracted rays.
     pub transmission: bool,
     /// Whether those secondary rays are spread around the ideal direction (glossy reflection and refraction).
-    pub gloss: bool,
+    pub glossy: bool,
     /// Whether the colour of the material is read from an image.
     pub texture: bool,
 }
@@ -66,7 +66,7 @@ impl Effects {
             lights: (0..scene.lights.len()).collect(),
             mirror: true,
             transmission: true,
-            gloss: material.roughness > 0.0,
+            glossy: material.roughness > 0.0,
             texture: material.texture.is_some(),
         };
         Effects {
@@ -90,7 +90,7 @@ impl Effects {
             Effect::AreaLights => lights.any(|(_, light)| light.area),
             Effect::Mirrors => materials(|material| material.mirror),
             Effect::Transmission => materials(|material| material.transmission),
-            Effect::Gloss => materials(|material| material.gloss),
+            Effect::Glossy => materials(|material| material.glossy),
             Effect::Lens => self.lens,
             Effect::Motion => self.motion,
             Effect::SmoothNormals => self.smooth_meshes.contains(&true),
@@ -113,7 +113,7 @@ pub enum Effect {
     /// Refracted rays through surfaces.
     Transmission,
     /// Glossy reflection and refraction: secondary rays spread around the ideal direction.
-    Gloss,
+    Glossy,
     /// Depth of field, by a thin lens.
     Lens,
     /// Motion blur, by rays at different times.
@@ -133,7 +133,7 @@ impl Effect {
         Effect::AreaLights,
         Effect::Mirrors,
         Effect::Transmission,
-        Effect::Gloss,
+        Effect::Glossy,
         Effect::Lens,
         Effect::Motion,
         Effect::SmoothNormals,
@@ -148,7 +148,7 @@ impl Effect {
     /// - Without mirrors, the weight of reflection is 0.
     /// - Without transmission, the weight of refraction is 0; the Fresnel reflection of a transparent
     ///   material goes with it.
-    /// - Without gloss, roughness is 0.
+    /// - Without glossy, roughness is 0.
     /// - Without the lens, the camera is a pinhole.
     /// - Without motion, every node stays where it is when the shutter opens.
     /// - Without smooth normals, meshes are flat.
@@ -161,7 +161,7 @@ impl Effect {
             Effect::AreaLights => scene.quality.light_samples = 0,
             Effect::Mirrors => scene.materials.iter_mut().for_each(|m| m.mirror = Vec3::ZERO),
             Effect::Transmission => scene.materials.iter_mut().for_each(|m| m.transmission = Vec3::ZERO),
-            Effect::Gloss => scene.materials.iter_mut().for_each(|m| m.roughness = 0.0),
+            Effect::Glossy => scene.materials.iter_mut().for_each(|m| m.roughness = 0.0),
             Effect::Lens => scene.camera.lens = None,
             Effect::Motion => {
                 let open = scene.camera.shutter.map_or(0.0, |shutter| shutter.open);
@@ -187,7 +187,7 @@ impl fmt::Display for Effect {
             Effect::AreaLights => "area lights",
             Effect::Mirrors => "mirrors",
             Effect::Transmission => "transmission",
-            Effect::Gloss => "gloss",
+            Effect::Glossy => "sample_phong_lobe",
             Effect::Lens => "lens",
             Effect::Motion => "motion",
             Effect::SmoothNormals => "smooth normals",

@@ -63,7 +63,7 @@ pub struct FrameSettings {
 impl FrameSettings {
     /// The same settings, with random numbers for those effects that `effects` lists and for no other.
     pub fn obey(self, effects: &Effects) -> Self {
-        let on_the_way = effects.calls_for(Effect::AreaLights) || effects.calls_for(Effect::Gloss);
+        let on_the_way = effects.calls_for(Effect::AreaLights) || effects.calls_for(Effect::Glossy);
         FrameSettings { lens: effects.lens, motion: effects.motion, on_the_way, ..self }
     }
 }

@@ -21,7 +21,7 @@ pub enum Purpose {
     /// The point on the area light with this index.
     Light(u32),
     /// The direction of a glossy reflection or refraction.
-    Gloss(Bounce),
+    Glossy(Bounce),
 }
 
 /// A sample of the unit square by stratified sampling: it lies in cell `cell` of a grid of `grid.x` columns
@@ -110,7 +110,7 @@ fn address(purpose: Purpose) -> u64 {
         Purpose::Pixel => 1,
         Purpose::Lens => 2,
         Purpose::Time => 3,
-        Purpose::Gloss(bounce) => 4 + bounce as u64,
+        Purpose::Glossy(bounce) => 4 + bounce as u64,
         Purpose::Light(index) => 16 + u64::from(index),
     }
 }

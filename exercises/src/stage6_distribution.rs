@@ -91,7 +91,7 @@ pub fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
 ///
 /// Where the formula lies: `cos θ = u^(1 / (n + 1))` of a slightly rough surface is 1 but for its last digits, and
 /// `√(1 - cos² θ)` knows but a few angles. `-expm1(ln(u) / (n + 1))` is `1 - cos θ` with all its digits.
-pub fn gloss(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3 {
+pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3 {
     todo!("turn ideal by a random angle, and keep it on its side of the surface")
 }
 

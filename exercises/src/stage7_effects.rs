@@ -43,7 +43,7 @@ pub fn effects(scene: &Scene) -> Effects {
 /// The most rays that the scene can take, as if every ray hit the surface that costs most.
 ///
 /// - One ray from the camera for each sample of each pixel.
-/// - A hit mirrors at most as many rays as the material that mirrors most of them: 1, or `quality.gloss_samples` if it
+/// - A hit mirrors at most as many rays as the material that mirrors most of them: 1, or `quality.glossy_samples` if it
 ///   is rough; likewise for rays that go through, and for both together. This goes on for `quality.max_depth` bounces,
 ///   or until even the brightest ray counts too little: a ray is traced while the weight of the mirror image (of the
 ///   glass) as a whole is above 0 and reaches `quality.min_contribution`, and counts its part of that weight. With
@@ -58,7 +58,7 @@ pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
 
 /// The rays that these hits take, exactly: one ray each that made the hits (`primary`); one to each place on a light in
 /// front of the surface, if the light matters to the material and casts shadows; and what the material sends on, 1 ray
-/// of a kind or `quality.gloss_samples` if it is rough.
+/// of a kind or `quality.glossy_samples` if it is rough.
 ///
 /// Where the formula lies: hits times lights is right only if every surface is lit by every lamp.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {

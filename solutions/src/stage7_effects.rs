@@ -46,7 +46,7 @@ pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality
         lights: (0..lights.len()).filter(|&light| matters(&lights[light])).collect(),
         mirror,
         transmission,
-        gloss: material.roughness > 0.0 && (mirror || transmission),
+        glossy: material.roughness > 0.0 && (mirror || transmission),
         texture: material.texture.is_some()
             && (material.diffuse != Vec3::ZERO || material.ambient != Vec3::ZERO),
     }
@@ -87,7 +87,7 @@ pub fn effects(scene: &Scene) -> Effects {
 /// The most rays that the scene can take, as if every ray hit the surface that costs most.
 ///
 /// - One ray from the camera for each sample of each pixel.
-/// - A hit mirrors at most as many rays as the material that mirrors most of them: 1, or `quality.gloss_samples` if it
+/// - A hit mirrors at most as many rays as the material that mirrors most of them: 1, or `quality.glossy_samples` if it
 ///   is rough; likewise for rays that go through, and for both together. This goes on for `quality.max_depth` bounces,
 ///   or until even the brightest ray counts too little: a ray is traced while the weight of the mirror image (of the
 ///   glass) as a whole is above 0 and reaches `quality.min_contribution`, and counts its part of that weight. With
@@ -143,7 +143,7 @@ struct Branching {
 
 impl Branching {
     fn of(material: &Material, takes: &MaterialEffects, quality: &Quality) -> Branching {
-        let parts = if takes.gloss { quality.gloss_samples } else { 1 };
+        let parts = if takes.glossy { quality.glossy_samples } else { 1 };
         let count = |sent: bool| if sent { u64::from(parts) } else { 0 };
         let through = if takes.transmission { material.transmission } else { Vec3::ZERO };
         let mirrored = match material.fresnel {
@@ -181,7 +181,7 @@ fn shadow_places(takes: &MaterialEffects, lights: &[LightEffects]) -> u64 {
 
 /// The rays that these hits take, exactly: one ray each that made the hits (`primary`); one to each place on a light in
 /// front of the surface, if the light matters to the material and casts shadows; and what the material sends on, 1 ray
-/// of a kind or `quality.gloss_samples` if it is rough.
+/// of a kind or `quality.glossy_samples` if it is rough.
 ///
 /// Where the formula lies: hits times lights is right only if every surface is lit by every lamp.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
@@ -189,7 +189,7 @@ pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality)
     let mut rays = RayCounts::default();
     for MaterialHits { material, hits, in_front } in hits {
         let takes = &effects.materials[*material];
-        let parts = if takes.gloss { u64::from(quality.gloss_samples) } else { 1 };
+        let parts = if takes.glossy { u64::from(quality.glossy_samples) } else { 1 };
         rays.primary += hits;
         rays.shadow += takes
             .lights

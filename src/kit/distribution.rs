@@ -55,7 +55,7 @@ pub struct SphereSampleQuery {
 
 /// Asks which direction of a glossy reflection or refraction two random numbers sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct GlossQuery {
+pub struct PhongLobeQuery {
     /// The direction in which a perfectly smooth surface would send the ray, of unit length.
     pub ideal: Vec3,
     /// The unit normal on the side of the surface on which the secondary ray continues.

@@ -152,7 +152,7 @@ examples! {
     };
     RectangleQuery => RectangleQuery { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Y), u: Vec2::ZERO };
     SphereSampleQuery => SphereSampleQuery { ball: example(), from: Vec3::ZERO, u: Vec2::ZERO };
-    GlossQuery => GlossQuery { ideal: Vec3::Y, normal: Vec3::Y, roughness: 0.0, u: Vec2::ZERO };
+    PhongLobeQuery => PhongLobeQuery { ideal: Vec3::Y, normal: Vec3::Y, roughness: 0.0, u: Vec2::ZERO };
     TimeQuery => TimeQuery { shutter: Shutter { open: 0.0, close: 1.0 }, slot: 1, slots: 1, u: 0.0 };
     LightQuery => LightQuery { light: example(), quality: example() };
     MaterialQuery => MaterialQuery { material: example(), lights: Vec::new(), quality: example() };

@@ -342,9 +342,9 @@ macro_rules! student_functions {
                 |q: SphereSampleQuery| -> Vec3 { F::sample_sphere(&q.ball, q.from, q.u) }
                 /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
                 /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
-                Gloss fn gloss(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
-                    = stage6_distribution::gloss;
-                |q: GlossQuery| -> Vec3 { F::gloss(q.ideal, q.normal, q.roughness, q.u) }
+                SamplePhongLobe fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
+                    = stage6_distribution::sample_phong_lobe;
+                |q: PhongLobeQuery| -> Vec3 { F::sample_phong_lobe(q.ideal, q.normal, q.roughness, q.u) }
                 /// The time slot, `1..=16`, of the cell in column `x` and row `y`, by the table of the
                 /// lecture.
                 TemporalSlot fn temporal_slot(x: u32, y: u32) -> u32

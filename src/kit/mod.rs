@@ -26,7 +26,7 @@ pub mod types;
 
 pub use adapters::{Linked, StudentKit};
 pub use distribution::{
-    SphereSampleQuery, FILTER_RADIUS, GlossQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
+    SphereSampleQuery, FILTER_RADIUS, PhongLobeQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
     Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Partitions, Recursion, Request,

@@ -159,7 +159,7 @@ pub struct Quality {
     pub light_samples: u32,
     /// Rays for each glossy reflection or transmission at a hit on a rough surface, at least 1 (stage 6); 1
     /// by default.
-    pub gloss_samples: u32,
+    pub glossy_samples: u32,
     /// Largest number of reflections and refractions on a path from the camera (stage 5); 5 by default.
     pub max_depth: u32,
     /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
@@ -194,7 +194,7 @@ impl Default for Quality {
             samples_per_pixel: 1,
             sampler: Sampler::default(),
             light_samples: 1,
-            gloss_samples: 1,
+            glossy_samples: 1,
             max_depth: 5,
             min_contribution: 0.001,
             accelerator: Accelerator::default(),

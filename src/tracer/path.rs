@@ -212,7 +212,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let normal = at.surface.shading_normal;
         let (weight, depth) = (path.weight, path.depth);
         let children = F::children(dir, normal, at.entering, material, weight, depth, &self.limits);
-        let parts = if takes.gloss { self.quality().gloss_samples } else { 1 };
+        let parts = if takes.glossy { self.quality().glossy_samples } else { 1 };
         for child in children {
             let (event, kind) = match child.bounce {
                 Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
@@ -220,7 +220,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             };
             for part in 0..parts {
                 scratch.note(event);
-                let child = if takes.gloss {
+                let child = if takes.glossy {
                     scratch.note(Event::RandomNumber);
                     scratch.note(Event::RandomNumber);
                     let (surface, points) = (&at.surface, &path.points);

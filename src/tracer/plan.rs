@@ -133,7 +133,7 @@ impl Plan {
             "mirrors and glass send no ray on: stage 5 is not written yet",
         );
         for material in &mut self.effects.materials {
-            (material.mirror, material.transmission, material.gloss) = (false, false, false);
+            (material.mirror, material.transmission, material.glossy) = (false, false, false);
         }
     }
 
@@ -165,11 +165,11 @@ impl Plan {
                 (light.samples, light.area) = (light.samples.min(1), false);
             }
         }
-        if !(jittered && written.has(Function::gloss)) {
-            let gloss = self.effects.materials.iter().any(|m| m.gloss && (m.mirror || m.transmission));
-            self.note_if(gloss, "rough mirrors and glass are sharp: stage 6 is not written yet");
+        if !(jittered && written.has(Function::sample_phong_lobe)) {
+            let glossy = self.effects.materials.iter().any(|m| m.glossy && (m.mirror || m.transmission));
+            self.note_if(glossy, "rough mirrors and glass are sharp: stage 6 is not written yet");
             for material in &mut self.effects.materials {
-                material.gloss = false;
+                material.glossy = false;
             }
         }
         let motion = [Function::temporal_slot, Function::time_in_shutter, Function::lerp, Function::motion_bounds];

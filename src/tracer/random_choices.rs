@@ -40,11 +40,11 @@ pub fn sample_rough_surface<F: StudentFunctions>(
     points: &Points,
     (part, parts): (u32, u32),
 ) -> Child {
-    let u = F::jittered(&points.stratum(Purpose::Gloss(child.bounce), part, parts));
+    let u = F::jittered(&points.stratum(Purpose::Glossy(child.bounce), part, parts));
     let side = match child.bounce {
         Bounce::Reflection => surface.geometric_normal,
         Bounce::Transmission => -surface.geometric_normal,
     };
-    let direction = F::gloss(child.direction, side, roughness, u);
+    let direction = F::sample_phong_lobe(child.direction, side, roughness, u);
     Child { direction, weight: child.weight / parts as f32, ..*child }
 }

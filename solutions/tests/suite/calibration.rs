@@ -8,7 +8,7 @@ use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
 use glam::{Vec2, Vec3, vec2};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, SphereSampleQuery, Door, GlossQuery, Kit, Request, StudentKit, Transport};
+use raykata::kit::{Answer, SphereSampleQuery, Door, PhongLobeQuery, Kit, Request, StudentKit, Transport};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -30,7 +30,7 @@ const STATISTICAL: [(&str, u32); 11] = [
     ("a_far_ball_is_still_a_ball", 1),
     ("from_inside_a_ball_it_is_everywhere", 1),
     ("half_a_ball_makes_half_a_shadow", 4),
-    ("gloss_falls_with_the_power_of_the_cosine", 6),
+    ("phong_lobe_falls_with_the_power_of_the_cosine", 6),
     ("slightly_rough_is_not_a_few_angles", 1),
     ("times_are_even", 1),
 ];
@@ -132,8 +132,8 @@ fn ball(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<An
 
 /// Directions off a rough mirror from its roughness and a random number.
 fn lobe(request: &Request, cosine: fn(roughness: f32, u: f32) -> f32) -> Option<Answer> {
-    let Request::Gloss(queries) = request else { return None };
-    Some(Answer::Gloss(each(queries, |GlossQuery { ideal, roughness, u, .. }| {
+    let Request::SamplePhongLobe(queries) = request else { return None };
+    Some(Answer::SamplePhongLobe(each(queries, |PhongLobeQuery { ideal, roughness, u, .. }| {
         around(*ideal, cosine(*roughness, u.x), u.y)
     })))
 }
@@ -207,22 +207,22 @@ const WRONG: &[Wrong] = &[
                 .answer(&*solutions::Kit.door(), &raykata::frame::Unwatched),
         )
     }),
-    ("gloss: exponent 1 / n", "gloss_falls_with_the_power_of_the_cosine", |r| {
+    ("glossy: exponent 1 / n", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 2.0)))
     }),
-    ("gloss: roughness not squared", "gloss_falls_with_the_power_of_the_cosine", |r| {
+    ("glossy: roughness not squared", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / rough - 1.0)))
     }),
-    ("gloss: n = 2 / roughness²", "gloss_falls_with_the_power_of_the_cosine", |r| {
+    ("glossy: n = 2 / roughness²", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) + 1.0)))
     }),
-    ("gloss: an even cone", "gloss_falls_with_the_power_of_the_cosine", |r| {
+    ("glossy: an even cone", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
         lobe(r, |rough, u| 1.0 - u * 0.5 * rough * rough)
     }),
-    ("gloss: little, 1 - cos θ rounded", "slightly_rough_is_not_a_few_angles", |r| {
+    ("glossy: little, 1 - cos θ rounded", "slightly_rough_is_not_a_few_angles", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 1.0)))
     }),
-    ("gloss: always diffuse, √u", "gloss_falls_with_the_power_of_the_cosine", |r| lobe(r, |_, u| u.sqrt())),
+    ("glossy: always diffuse, √u", "phong_lobe_falls_with_the_power_of_the_cosine", |r| lobe(r, |_, u| u.sqrt())),
     ("jitter: u²", "jittered_samples_cover_the_pixel_evenly", |r| cells(r, |u| u * u)),
     ("jitter: always the middle of the cell", "jittered_samples_cover_the_pixel_evenly", |r| {
         cells(r, |_| Vec2::splat(0.5))

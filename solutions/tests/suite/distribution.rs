@@ -41,7 +41,7 @@ ambient = 0.1
 [quality]
 samples_per_pixel = {samples}
 light_samples = 2
-gloss_samples = 2
+glossy_samples = 2
 max_depth = 3
 [textures.tiles]
 file = "images/tiles.png"

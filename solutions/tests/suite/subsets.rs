@@ -18,7 +18,7 @@ const EFFECTS: [Effect; 9] = [
     Effect::AreaLights,
     Effect::Mirrors,
     Effect::Transmission,
-    Effect::Gloss,
+    Effect::Glossy,
     Effect::Lens,
     Effect::Motion,
     Effect::SmoothNormals,
@@ -123,7 +123,7 @@ fn each_set_of_effects_is_seen_to_be_what_it_is() {
         let effects = &solutions::Kit.door().effects(&[only(set)])[0];
         for effect in EFFECTS {
             // The one thing that is rough is a mirror.
-            let expected = set.has(effect) && (effect != Effect::Gloss || set.has(Effect::Mirrors));
+            let expected = set.has(effect) && (effect != Effect::Glossy || set.has(Effect::Mirrors));
             assert_eq!(
                 effects.calls_for(effect),
                 expected,
@@ -139,7 +139,7 @@ fn what_is_left_out_of_the_file_and_what_is_switched_off_are_the_same() {
     let keys = [
         (Effect::Mirrors, "mirror ="),
         (Effect::Transmission, "transmission ="),
-        (Effect::Gloss, "roughness ="),
+        (Effect::Glossy, "roughness ="),
         (Effect::Lens, "lens ="),
         (Effect::Motion, "transform_end ="),
         (Effect::Textures, "texture ="),
@@ -186,7 +186,7 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
                     // These change no ray at all,
                     Effect::Textures => (tree == old, meets(tree, &["floor", "toy"])),
                     // and these none that stays away.
-                    Effect::Gloss => (tree == old || meets(tree, &["brushed"]), meets(tree, &["brushed"])),
+                    Effect::Glossy => (tree == old || meets(tree, &["brushed"]), meets(tree, &["brushed"])),
                     Effect::SmoothNormals => (tree == old || meets(tree, &["clay"]), meets(tree, &["clay"])),
                     Effect::Motion => {
                         let near = passes_the_toy(tree) || passes_the_toy(old);
@@ -229,6 +229,6 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
     let numbers = each(Effect::Lens, 2 * counts.primary)
         + each(Effect::Motion, counts.primary)
         + each(Effect::AreaLights, 2 * 2 * hits)
-        + each(Effect::Gloss, 2 * blurred);
+        + each(Effect::Glossy, 2 * blurred);
     assert_eq!(counts.random_numbers, numbers, "without {:?}", set.absent().collect::<Vec<_>>());
 }

@@ -29,7 +29,7 @@ pub struct Knobs {
     spp: Option<u32>,
     sampler: Option<Sampler>,
     light_samples: Option<u32>,
-    gloss_samples: Option<u32>,
+    glossy_samples: Option<u32>,
     depth: Option<u32>,
     split: Option<Split>,
     leaf_size: Option<u32>,
@@ -88,7 +88,7 @@ impl Knobs {
         Opt::value("--spp", "N", "Samples per pixel."),
         Opt::value("--sampler", "NAME", "Where the samples of a pixel lie.").choices(&names(&SAMPLERS)),
         Opt::value("--light-samples", "N", "Places on an area light that a hit asks about."),
-        Opt::value("--gloss-samples", "N", "Rays that go on from a rough surface."),
+        Opt::value("--glossy-samples", "N", "Rays that go on from a rough surface."),
         Opt::value("--depth", "N", "How often a ray may be reflected or refracted."),
         Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
         Opt::value("--leaf-size", "N", "Most primitives in a leaf."),
@@ -110,7 +110,7 @@ impl Knobs {
             spp: given.number("--spp", 1..=65_536)?,
             sampler: given.choice("--sampler", &SAMPLERS)?,
             light_samples: given.number("--light-samples", 0..=65_536)?,
-            gloss_samples: given.number("--gloss-samples", 1..=65_536)?,
+            glossy_samples: given.number("--glossy-samples", 1..=65_536)?,
             depth: given.number("--depth", 0..=1000)?,
             split: given.choice("--split", &SPLITS)?,
             leaf_size: given.number("--leaf-size", 1..=u32::MAX)?,
@@ -136,7 +136,7 @@ impl Knobs {
         quality.samples_per_pixel = self.spp.unwrap_or(quality.samples_per_pixel);
         quality.sampler = self.sampler.unwrap_or(quality.sampler);
         quality.light_samples = self.light_samples.unwrap_or(quality.light_samples);
-        quality.gloss_samples = self.gloss_samples.unwrap_or(quality.gloss_samples);
+        quality.glossy_samples = self.glossy_samples.unwrap_or(quality.glossy_samples);
         quality.max_depth = self.depth.unwrap_or(quality.max_depth);
         quality.leaf_size = self.leaf_size.unwrap_or(quality.leaf_size);
         quality.split = self.split.unwrap_or(quality.split);
@@ -159,7 +159,7 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
             ("--spp", quality.samples_per_pixel.to_string()),
             ("--sampler", named(serde_json::to_value(quality.sampler))),
             ("--light-samples", quality.light_samples.to_string()),
-            ("--gloss-samples", quality.gloss_samples.to_string()),
+            ("--glossy-samples", quality.glossy_samples.to_string()),
             ("--depth", quality.max_depth.to_string()),
             ("--min-contribution", quality.min_contribution.to_string()),
             ("--triangles", named(serde_json::to_value(quality.triangle_method))),
@@ -215,7 +215,7 @@ mod tests {
             samples_per_pixel: 343,
             sampler: Sampler::Jittered,
             light_samples: 7,
-            gloss_samples: 3,
+            glossy_samples: 3,
             max_depth: 9,
             min_contribution: 0.03,
             triangle_method: TriangleMethod::Gram,

@@ -124,7 +124,7 @@ const QUALITY_KEYS: [&str; 15] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
-    "gloss_samples",
+    "glossy_samples",
     "max_depth",
     "min_contribution",
     "accelerator",
@@ -147,7 +147,7 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
         match value.key {
             "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
             "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
-            "gloss_samples" => quality.gloss_samples = value.whole(1..=MAX_SAMPLES)?,
+            "glossy_samples" => quality.glossy_samples = value.whole(1..=MAX_SAMPLES)?,
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
             "accelerator" => {

@@ -140,7 +140,7 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
         with("large contributions", &|quality| quality.min_contribution = 0.3),
         with("lamps from the middle", &|quality| quality.light_samples = 0),
         with("three samples a lamp", &|quality| quality.light_samples = 3),
-        with("three rays of gloss", &|quality| quality.gloss_samples = 3),
+        with("three rays of glossy", &|quality| quality.glossy_samples = 3),
         with("one Gaussian sample", &|quality| {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),

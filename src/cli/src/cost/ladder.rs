@@ -18,7 +18,7 @@ pub enum Knob {
     /// Places on an area light that a hit asks about.
     LightSamples,
     /// Rays that go on from a rough surface.
-    GlossSamples,
+    GlossySamples,
     /// How often a ray may be mirrored or refracted.
     Depth,
     /// Rays of less weight are not traced.
@@ -68,7 +68,7 @@ impl Knob {
         ("samples", Knob::Samples),
         ("sampler", Knob::Sampler),
         ("light-samples", Knob::LightSamples),
-        ("gloss-samples", Knob::GlossSamples),
+        ("glossy-samples", Knob::GlossySamples),
         ("depth", Knob::Depth),
         ("min-contribution", Knob::MinContribution),
         ("smooth-normals", Knob::SmoothNormals),
@@ -86,7 +86,7 @@ impl Knob {
             Knob::Samples => "samples a pixel",
             Knob::Sampler => "sampler",
             Knob::LightSamples => "light samples",
-            Knob::GlossSamples => "gloss samples",
+            Knob::GlossySamples => "glossy samples",
             Knob::Depth => "depth",
             Knob::MinContribution => "minimum contribution",
             Knob::SmoothNormals => "smooth normals",
@@ -106,7 +106,7 @@ impl Knob {
             Knob::Samples
                 | Knob::Sampler
                 | Knob::LightSamples
-                | Knob::GlossSamples
+                | Knob::GlossySamples
                 | Knob::Depth
                 | Knob::MinContribution
                 | Knob::SmoothNormals
@@ -151,9 +151,9 @@ impl Knob {
                 needs(effects.lights.iter().any(|light| light.area), "no lamp has an area")?;
                 numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
             }
-            Knob::GlossSamples => {
-                needs(effects.calls_for(Effect::Gloss), "nothing is rough and mirrors")?;
-                numbers(doubling(quality.gloss_samples, 16), |q, n| q.gloss_samples = n)
+            Knob::GlossySamples => {
+                needs(effects.calls_for(Effect::Glossy), "nothing is rough and mirrors")?;
+                numbers(doubling(quality.glossy_samples, 16), |q, n| q.glossy_samples = n)
             }
             Knob::Depth => {
                 needs(mirrors, "nothing mirrors or lets light through")?;
@@ -294,7 +294,7 @@ mod tests {
             assert!(offered(knob), "{knob:?}");
         }
         for knob in
-            [Knob::LightSamples, Knob::GlossSamples, Knob::Depth, Knob::Intersection, Knob::GridResolution]
+            [Knob::LightSamples, Knob::GlossySamples, Knob::Depth, Knob::Intersection, Knob::GridResolution]
         {
             assert!(!offered(knob), "{knob:?}");
         }

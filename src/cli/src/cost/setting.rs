@@ -32,7 +32,7 @@ impl Setting {
             Knob::Samples => quality.samples_per_pixel = from.samples_per_pixel,
             Knob::Sampler => quality.sampler = from.sampler,
             Knob::LightSamples => quality.light_samples = from.light_samples,
-            Knob::GlossSamples => quality.gloss_samples = from.gloss_samples,
+            Knob::GlossySamples => quality.glossy_samples = from.glossy_samples,
             Knob::Depth => quality.max_depth = from.max_depth,
             Knob::MinContribution => quality.min_contribution = from.min_contribution,
             Knob::SmoothNormals => turned.smooth = to.smooth,

@@ -23,7 +23,7 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
         Effect::AreaLights => lamps(&|light| effects.lights[light].area),
         Effect::Mirrors => materials(&|index| effects.materials[index].mirror),
         Effect::Transmission => materials(&|index| effects.materials[index].transmission),
-        Effect::Gloss => materials(&|index| effects.materials[index].gloss),
+        Effect::Glossy => materials(&|index| effects.materials[index].glossy),
         Effect::Textures => materials(&|index| effects.materials[index].texture),
         Effect::Lens => scene
             .camera
@@ -75,7 +75,7 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
             .unwrap_or_else(|| "nothing mirrors".into()),
         Effect::Transmission => has(&|m| m.transmission != Vec3::ZERO, unused)
             .unwrap_or_else(|| "nothing lets light through".into()),
-        Effect::Gloss => {
+        Effect::Glossy => {
             has(&|m| m.roughness > 0.0, "is rough, but nothing made of it mirrors or lets light through")
                 .unwrap_or_else(|| "no material is rough".into())
         }

@@ -53,7 +53,7 @@ fn two_runs_have_the_same_errors_and_counts() {
     let (_, other) = run("other", &[&knobs[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
-    assert!(told.contains("gloss samples: not offered, for nothing is rough and mirrors"), "{told}");
+    assert!(told.contains("glossy samples: not offered, for nothing is rough and mirrors"), "{told}");
     assert!(told.contains("(the scene's)"), "{told}");
 
     let points = one.0["points"].as_array().unwrap();

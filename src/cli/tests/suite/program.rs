@@ -197,7 +197,7 @@ fn a_scene_is_explained_and_predictions_hold() {
     for line in [
         "  shadows         lamp 1 (rectangle), lamp 2 (point)",
         "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
-        "  gloss           `brushed` (brass ball)",
+        "  glossy           `brushed` (brass ball)",
         "  lens            camera: opening 0.12, sharp at 7",
         "  motion          toy ball",
         "  indirect light  [environment] does not ask for it",

@@ -45,7 +45,7 @@ fn every_setting_arrives() {
         samples_per_pixel: 9,
         sampler: Sampler::Jittered,
         light_samples: 8,
-        gloss_samples: 7,
+        glossy_samples: 7,
         max_depth: 0,
         min_contribution: 0.0,
         accelerator: Accelerator::KdTree,

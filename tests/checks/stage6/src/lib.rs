@@ -31,7 +31,7 @@ use pixels::{
 };
 use proptest::prelude::Strategy;
 use rough::{
-    gloss_falls_with_the_power_of_the_cosine, gloss_stays_on_its_side, slightly_rough_is_not_a_few_angles,
+    phong_lobe_falls_with_the_power_of_the_cosine, phong_lobe_stays_on_its_side, slightly_rough_is_not_a_few_angles,
     smooth_surfaces_stay_sharp,
 };
 
@@ -61,9 +61,9 @@ checks::stage! { ($ crate) 6 [
     from_inside_a_ball_it_is_everywhere
     half_a_ball_makes_half_a_shadow
     smooth_surfaces_stay_sharp
-    gloss_falls_with_the_power_of_the_cosine
+    phong_lobe_falls_with_the_power_of_the_cosine
     slightly_rough_is_not_a_few_angles
-    gloss_stays_on_its_side
+    phong_lobe_stays_on_its_side
     temporal_table_has_each_time_once
     times_lie_in_their_slots
     times_are_even

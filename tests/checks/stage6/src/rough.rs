@@ -9,17 +9,17 @@ use checks::paste::call;
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
 use glam::{Vec3, vec2, vec3};
 use proptest::prelude::*;
-use raykata::kit::GlossQuery;
+use raykata::kit::PhongLobeQuery;
 
-fn paste(query: &GlossQuery) -> String {
-    call("gloss", &[&query.ideal, &query.normal, &query.roughness, &query.u])
+fn paste(query: &PhongLobeQuery) -> String {
+    call("sample_phong_lobe", &[&query.ideal, &query.normal, &query.roughness, &query.u])
 }
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> Outcome {
     let queries = (unit_arrival(), unit_number(), unit_number())
-        .prop_map(|((ideal, normal), u, v)| GlossQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) });
+        .prop_map(|((ideal, normal), u, v)| PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) });
     trial.forall(500, queries, |queries| {
-        compare(queries, trial.kit.gloss(queries), |query, yours| {
+        compare(queries, trial.kit.sample_phong_lobe(queries), |query, yours| {
             if yours == query.ideal {
                 return Ok(());
             }
@@ -39,15 +39,15 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> Outcome {
 /// direction outwards, and around it.
 fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
     let axis = vec3(0.48, 0.6, -0.64);
-    let queries: Vec<GlossQuery> = pairs(trial.seed, SAMPLES)
+    let queries: Vec<PhongLobeQuery> = pairs(trial.seed, SAMPLES)
         .into_iter()
-        .map(|u| GlossQuery { ideal: axis, normal: axis, roughness, u })
+        .map(|u| PhongLobeQuery { ideal: axis, normal: axis, roughness, u })
         .collect();
     let exponent = 2.0 / f64::from(roughness).powi(2) - 2.0;
     let ideal = axis.as_dvec3().normalize();
     let (x, y) = ideal.any_orthonormal_pair();
     let mut shares = Vec::new();
-    for (query, direction) in queries.iter().zip(trial.kit.gloss(&queries)) {
+    for (query, direction) in queries.iter().zip(trial.kit.sample_phong_lobe(&queries)) {
         let dir = direction.as_dvec3();
         if !((dir.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
@@ -66,10 +66,10 @@ const AXES: [&str; 2] = ["cosⁿ⁺¹ θ", "the angle around ideal"];
 const TOO_BLURRED: &str = "too blurred: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
 const TOO_SHARP: &str = "too sharp: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
 
-pub(super) fn gloss_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Outcome {
+pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Outcome {
     for roughness in [0.2, 0.5, 1.0] {
         let shares = lobe(trial, roughness)?;
-        covers_evenly(&format!("gloss with roughness {roughness}"), &shares, AXES, |counts| {
+        covers_evenly(&format!("sample_phong_lobe with roughness {roughness}"), &shares, AXES, |counts| {
             let rings = columns(counts);
             match () {
                 // With the exponent 1 / n in place of 1 / (n + 1), rays spread too far; small cosines are too common.
@@ -83,7 +83,7 @@ pub(super) fn gloss_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Out
         let cosines: Vec<f64> = shares.iter().map(|(share, _)| share.powf(1.0 / (n + 1.0))).collect();
         let (mean, expected) = (cosines.iter().sum::<f64>() / cosines.len() as f64, (n + 1.0) / (n + 2.0));
         has_mean(
-            &format!("the cosine of gloss with ideal, roughness {roughness}"),
+            &format!("the cosine of sample_phong_lobe with ideal, roughness {roughness}"),
             &cosines,
             expected,
             if mean < expected { TOO_BLURRED } else { TOO_SHARP },
@@ -95,7 +95,7 @@ pub(super) fn gloss_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Out
 pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
     // n = 2,000,000: cosines differ from 1 in their last four bits only.
     let shares = lobe(trial, 0.001)?;
-    covers_evenly("gloss with roughness 0.001", &shares, AXES, |counts| {
+    covers_evenly("sample_phong_lobe with roughness 0.001", &shares, AXES, |counts| {
         let rings = columns(counts);
         let uneven = rings.iter().max() > Some(&(SAMPLES as u64 / 7)); // a ring gets an eighth ± 2 %
         if uneven {
@@ -106,9 +106,9 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn gloss_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
+pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
     let queries = (unit_arrival(), 1..=16i32, unit_number(), unit_number()).prop_map(
-        |((ideal, normal), sixteenths, u, v)| GlossQuery {
+        |((ideal, normal), sixteenths, u, v)| PhongLobeQuery {
             ideal,
             normal,
             roughness: sixteenths as f32 / 16.0,
@@ -117,11 +117,11 @@ pub(super) fn gloss_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
     );
     trial.forall(3000, queries, |queries| {
         // The same with a normal that turns nothing back shows what was drawn.
-        let free: Vec<GlossQuery> =
-            queries.iter().map(|query| GlossQuery { normal: query.ideal, ..*query }).collect();
-        let drawn = trial.kit.gloss(&free);
-        let pairs: Vec<(GlossQuery, Vec3)> = queries.iter().copied().zip(drawn).collect();
-        compare(&pairs, trial.kit.gloss(queries), |(query, drawn), yours| {
+        let free: Vec<PhongLobeQuery> =
+            queries.iter().map(|query| PhongLobeQuery { normal: query.ideal, ..*query }).collect();
+        let drawn = trial.kit.sample_phong_lobe(&free);
+        let pairs: Vec<(PhongLobeQuery, Vec3)> = queries.iter().copied().zip(drawn).collect();
+        compare(&pairs, trial.kit.sample_phong_lobe(queries), |(query, drawn), yours| {
             let above = drawn.dot(query.normal);
             let expected = if above < 0.0 { *drawn - 2.0 * above * query.normal } else { *drawn };
             // A few roundings; rays along the surface may lie a rounding below it.

@@ -100,7 +100,7 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     let mirrors = || MaterialEffects { mirror: true, ..nothing() };
     let passes = || MaterialEffects { transmission: true, ..nothing() };
     let splits = || MaterialEffects { transmission: true, ..mirrors() };
-    let blurs = |sharp: MaterialEffects| MaterialEffects { gloss: true, ..sharp };
+    let blurs = |sharp: MaterialEffects| MaterialEffects { glossy: true, ..sharp };
     let diffuse = |diffuse| Material { diffuse, ..black() };
     let specular = |specular| Material { specular, ..black() };
     let ambient = |ambient| Material { ambient, ..black() };
@@ -216,7 +216,7 @@ fn together(answers: &[MaterialEffects]) -> MaterialEffects {
         lights,
         mirror: any(|one| one.mirror),
         transmission: any(|one| one.transmission),
-        gloss: any(|one| one.gloss),
+        glossy: any(|one| one.glossy),
         texture: any(|one| one.texture),
     }
 }
@@ -248,8 +248,8 @@ fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuer
         (with(Material { index_of_refraction: 1.25, ..material() }), same()),
         (with(Material { fresnel, ..material() }), same()),
         (with(Material { texture: None, ..material() }), MaterialEffects { texture: false, ..same() }),
-        (with(Material { roughness: 0.0, ..material() }), MaterialEffects { gloss: false, ..same() }),
-        (depth(0), MaterialEffects { mirror: false, transmission: false, gloss: false, ..same() }),
+        (with(Material { roughness: 0.0, ..material() }), MaterialEffects { glossy: false, ..same() }),
+        (depth(0), MaterialEffects { mirror: false, transmission: false, glossy: false, ..same() }),
         // Each light matters or not by itself.
         (
             under(first),
@@ -287,7 +287,7 @@ fn diagnosis(query: &MaterialQuery, yours: &MaterialEffects, expected: &Material
         () if yours.transmission != expected.transmission => {
             "rays go through if some channel of transmission is not 0, whatever the index and the angle"
         }
-        () if yours.gloss != expected.gloss => "rough matters only where rays are mirrored or go through",
+        () if yours.glossy != expected.glossy => "rough matters only where rays are mirrored or go through",
         () if yours.texture != expected.texture => {
             "an image matters if diffuse or ambient, which it multiplies, is not 0"
         }

@@ -8,8 +8,8 @@ use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
 use raykata::scene::Quality;
 
-/// What one hit sends on: `(mirror, transmission, gloss)`, then the rays mirrored and the rays that go through with
-/// `gloss_samples` 1, and with `gloss_samples` 4. Written down from the doc comment of `rays_of_hits`.
+/// What one hit sends on: `(mirror, transmission, glossy)`, then the rays mirrored and the rays that go through with
+/// `glossy_samples` 1, and with `glossy_samples` 4. Written down from the doc comment of `rays_of_hits`.
 type Kind = ([bool; 3], [u64; 2], [u64; 2]);
 
 const KINDS: [Kind; 7] = [
@@ -23,8 +23,8 @@ const KINDS: [Kind; 7] = [
 ];
 
 fn material(kind: &Kind, lights: Vec<usize>) -> MaterialEffects {
-    let [mirror, transmission, gloss] = kind.0;
-    MaterialEffects { lights, mirror, transmission, gloss, texture: false }
+    let [mirror, transmission, glossy] = kind.0;
+    MaterialEffects { lights, mirror, transmission, glossy, texture: false }
 }
 
 fn light(samples: u32, shadows: bool) -> LightEffects {
@@ -41,7 +41,7 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
     let rows = (0..3usize, 0..100u64, prop::array::uniform3(0..100u64))
         .prop_map(|(material, hits, in_front)| row(material, hits, in_front));
     let table = prop::collection::vec(rows, 0..4);
-    (lights, materials, table, 1..5u32).prop_map(|(lights, materials, hits, gloss_samples)| {
+    (lights, materials, table, 1..5u32).prop_map(|(lights, materials, hits, glossy_samples)| {
         let lit = |lit: &[bool]| (0..3).filter(|&i| lit[i]).collect();
         HitsQuery {
             hits,
@@ -50,7 +50,7 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
                 materials: materials.iter().map(|(kind, on)| material(&KINDS[*kind], lit(on))).collect(),
                 ..Effects::default()
             },
-            quality: Quality { gloss_samples, ..Quality::default() },
+            quality: Quality { glossy_samples, ..Quality::default() },
         }
     })
 }
@@ -66,7 +66,7 @@ fn drawn() -> HitsQuery {
             materials: vec![plain, glass],
             ..Effects::default()
         },
-        quality: Quality { gloss_samples: 3, ..Quality::default() },
+        quality: Quality { glossy_samples: 3, ..Quality::default() },
     }
 }
 
@@ -90,10 +90,10 @@ const MISTAKES: [(RayCounts, &str); 10] = [
         RayCounts { shadow: 87, ..DRAWN },
         "in_front counts places on lamps already, over all hits: do not multiply it again",
     ),
-    (RayCounts { reflection: 10, transmission: 10, ..DRAWN }, "a rough surface sends gloss_samples rays"),
+    (RayCounts { reflection: 10, transmission: 10, ..DRAWN }, "a rough surface sends glossy_samples rays"),
     (
         RayCounts { transmission: 10, ..DRAWN },
-        "a rough surface sends gloss_samples rays through as well as back",
+        "a rough surface sends glossy_samples rays through as well as back",
     ),
     // 3 · 10 + 7.
     (
@@ -115,7 +115,7 @@ const MISTAKES: [(RayCounts, &str); 10] = [
 fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
     let input = format!(
         "rays_of_hits(&{:?},\n&{:?},\ngloss_samples {})",
-        query.hits, query.effects.materials, query.quality.gloss_samples
+        query.hits, query.effects.materials, query.quality.glossy_samples
     );
     Broken::new(input, yours, expected, source)
 }
@@ -123,20 +123,20 @@ fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'st
 /// A single hit of each kind, and a single place on a light, each with the rays that it takes.
 fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
     let query =
-        |kind: &Kind, lights: Vec<usize>, casts: bool, row: MaterialHits, gloss_samples: u32| HitsQuery {
+        |kind: &Kind, lights: Vec<usize>, casts: bool, row: MaterialHits, glossy_samples: u32| HitsQuery {
             hits: vec![row],
             effects: Effects {
                 lights: vec![light(2, casts), light(3, casts), light(1, casts)],
                 materials: vec![material(kind, lights)],
                 ..Effects::default()
             },
-            quality: Quality { gloss_samples, ..Quality::default() },
+            quality: Quality { glossy_samples, ..Quality::default() },
         };
     let mut singles = Vec::new();
     for kind in &KINDS {
-        for (gloss_samples, [reflection, transmission]) in [(1, kind.1), (4, kind.2)] {
+        for (glossy_samples, [reflection, transmission]) in [(1, kind.1), (4, kind.2)] {
             let expected = RayCounts { primary: 1, shadow: 0, reflection, transmission };
-            let hit = query(kind, vec![0, 1, 2], true, row(0, 1, [0, 0, 0]), gloss_samples);
+            let hit = query(kind, vec![0, 1, 2], true, row(0, 1, [0, 0, 0]), glossy_samples);
             singles.push((hit, expected));
         }
         // A place on light 1: whether that light matters and casts shadows, and the shadow rays.

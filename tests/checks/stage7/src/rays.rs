@@ -25,7 +25,7 @@ fn query(material: Material, n_lights: usize, quality: Quality) -> BoundQuery {
         lights: (0..n_lights).collect(),
         mirror,
         transmission: through,
-        gloss: material.roughness > 0.0 && (mirror || through),
+        glossy: material.roughness > 0.0 && (mirror || through),
         texture: false,
     };
     let effects = Effects {
@@ -159,12 +159,12 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, a rough mirror of 1 with 4 samples, depth 100, down to 1/100",
-        query(rough, 1, Quality { gloss_samples: 4, ..knobs(100, 0.01) }),
+        query(rough, 1, Quality { glossy_samples: 4, ..knobs(100, 0.01) }),
         // Images weigh 1, 1/4, 1/16, 1/64, 1/256: four reach 1/100, with 4, 16, 64 and 256 rays.
         counts(1, 341, 340, 0),
         |yours| match yours.reflection {
             0..=100 => {
-                "it is the whole image that has to reach min_contribution, or gloss_samples are left out"
+                "it is the whole image that has to reach min_contribution, or glossy_samples are left out"
             }
             _ => "each of the four rays counts a quarter, and its image a quarter of the one before",
         },

@@ -87,7 +87,7 @@ pub(super) const BUILT: [Effect; 9] = [
     Effect::AreaLights,
     Effect::Mirrors,
     Effect::Transmission,
-    Effect::Gloss,
+    Effect::Glossy,
     Effect::Lens,
     Effect::Motion,
     Effect::SmoothNormals,

@@ -163,7 +163,7 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
         let wanted: Vec<Effect> = subset(bits as u32).collect();
         for effect in BUILT {
             // Only mirrors and glass can be rough.
-            let possible = effect != Effect::Gloss
+            let possible = effect != Effect::Glossy
                 || wanted.contains(&Effect::Mirrors)
                 || wanted.contains(&Effect::Transmission);
             let expected = wanted.contains(&effect) && possible;
@@ -188,7 +188,7 @@ fn clue(effect: Effect, missed: bool) -> String {
         Effect::AreaLights => "lamps with an extent, and quality.light_samples",
         Effect::Mirrors => "material.mirror, and fresnel of what lets light through",
         Effect::Transmission => "material.transmission",
-        Effect::Gloss => "roughness of what is mirrored or seen through",
+        Effect::Glossy => "roughness of what is mirrored or seen through",
         Effect::Lens => "the aperture of the lens",
         Effect::Motion => "what moves while the shutter is open",
         Effect::SmoothNormals => "smooth meshes that are shown",
