@@ -15,7 +15,7 @@ use raykata::ray::Ray;
 ///
 /// Where the formula lies: each bounce makes the direction a rounding longer or shorter, and between two mirrors that
 /// adds up.
-pub fn mirror(dir: Vec3, normal: Vec3) -> Vec3 {
+pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
     todo!("mirror dir on the normal, and normalise")
 }
 

@@ -19,7 +19,7 @@ use crate::stage4_shading::off_surface;
 ///
 /// Where the formula lies: each bounce makes the direction a rounding longer or shorter, and between two mirrors that
 /// adds up.
-pub fn mirror(dir: Vec3, normal: Vec3) -> Vec3 {
+pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
     // <solution>
     (dir - 2.0 * dir.dot(normal) * normal).normalize()
     // <stub> todo!("mirror dir on the normal, and normalise")
@@ -126,7 +126,7 @@ pub fn children(
     if counts(reflected) {
         children.push(Child {
             bounce: Bounce::Reflection,
-            direction: mirror(dir, normal),
+            direction: reflect(dir, normal),
             weight: reflected,
         });
     }

@@ -257,9 +257,9 @@ macro_rules! student_functions {
             5 trait Recursion {
                 /// The unit direction of the reflected ray, for the unit direction of a ray and a unit
                 /// normal.
-                Mirror fn mirror(dir: Vec3, normal: Vec3) -> Vec3
-                    = stage5_recursion::mirror;
-                |(dir, normal): (Vec3, Vec3)| -> Vec3 { F::mirror(*dir, *normal) }
+                Reflect fn reflect(dir: Vec3, normal: Vec3) -> Vec3
+                    = stage5_recursion::reflect;
+                |(dir, normal): (Vec3, Vec3)| -> Vec3 { F::reflect(*dir, *normal) }
                 /// The unit direction of the refracted ray by Snell's law; `None` in the case of total
                 /// internal reflection. The unit normal is on the side that the ray comes from, in the medium
                 /// of index `n1`.

@@ -14,9 +14,9 @@ pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
     (unit(), unit()).prop_map(|(dir, normal)| (dir, if normal.dot(dir) > 0.0 { -normal } else { normal }))
 }
 
-pub(super) fn mirror_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
+pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
     let judge = |queries: &[(Vec3, Vec3)]| {
-        compare(queries, trial.kit.mirror(queries), |(dir, normal), yours| {
+        compare(queries, trial.kit.reflect(queries), |(dir, normal), yours| {
             let (d, n) = (dir.as_dvec3(), normal.as_dvec3());
             let expected = (d - 2.0 * d.dot(n) * n).normalize().as_vec3();
             let same = |v: Vec3| (yours - v).length() < 1e-6; // a few roundings of numbers up to 2
@@ -36,7 +36,7 @@ pub(super) fn mirror_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
                 }
                 () => "",
             };
-            let input = call("mirror", &[dir, normal]);
+            let input = call("reflect", &[dir, normal]);
             if same(expected) {
                 return Ok(());
             }
@@ -48,13 +48,13 @@ pub(super) fn mirror_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, arrival(), judge)
 }
 
-pub(super) fn mirror_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Outcome {
+pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Outcome {
     // R7: a thousand bounces between two mirrors that are not quite along an axis.
     let normals = [vec3(0.6, 0.8, 0.0), vec3(-0.48, -0.64, 0.6)];
     let mut dir = vec3(0.3, -0.7, 0.2).normalize();
     for bounce in 0..1000 {
         let normal = normals[bounce % 2];
-        dir = trial.kit.mirror(&[(dir, if normal.dot(dir) > 0.0 { -normal } else { normal })])[0];
+        dir = trial.kit.reflect(&[(dir, if normal.dot(dir) > 0.0 { -normal } else { normal })])[0];
     }
     let off = (dir.as_dvec3().length() - 1.0).abs();
     if off < 1e-6 {

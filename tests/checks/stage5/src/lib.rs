@@ -15,7 +15,7 @@ use children::{
     children_totally_reflected_are_not_refracted, children_weigh_what_the_surface_says,
 };
 use directions::{
-    mirror_keeps_the_angle, mirror_stays_of_unit_length_in_a_corridor,
+    reflect_keeps_the_angle, reflect_stays_of_unit_length_in_a_corridor,
     refract_beyond_the_critical_angle_is_nothing, refract_goes_straight_where_it_must, refract_obeys_snell,
     refract_survives_rounded_directions,
 };
@@ -28,8 +28,8 @@ use trees::{
 use weights::children_count_by_their_own_weight;
 
 checks::stage! { ($ crate) 5 [
-    mirror_keeps_the_angle
-    mirror_stays_of_unit_length_in_a_corridor
+    reflect_keeps_the_angle
+    reflect_stays_of_unit_length_in_a_corridor
     refract_obeys_snell
     refract_goes_straight_where_it_must
     refract_beyond_the_critical_angle_is_nothing
