@@ -7,7 +7,7 @@
 //! yours to say, with [`children`]; the tracer follows them and adds up what they find, each times its weight.
 
 use glam::Vec3;
-use raykata::kit::{Bounce, Child, Limits, Surface};
+use raykata::kit::{Bounce, SecondaryRay, Limits, Surface};
 use raykata::material::{Fresnel, Material};
 use raykata::ray::Ray;
 
@@ -52,7 +52,7 @@ pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 ///
 /// Where the formula lies: the slide tests the weight of the parent, and so follows rays that count nothing. Leaving
 /// the material, n1 and n2 change places.
-pub fn children(
+pub fn scatter(
     dir: Vec3,
     normal: Vec3,
     entering: bool,
@@ -60,7 +60,7 @@ pub fn children(
     weight: Vec3,
     depth: u32,
     limits: &Limits,
-) -> Vec<Child> {
+) -> Vec<SecondaryRay> {
     todo!("weigh the mirrored and the refracted ray, and return those that are worth tracing")
 }
 
@@ -69,6 +69,6 @@ pub fn children(
 ///
 /// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
 /// there meet their own surface again. Move it by its error, as for shadow rays.
-pub fn leave(surface: &Surface, child: &Child) -> Ray {
+pub fn leave(surface: &Surface, child: &SecondaryRay) -> Ray {
     todo!("start off the surface, on the side to which the ray goes")
 }

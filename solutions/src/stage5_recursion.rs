@@ -7,7 +7,7 @@
 //! yours to say, with [`children`]; the tracer follows them and adds up what they find, each times its weight.
 
 use glam::Vec3;
-use raykata::kit::{Bounce, Child, Limits, Surface};
+use raykata::kit::{Bounce, SecondaryRay, Limits, Surface};
 use raykata::material::{Fresnel, Material};
 use raykata::ray::Ray;
 
@@ -96,7 +96,7 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 ///
 /// Where the formula lies: the slide tests the weight of the parent, and so follows rays that count nothing. Leaving
 /// the material, n1 and n2 change places.
-pub fn children(
+pub fn scatter(
     dir: Vec3,
     normal: Vec3,
     entering: bool,
@@ -104,7 +104,7 @@ pub fn children(
     weight: Vec3,
     depth: u32,
     limits: &Limits,
-) -> Vec<Child> {
+) -> Vec<SecondaryRay> {
     // <solution>
     if depth >= limits.max_depth {
         return Vec::new();
@@ -124,7 +124,7 @@ pub fn children(
 
     let mut children = Vec::new();
     if counts(reflected) {
-        children.push(Child {
+        children.push(SecondaryRay {
             bounce: Bounce::Reflection,
             direction: reflect(dir, normal),
             weight: reflected,
@@ -133,7 +133,7 @@ pub fn children(
     if counts(transmitted)
         && let Some(direction) = refract(dir, normal, n1, n2)
     {
-        children.push(Child { bounce: Bounce::Transmission, direction, weight: transmitted });
+        children.push(SecondaryRay { bounce: Bounce::Transmission, direction, weight: transmitted });
     }
     children
     // <stub> todo!("weigh the mirrored and the refracted ray, and return those that are worth tracing")
@@ -145,7 +145,7 @@ pub fn children(
 ///
 /// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
 /// there meet their own surface again. Move it by its error, as for shadow rays.
-pub fn leave(surface: &Surface, child: &Child) -> Ray {
+pub fn leave(surface: &Surface, child: &SecondaryRay) -> Ray {
     // <solution>
     let side = match child.bounce {
         Bounce::Reflection => surface.geometric_normal,

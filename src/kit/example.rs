@@ -100,7 +100,7 @@ examples! {
     };
     LightSample => LightSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE };
     Texture => Texture { width: 1, height: 1, pixels: Arc::new(vec![Vec3::ONE]), wrap: Wrap::Repeat };
-    Child => Child { bounce: Bounce::Reflection, direction: Vec3::Z, weight: Vec3::ONE };
+    SecondaryRay => SecondaryRay { bounce: Bounce::Reflection, direction: Vec3::Z, weight: Vec3::ONE };
     Grid => Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };
     Octree => Octree::empty();
     KdTree => KdTree::new(Aabb::EMPTY);
@@ -135,7 +135,7 @@ examples! {
     };
     RefractQuery => RefractQuery { dir: Vec3::NEG_Z, normal: Vec3::Z, n1: 1.0, n2: 1.5 };
     FresnelQuery => FresnelQuery { cos_theta: 1.0, n1: 1.0, n2: 1.5 };
-    ChildrenQuery => ChildrenQuery {
+    ScatterQuery => ScatterQuery {
         dir: Vec3::NEG_Z,
         normal: Vec3::Z,
         entering: true,

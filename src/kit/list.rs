@@ -280,18 +280,18 @@ macro_rules! student_functions {
                 /// The secondary rays that leave a surface, each with its weight. A ray is left out if its
                 /// weight is 0 or below `limits.min_contribution` in every channel, or if
                 /// `depth >= limits.max_depth`.
-                Children fn children(
+                Scatter fn scatter(
                     dir: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
-                ) -> Vec<Child>
-                    = stage5_recursion::children;
-                |q: ChildrenQuery| -> Vec<Child> {
-                    F::children(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
+                ) -> Vec<SecondaryRay>
+                    = stage5_recursion::scatter;
+                |q: ScatterQuery| -> Vec<SecondaryRay> {
+                    F::scatter(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
                 }
                 /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
                 /// the side to which it goes.
-                Leave fn leave(surface: &Surface, child: &Child) -> Ray
+                Leave fn leave(surface: &Surface, child: &SecondaryRay) -> Ray
                     = stage5_recursion::leave;
-                |(surface, child): (Surface, Child)| -> Ray { F::leave(surface, child) }
+                |(surface, child): (Surface, SecondaryRay)| -> Ray { F::leave(surface, child) }
             }
 
             /// Stage 6: distributed ray tracing. Each function gives one answer per query, in the same order,

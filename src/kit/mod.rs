@@ -44,7 +44,7 @@ pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,
 };
-pub use recursion::{Bounce, Child, ChildrenQuery, FresnelQuery, Limits, RefractQuery};
+pub use recursion::{Bounce, SecondaryRay, ScatterQuery, FresnelQuery, Limits, RefractQuery};
 pub use scene_graph::{
     BallEntryQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,
     SolidQuery,

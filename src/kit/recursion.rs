@@ -49,7 +49,7 @@ pub enum Bounce {
 
 /// A secondary ray that leaves a surface: its kind, direction and weight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Child {
+pub struct SecondaryRay {
     /// Whether the ray is reflected or refracted.
     pub bounce: Bounce,
     /// The direction of the ray, of unit length.
@@ -58,9 +58,9 @@ pub struct Child {
     pub weight: Vec3,
 }
 
-/// Asks which secondary rays leave a surface; the answer is a list of [`Child`].
+/// Asks which secondary rays leave a surface; the answer is a list of [`SecondaryRay`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ChildrenQuery {
+pub struct ScatterQuery {
     /// The direction of the incoming ray, of unit length.
     pub dir: Vec3,
     /// The unit normal on the side that the ray comes from.

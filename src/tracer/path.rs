@@ -211,7 +211,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let dir = path.ray.dir.normalize();
         let normal = at.surface.shading_normal;
         let (weight, depth) = (path.weight, path.depth);
-        let children = F::children(dir, normal, at.entering, material, weight, depth, &self.limits);
+        let children = F::scatter(dir, normal, at.entering, material, weight, depth, &self.limits);
         let parts = if takes.glossy { self.quality().glossy_samples } else { 1 };
         for child in children {
             let (event, kind) = match child.bounce {

@@ -1,7 +1,7 @@
 //! Random choices on the path of a ray, by the functions of stage 6: a point of an area light, a direction
 //! from a rough surface.
 
-use crate::kit::{Bounce, Child, LightSample, StudentFunctions, Surface};
+use crate::kit::{Bounce, SecondaryRay, LightSample, StudentFunctions, Surface};
 use crate::material::{AreaShape, Emitter, Light};
 use crate::random::{Points, Purpose};
 
@@ -34,17 +34,17 @@ pub fn area_of(light: &Light) -> Option<&AreaShape> {
 /// Ray `part` of `parts` that a surface of `roughness` `0..=1` makes of the ideal secondary ray `child`: in a
 /// random direction around it, with its weight divided by `parts`.
 pub fn sample_rough_surface<F: StudentFunctions>(
-    child: &Child,
+    child: &SecondaryRay,
     surface: &Surface,
     roughness: f32,
     points: &Points,
     (part, parts): (u32, u32),
-) -> Child {
+) -> SecondaryRay {
     let u = F::jittered(&points.stratum(Purpose::Glossy(child.bounce), part, parts));
     let side = match child.bounce {
         Bounce::Reflection => surface.geometric_normal,
         Bounce::Transmission => -surface.geometric_normal,
     };
     let direction = F::sample_phong_lobe(child.direction, side, roughness, u);
-    Child { direction, weight: child.weight / parts as f32, ..*child }
+    SecondaryRay { direction, weight: child.weight / parts as f32, ..*child }
 }

@@ -7,17 +7,17 @@ use checks::judge::{compare, known};
 use checks::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::{Bounce, Child, Surface};
+use raykata::kit::{Bounce, SecondaryRay, Surface};
 use raykata::ray::Ray;
 
 /// A ray that goes on from a surface, and the unit normal on the side to which it goes.
-type Leaving = (Surface, Child);
+type Leaving = (Surface, SecondaryRay);
 
 fn leaving(point: Vec3, normal: Vec3, lean: Vec3, bounce: Bounce, error: f32) -> Leaving {
     let side = side(normal, bounce);
     let surface =
         Surface { point, error: Vec3::splat(error), geometric_normal: normal, shading_normal: normal };
-    (surface, Child { bounce, direction: (side + 0.8 * lean).normalize(), weight: Vec3::ONE })
+    (surface, SecondaryRay { bounce, direction: (side + 0.8 * lean).normalize(), weight: Vec3::ONE })
 }
 
 fn side(normal: Vec3, bounce: Bounce) -> Vec3 {
@@ -41,7 +41,7 @@ fn at_any_scale() -> impl Strategy<Value = Leaving> + Clone {
 fn told((surface, child): &Leaving) -> String {
     let direction = child.direction.paste();
     let child =
-        format!("&Child {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
+        format!("&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
     format!("leave({}, {child})", surface.paste())
 }
 

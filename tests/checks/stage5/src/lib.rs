@@ -3,16 +3,16 @@
 //! `directions` · `fresnel` · `children` (which rays go on) · `weights` (whose decides) · `leaving` (from where) ·
 //! `trees` (what becomes of them, counted)
 
-mod children;
+mod scatter;
 mod directions;
 mod fresnel;
 mod leaving;
 mod trees;
 mod weights;
 
-use children::{
-    children_are_not_traced_in_vain, children_leave_glass_as_they_entered,
-    children_totally_reflected_are_not_refracted, children_weigh_what_the_surface_says,
+use scatter::{
+    scatter_are_not_traced_in_vain, scatter_leave_glass_as_they_entered,
+    scatter_totally_reflected_are_not_refracted, scatter_weigh_what_the_surface_says,
 };
 use directions::{
     reflect_keeps_the_angle, reflect_stays_of_unit_length_in_a_corridor,
@@ -25,7 +25,7 @@ use trees::{
     facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,
     tree_of_a_glass_ball,
 };
-use weights::children_count_by_their_own_weight;
+use weights::scatter_count_by_their_own_weight;
 
 checks::stage! { ($ crate) 5 [
     reflect_keeps_the_angle
@@ -36,11 +36,11 @@ checks::stage! { ($ crate) 5 [
     refract_survives_rounded_directions
     fresnel_schlick_agrees_with_double_precision
     fresnel_exact_agrees_with_double_precision
-    children_weigh_what_the_surface_says
-    children_leave_glass_as_they_entered
-    children_totally_reflected_are_not_refracted
-    children_are_not_traced_in_vain
-    children_count_by_their_own_weight
+    scatter_weigh_what_the_surface_says
+    scatter_leave_glass_as_they_entered
+    scatter_totally_reflected_are_not_refracted
+    scatter_are_not_traced_in_vain
+    scatter_count_by_their_own_weight
     rays_that_go_on_leave_their_surface
     tree_ends_at_its_depth
     tree_ends_where_children_count_too_little

@@ -1,18 +1,18 @@
 //! What becomes of the rays: whole trees, counted, in worlds so simple that every ray's fate is known.
 
-use super::children::{FAR, paste};
+use super::scatter::{FAR, paste};
 use checks::broken::{Broken, Outcome};
 use checks::{Trial, golden};
 use glam::{Vec3, vec3};
-use raykata::kit::{Bounce, ChildrenQuery, Limits};
+use raykata::kit::{Bounce, ScatterQuery, Limits};
 use raykata::material::{Fresnel, Material};
 
 /// A tree with more rays than this does not end.
 const TOO_MANY: usize = 20_000;
 
 /// Rays of the tree in a closed room in which every ray meets the same surface at the same slant.
-fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ChildrenQuery) {
-    let first = ChildrenQuery {
+fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ScatterQuery) {
+    let first = ScatterQuery {
         dir: vec3(0.6, -0.8, 0.0),
         normal: Vec3::Y,
         entering: true,
@@ -25,13 +25,13 @@ fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (us
     let mut rays = 0;
     while !level.is_empty() && rays < TOO_MANY {
         rays += level.len();
-        let children = trial.kit.children(&level);
-        let next = |(parent, children): (&ChildrenQuery, Vec<raykata::kit::Child>)| {
+        let children = trial.kit.scatter(&level);
+        let next = |(parent, children): (&ScatterQuery, Vec<raykata::kit::SecondaryRay>)| {
             let depth = parent.depth + 1;
             let parent = parent.clone();
             children
                 .into_iter()
-                .map(move |child| ChildrenQuery { weight: child.weight, depth, ..parent.clone() })
+                .map(move |child| ScatterQuery { weight: child.weight, depth, ..parent.clone() })
                 .collect::<Vec<_>>()
         };
         level = level.iter().zip(children).flat_map(next).collect();
@@ -146,8 +146,8 @@ fn follow(
         text.push_str("…\n");
         return;
     }
-    let query = ChildrenQuery { dir, normal, entering, material: glass.clone(), weight, depth, limits };
-    let mut children = trial.kit.children(&[query]).remove(0);
+    let query = ScatterQuery { dir, normal, entering, material: glass.clone(), weight, depth, limits };
+    let mut children = trial.kit.scatter(&[query]).remove(0);
     children.sort_by_key(|child| child.bounce == Bounce::Transmission);
     for child in children {
         let indent = "  ".repeat(depth as usize);

@@ -1,28 +1,28 @@
 //! Whose weight decides about a ray.
 
-use super::children::{FAR, drawn, find, paste, queries};
+use super::scatter::{FAR, drawn, find, paste, queries};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::compare;
 use glam::Vec3;
 use proptest::prelude::*;
-use raykata::kit::{Bounce, Child, ChildrenQuery, Limits};
+use raykata::kit::{Bounce, SecondaryRay, ScatterQuery, Limits};
 use raykata::material::{Fresnel, Material};
 
 /// X8: it is the child's own weight that counts, not that of its parent, and each child's by itself.
-pub(super) fn children_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
     let [slanted, ..] = drawn();
     let (dir, normal) = (slanted.dir, slanted.normal);
     // Eighths, so that weights are exact and often just what is asked for; an index of 1, so that nothing is bent or
     // mirrored back.
-    let queries = (queries(), 0..=64i32).prop_map(move |(query, least)| ChildrenQuery {
+    let queries = (queries(), 0..=64i32).prop_map(move |(query, least)| ScatterQuery {
         dir,
         normal,
         material: Material { index_of_refraction: 1.0, fresnel: Fresnel::None, ..query.material },
         limits: Limits { min_contribution: least as f32 / 64.0, ..FAR },
         ..query
     });
-    let at = |mirror: f32, transmission: f32, least: f32| ChildrenQuery {
+    let at = |mirror: f32, transmission: f32, least: f32| ScatterQuery {
         weight: Vec3::ONE,
         material: Material {
             mirror: Vec3::splat(mirror),
@@ -35,12 +35,12 @@ pub(super) fn children_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
     };
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
-    let judge = |queries: &[ChildrenQuery]| compare(queries, trial.kit.children(queries), judge_own_weight);
+    let judge = |queries: &[ScatterQuery]| compare(queries, trial.kit.scatter(queries), judge_own_weight);
     judge(&drawn).into_iter().collect::<Outcome>()?;
     trial.forall(2000, queries, judge)
 }
 
-fn judge_own_weight(query: &ChildrenQuery, yours: Vec<Child>) -> Outcome {
+fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
     let least = query.limits.min_contribution;
     let [parent, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
     let weights = [mirror, transmission].map(|share| (parent * share).max_element());

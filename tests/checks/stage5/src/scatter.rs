@@ -1,0 +1,254 @@
+//! Which rays go on from a surface, and what they count.
+
+use super::directions::arrival;
+use super::fresnel::{exact, schlick};
+use checks::Trial;
+use checks::broken::{Broken, Outcome};
+use checks::generate::point;
+use checks::judge::{compare, known};
+use checks::paste::Paste;
+use glam::{DVec3, Vec3, vec3};
+use proptest::prelude::*;
+use raykata::kit::{Bounce, SecondaryRay, ScatterQuery, FresnelQuery, Limits, RefractQuery};
+use raykata::material::{Fresnel, Material};
+
+/// No limit that a check does not ask for.
+pub(super) const FAR: Limits = Limits { max_depth: 100, min_contribution: 0.0 };
+
+pub(super) fn paste(query: &ScatterQuery) -> String {
+    let material = &query.material;
+    format!(
+        "scatter({}, {}, {}, &Material {{ mirror: {}, transmission: {}, index_of_refraction: {}, fresnel: Fresnel::{:?}, ..Material::default() }},\n{}, {}, &{:?})",
+        query.dir.paste(),
+        query.normal.paste(),
+        query.entering,
+        material.mirror.paste(),
+        material.transmission.paste(),
+        material.index_of_refraction.paste(),
+        material.fresnel,
+        query.weight.paste(),
+        query.depth,
+        query.limits
+    )
+}
+
+fn told(children: &[SecondaryRay]) -> String {
+    let one = |child: &SecondaryRay| format!("{:?} of weight {}", child.bounce, child.weight);
+    match children {
+        [] => "no rays".into(),
+        some => some.iter().map(one).collect::<Vec<_>>().join(", "),
+    }
+}
+
+pub(super) fn find(children: &[SecondaryRay], bounce: Bounce) -> Option<&SecondaryRay> {
+    children.iter().find(|child| child.bounce == bounce)
+}
+
+/// `(n1, n2)` and the mirrored share.
+fn share(query: &ScatterQuery) -> (f32, f32, f64) {
+    let index = query.material.index_of_refraction;
+    let (n1, n2) = if query.entering { (1.0, index) } else { (index, 1.0) };
+    let fresnel = FresnelQuery { cos_theta: -query.dir.dot(query.normal), n1, n2 };
+    let share = match query.material.fresnel {
+        Fresnel::None => 0.0,
+        Fresnel::Schlick => schlick(&fresnel),
+        Fresnel::Exact => exact(&fresnel),
+    };
+    (n1, n2, share)
+}
+
+pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
+    let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
+    (arrival(), any::<bool>(), point(1), point(1), 8..=16i32, fresnel, point(1)).prop_map(
+        |((dir, normal), entering, mirror, transmission, index, fresnel, weight)| ScatterQuery {
+            dir,
+            normal,
+            entering,
+            material: Material {
+                mirror: mirror.abs(),
+                transmission: transmission.abs(),
+                index_of_refraction: index as f32 / 8.0,
+                fresnel,
+                ..Material::default()
+            },
+            weight: weight.abs(),
+            depth: 0,
+            limits: FAR,
+        },
+    )
+}
+
+pub(super) fn scatter_weigh_what_the_surface_says(trial: &Trial<'_>) -> Outcome {
+    judge_weights(trial, &drawn()).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, queries(), |queries| judge_weights(trial, queries))
+}
+
+/// A surface that mirrors and lets through, glass that mirrors its share alone, and one channel in each child.
+pub(super) fn drawn() -> [ScatterQuery; 3] {
+    let query = |mirror: Vec3, transmission: Vec3, fresnel: Fresnel| ScatterQuery {
+        dir: vec3(0.96, -0.28, 0.0),
+        normal: Vec3::Y,
+        entering: true,
+        material: Material { mirror, transmission, index_of_refraction: 1.5, fresnel, ..Material::default() },
+        weight: vec3(0.5, 0.75, 0.25),
+        depth: 0,
+        limits: FAR,
+    };
+    [
+        query(vec3(0.25, 0.375, 0.5), vec3(0.5, 0.25, 0.125), Fresnel::Exact),
+        query(Vec3::ZERO, Vec3::ONE, Fresnel::Exact),
+        query(0.5 * Vec3::X, 0.5 * Vec3::Y, Fresnel::None),
+    ]
+}
+
+fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
+    compare(queries, trial.kit.scatter(queries), |query, yours| {
+        let (n1, n2, share) = share(query);
+        let [weight, mirror, transmission] =
+            [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
+        let expected = [weight * (mirror + share * transmission), weight * (1.0 - share) * transmission];
+        // Refraction that does not happen, or only just, is another check's business.
+        let sine = (1.0 - f64::from(query.dir.dot(query.normal)).powi(2)).max(0.0).sqrt();
+        if f64::from(n1 / n2) * sine > 0.999 {
+            return Ok(());
+        }
+        let found = [Bounce::Reflection, Bounce::Transmission]
+            .map(|bounce| find(&yours, bounce).map(|child| child.weight.as_dvec3()));
+        let weights = found.map(|weight| weight.unwrap_or_default());
+        let off = |limit: f64, other: [DVec3; 2]| {
+            (0..2).any(|i| !((weights[i] - other[i]).abs().max_element() <= limit))
+        };
+        if !off(2e-4, expected) {
+            return Ok(());
+        }
+        let same = |other: [DVec3; 2]| !off(1e-4, other);
+        let lost = (0..2).any(|i| found[i].is_none() && expected[i].max_element() > 2e-4);
+        let through = (1.0 - share) * transmission;
+        let diagnosis = match () {
+            () if same([mirror + share * transmission, through]) => {
+                "the weight of the ray itself is left out: weights multiply down the tree"
+            }
+            () if same([weight * expected[0], weight * expected[1]])
+                || same([weight * expected[0], expected[1]])
+                || same([expected[0], weight * expected[1]]) =>
+            {
+                "the weight of the ray is multiplied in twice"
+            }
+            () if lost && mirror == DVec3::ZERO && found[0].is_none() && share > 0.0 => {
+                "clear glass mirrors its share F, too: test the weight of the child, not material.mirror"
+            }
+            () if same([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]) => {
+                "mirror and transmission are swapped"
+            }
+            () if share > 0.0 && same([weight * mirror, weight * transmission]) => {
+                "material.fresnel is left out"
+            }
+            () if lost => "a ray is left out that counts in one channel: the largest channel decides",
+            () if share > 0.0 => "the mirrored share F of the transmission moves to the mirrored ray",
+            () => "",
+        };
+        let [reflected, transmitted] = expected.map(|weight| weight.as_vec3());
+        let expected = format!("Reflection of weight {reflected}, Transmission of weight {transmitted}");
+        Err(Broken::told(paste(query), told(&yours), expected, "the formula in double precision")
+            .looks_like(known(diagnosis)))
+    })
+}
+
+const ENTERING: &str = "entering the glass, n1 is the air and n2 the glass";
+
+/// R4: a ray through a pane of glass leaves it in the direction in which it came.
+pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome {
+    let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
+    for dir in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
+        let enter = ScatterQuery {
+            dir,
+            normal: Vec3::Y,
+            entering: true,
+            material: glass.clone(),
+            weight: Vec3::ONE,
+            depth: 0,
+            limits: FAR,
+        };
+        let inside = trial.kit.scatter(std::slice::from_ref(&enter)).remove(0);
+        let snell = RefractQuery { dir, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
+        super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
+        let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
+            let broken = Broken::told(paste(&enter), told(&inside), "a refracted ray", "glass");
+            return Err(broken.looks_like(Some(ENTERING)));
+        };
+        let bent = super::directions::snell(&snell).0.map(|direction| direction.as_vec3());
+        if bent.is_some_and(|bent| (inside.direction - bent).length() > 1e-5) {
+            let broken =
+                Broken::new(paste(&enter), inside.direction, bent, "Snell's law in double precision");
+            return Err(broken.looks_like(Some(ENTERING)));
+        }
+        let leave = ScatterQuery { dir: inside.direction, entering: false, ..enter };
+        let outside = trial.kit.scatter(std::slice::from_ref(&leave)).remove(0);
+        let direction = find(&outside, Bounce::Transmission).map(|child| child.direction);
+        if !direction.is_some_and(|direction| (direction - dir).length() < 1e-5) {
+            let broken = Broken::new(paste(&leave), direction, Some(dir), "out as it came in");
+            return Err(broken.looks_like(Some(match direction {
+                Some(direction) if direction.dot(leave.normal) > 0.0 => {
+                    "back into the glass: the normal is on the ray's side already, so it must not be turned"
+                }
+                _ => "leaving the glass, n1 is the glass and n2 the air",
+            })));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> Outcome {
+    // R5: 60° inside of glass. Nothing goes through, and no NaN creeps in by 0 · NaN.
+    for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
+        let query = ScatterQuery {
+            dir: vec3(0.866_025_4, -0.5, 0.0),
+            normal: Vec3::Y,
+            entering: false,
+            material: Material {
+                mirror: Vec3::splat(0.25),
+                transmission: Vec3::splat(0.75),
+                index_of_refraction: 1.5,
+                fresnel,
+                ..Material::default()
+            },
+            weight: Vec3::ONE,
+            depth: 0,
+            limits: FAR,
+        };
+        let yours = trial.kit.scatter(std::slice::from_ref(&query)).remove(0);
+        let reflected = find(&yours, Bounce::Reflection).map_or(0.0, |child| child.weight.x);
+        let refracted = find(&yours, Bounce::Transmission).is_some();
+        let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
+        if refracted || !sound || (reflected - mirrored).abs() > 1e-5 {
+            let expected = format!("Reflection of weight {mirrored}, and no Transmission");
+            let broken = Broken::told(paste(&query), told(&yours), expected, "total internal reflection");
+            return Err(broken
+                .looks_like(Some("beyond the critical angle no ray goes through, and the share F is 1")));
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
+    // R8: a child without weight costs a whole tree of rays that show nothing.
+    let dull = (queries(), 0..3i32).prop_map(|(query, which)| match which {
+        0 => ScatterQuery { material: Material::default(), ..query },
+        1 => ScatterQuery { weight: Vec3::ZERO, ..query },
+        _ => {
+            // What is left of a red ray on a blue mirror.
+            let material = Material { mirror: Vec3::Z, transmission: Vec3::ZERO, ..query.material };
+            ScatterQuery { weight: Vec3::X, material, ..query }
+        }
+    });
+    trial.forall(1000, dull, |queries| {
+        compare(queries, trial.kit.scatter(queries), |query, yours| {
+            if yours.is_empty() {
+                return Ok(());
+            }
+            let broken =
+                Broken::told(paste(query), told(&yours), "no rays", "what counts nothing shows nothing");
+            Err(broken.looks_like(Some("a child of weight zero: test the child's own weight")))
+        })
+    })
+}
