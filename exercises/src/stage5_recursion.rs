@@ -69,6 +69,6 @@ pub fn scatter(
 ///
 /// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
 /// there meet their own surface again. Move it by its error, as for shadow rays.
-pub fn leave(surface: &Surface, child: &SecondaryRay) -> Ray {
+pub fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray {
     todo!("start off the surface, on the side to which the ray goes")
 }

@@ -145,7 +145,7 @@ pub fn scatter(
 ///
 /// Where the formula lies: the slide starts it at `hit.Point()`. That point is rounded, so half of all rays that start
 /// there meet their own surface again. Move it by its error, as for shadow rays.
-pub fn leave(surface: &Surface, child: &SecondaryRay) -> Ray {
+pub fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray {
     // <solution>
     let side = match child.bounce {
         Bounce::Reflection => surface.geometric_normal,

@@ -289,9 +289,9 @@ macro_rules! student_functions {
                 }
                 /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
                 /// the side to which it goes.
-                Leave fn leave(surface: &Surface, child: &SecondaryRay) -> Ray
-                    = stage5_recursion::leave;
-                |(surface, child): (Surface, SecondaryRay)| -> Ray { F::leave(surface, child) }
+                SpawnRay fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray
+                    = stage5_recursion::spawn_ray;
+                |(surface, child): (Surface, SecondaryRay)| -> Ray { F::spawn_ray(surface, child) }
             }
 
             /// Stage 6: distributed ray tracing. Each function gives one answer per query, in the same order,

@@ -228,7 +228,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 } else {
                     child
                 };
-                let ray = Ray { time: path.ray.time, ..F::leave(&at.surface, &child) };
+                let ray = Ray { time: path.ray.time, ..F::spawn_ray(&at.surface, &child) };
                 let points = path.points.beyond(child.bounce, part, parts);
                 let (weight, depth) = (child.weight, path.depth + 1);
                 scratch.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(number) });

@@ -124,7 +124,7 @@ impl Plan {
     }
 
     fn leave_out_mirrors<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        if written.has_all(&[Function::scatter, Function::leave]) {
+        if written.has_all(&[Function::scatter, Function::spawn_ray]) {
             return;
         }
         let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;

@@ -6,7 +6,7 @@
 mod scatter;
 mod directions;
 mod fresnel;
-mod leaving;
+mod spawn;
 mod trees;
 mod weights;
 
@@ -20,7 +20,7 @@ use directions::{
     refract_survives_rounded_directions,
 };
 use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees_with_double_precision};
-use leaving::rays_that_go_on_leave_their_surface;
+use spawn::rays_that_go_on_leave_their_surface;
 use trees::{
     facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,
     tree_of_a_glass_ball,

@@ -1,7 +1,7 @@
 //! The long run: rays by the hundred million at edges and vertices of closed meshes, in every structure of the
 //! reference, and at corners of boxes. What is done is kept in a file, so that a run can be stopped and goes on.
 
-use super::{leaving, scenes};
+use super::{scenes, secondary_rays};
 use crate::kits::Source;
 use crate::queue;
 use crate::report::{Thousands, bar_of_steps, make_folder_of};
@@ -23,7 +23,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Rays of one piece of work.
-const PIECE: u64 = leaving::RAYS;
+const PIECE: u64 = secondary_rays::RAYS;
 /// How often progress is kept.
 const PAUSE: Duration = Duration::from_secs(2);
 
@@ -117,8 +117,8 @@ impl Trial {
     fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, piece: u64) -> Result<u64> {
         let mut random = Random::new(seed, piece);
         match self {
-            Trial::SelfHit => leaving::self_hits(kit, &mut random),
-            Trial::Contact => leaving::lost_contacts(kit, &mut random),
+            Trial::SelfHit => secondary_rays::self_hits(kit, &mut random),
+            Trial::Contact => secondary_rays::lost_contacts(kit, &mut random),
             Trial::Slab => {
                 let queries: Vec<SlabQuery> = (0..PIECE).filter_map(|_| at_a_corner(&mut random)).collect();
                 let meets = |query: &SlabQuery| {

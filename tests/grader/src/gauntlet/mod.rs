@@ -2,7 +2,7 @@
 //! that looks for a leak in the reference.
 
 pub mod agreement;
-mod leaving;
+mod secondary_rays;
 mod long;
 mod methods;
 mod printed;

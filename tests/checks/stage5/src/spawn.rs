@@ -42,7 +42,7 @@ fn told((surface, child): &Leaving) -> String {
     let direction = child.direction.paste();
     let child =
         format!("&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
-    format!("leave({}, {child})", surface.paste())
+    format!("spawn_ray({}, {child})", surface.paste())
 }
 
 /// R6: the slide starts the ray at `hit.Point()`, which is rounded: in half of all cases the ray meets its own surface.
@@ -51,8 +51,8 @@ pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome 
     let drawn = [Bounce::Reflection, Bounce::Transmission].map(|bounce| {
         leaving(vec3(30.0, -20.0, 10.0), vec3(0.0, 0.6, 0.8), vec3(0.6, 0.0, 0.8), bounce, 1e-3)
     });
-    compare(&drawn, trial.kit.leave(&drawn), judge).into_iter().collect::<Outcome>()?;
-    trial.forall(3000, at_any_scale(), |queries| compare(queries, trial.kit.leave(queries), judge))
+    compare(&drawn, trial.kit.spawn_ray(&drawn), judge).into_iter().collect::<Outcome>()?;
+    trial.forall(3000, at_any_scale(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
 }
 
 fn judge(query: &Leaving, ray: Ray) -> Outcome {
