@@ -76,11 +76,11 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     todo!("carry a place on the unit disk to this one")
 }
 
-/// A unit direction in which the ball is seen from `from`, each equally likely; from inside the ball any direction.
+/// A unit direction in which the sphere is seen from `from`, each equally likely; from inside the sphere any direction.
 ///
-/// Where the formula lies: `1 - cos θ` of a far ball is rounded to 0, and its shadows turn sharp. With
+/// Where the formula lies: `1 - cos θ` of a far sphere is rounded to 0, and its shadows turn sharp. With
 /// `sin θ = radius / distance` it is `sin²θ / (1 + cos θ)`.
-pub fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
+pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     todo!("a direction in the cone around the centre: 1 - cos θ even between 0 and that of the rim")
 }
 

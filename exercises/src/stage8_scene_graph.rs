@@ -44,15 +44,15 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     todo!("transform what matters of the eight corners, and round outwards")
 }
 
-/// A ball that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
+/// A sphere that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
 /// large as that: around the middle of their box is small enough.
-pub fn bounding_ball(points: &[Vec3]) -> Sphere {
+pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     todo!("take a centre, and the largest distance from it, rounded up")
 }
 
-/// Where `ray` enters the ball, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
-/// it. The like of the slab test for balls.
-pub fn enter_ball(ray: &Ray, ball: &Sphere) -> Option<f32> {
+/// Where `ray` enters the sphere, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
+/// it. The like of the slab test for spheres.
+pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     todo!("the nearer root, or t_min from inside; nothing if the ray passes or ends before")
 }
 

@@ -134,14 +134,14 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     // </solution>
 }
 
-/// A unit direction in which the ball is seen from `from`, each equally likely; from inside the ball any direction.
+/// A unit direction in which the sphere is seen from `from`, each equally likely; from inside the sphere any direction.
 ///
-/// Where the formula lies: `1 - cos θ` of a far ball is rounded to 0, and its shadows turn sharp. With
+/// Where the formula lies: `1 - cos θ` of a far sphere is rounded to 0, and its shadows turn sharp. With
 /// `sin θ = radius / distance` it is `sin²θ / (1 + cos θ)`.
-pub fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
+pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     // <solution>
-    let to_center = ball.center - from;
-    let sin_squared = ball.radius * ball.radius / to_center.length_squared();
+    let to_center = sphere.center - from;
+    let sin_squared = sphere.radius * sphere.radius / to_center.length_squared();
     // 1 - cos θ of the directions along the rim; 2 is the direction away from the centre.
     let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
     // Slices of equal height have equal area on a sphere (Archimedes).

@@ -91,9 +91,9 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     // </solution>
 }
 
-/// A ball that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
+/// A sphere that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
 /// large as that: around the middle of their box is small enough.
-pub fn bounding_ball(points: &[Vec3]) -> Sphere {
+pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     // <solution>
     let min = points.iter().fold(Vec3::INFINITY, |low, point| low.min(*point));
     let max = points.iter().fold(Vec3::NEG_INFINITY, |high, point| high.max(*point));
@@ -105,12 +105,12 @@ pub fn bounding_ball(points: &[Vec3]) -> Sphere {
     // </solution>
 }
 
-/// Where `ray` enters the ball, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
-/// it. The like of the slab test for balls.
-pub fn enter_ball(ray: &Ray, ball: &Sphere) -> Option<f32> {
+/// Where `ray` enters the sphere, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
+/// it. The like of the slab test for spheres.
+pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // <solution>
-    let (dir, to_center) = (ray.dir.as_dvec3(), ball.center.as_dvec3() - ray.origin.as_dvec3());
-    let radius = f64::from(ball.radius);
+    let (dir, to_center) = (ray.dir.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
+    let radius = f64::from(sphere.radius);
     // The line comes closest to the centre at t = b / a, and |to_center × dir|² / a is the square of that distance.
     let (a, b) = (dir.length_squared(), to_center.dot(dir));
     let reach = a * radius * radius - to_center.cross(dir).length_squared();
@@ -126,7 +126,7 @@ pub fn enter_ball(ray: &Ray, ball: &Sphere) -> Option<f32> {
 }
 
 // <solution>
-/// The way in is compared with the `t` of hits, which is rounded in another way: four roundings earlier, no ball is skipped
+/// The way in is compared with the `t` of hits, which is rounded in another way: four roundings earlier, no sphere is skipped
 /// that holds a hit at the very `t` of the best one.
 const ROOM: f64 = 4.0 * f32::EPSILON as f64;
 // </solution>

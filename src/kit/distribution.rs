@@ -46,7 +46,7 @@ pub struct RectangleQuery {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SphereSampleQuery {
     /// The sphere to which the direction leads.
-    pub ball: Sphere,
+    pub sphere: Sphere,
     /// The point from which the sphere is seen, in world units.
     pub from: Vec3,
     /// Two random numbers, `0 <= u < 1` each.

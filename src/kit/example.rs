@@ -151,7 +151,7 @@ examples! {
         on_lens: Vec2::ZERO,
     };
     RectangleQuery => RectangleQuery { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Y), u: Vec2::ZERO };
-    SphereSampleQuery => SphereSampleQuery { ball: example(), from: Vec3::ZERO, u: Vec2::ZERO };
+    SphereSampleQuery => SphereSampleQuery { sphere: example(), from: Vec3::ZERO, u: Vec2::ZERO };
     PhongLobeQuery => PhongLobeQuery { ideal: Vec3::Y, normal: Vec3::Y, roughness: 0.0, u: Vec2::ZERO };
     TimeQuery => TimeQuery { shutter: Shutter { open: 0.0, close: 1.0 }, slot: 1, slots: 1, u: 0.0 };
     LightQuery => LightQuery { light: example(), quality: example() };
@@ -163,7 +163,7 @@ examples! {
     ObjectRayQuery => ObjectRayQuery { ray: example(), to_object: Affine3A::IDENTITY };
     NormalQuery => NormalQuery { normal: Vec3::Z, to_object: Affine3A::IDENTITY };
     BoundsQuery => BoundsQuery { to_world: Affine3A::IDENTITY, bounds: Aabb::EMPTY };
-    BallEntryQuery => BallEntryQuery { ray: example(), ball: example() };
+    BoundingSphereQuery => BoundingSphereQuery { ray: example(), sphere: example() };
     GraphQuery => GraphQuery {
         graph: Graph::default(),
         ray: example(),

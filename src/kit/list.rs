@@ -337,9 +337,9 @@ macro_rules! student_functions {
                 |(disk, u): (Disk, Vec2)| -> Vec3 { F::sample_light_disk(disk, *u) }
                 /// A unit direction from `from` to a sphere, uniformly distributed over the solid angle of
                 /// the sphere; from inside the sphere, over all directions.
-                SampleSphere fn sample_sphere(ball: &Sphere, from: Vec3, u: Vec2) -> Vec3
+                SampleSphere fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3
                     = stage6_distribution::sample_sphere;
-                |q: SphereSampleQuery| -> Vec3 { F::sample_sphere(&q.ball, q.from, q.u) }
+                |q: SphereSampleQuery| -> Vec3 { F::sample_sphere(&q.sphere, q.from, q.u) }
                 /// A unit direction around `ideal`, distributed with `cosⁿ θ` (a Phong lobe),
                 /// `n = 2 / roughness² - 2`, on the side of `normal`; `ideal` itself if `roughness` is 0.
                 SamplePhongLobe fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3
@@ -435,14 +435,14 @@ macro_rules! student_functions {
                     = stage8_scene_graph::bounds_to_world;
                 |q: BoundsQuery| -> Aabb { F::bounds_to_world(&q.to_world, &q.bounds) }
                 /// A bounding sphere of one or more points, with at most twice the smallest possible radius.
-                BoundingBall fn bounding_ball(points: &[Vec3]) -> Sphere
-                    = stage8_scene_graph::bounding_ball;
-                |points: Vec<Vec3>| -> Sphere { F::bounding_ball(points) }
+                BoundingSphere fn bounding_sphere(points: &[Vec3]) -> Sphere
+                    = stage8_scene_graph::bounding_sphere;
+                |points: Vec<Vec3>| -> Sphere { F::bounding_sphere(points) }
                 /// The `t`, in `[t_min, t_max]`, at which a ray enters a bounding sphere: `t_min` if it
                 /// starts inside; `None` if it misses.
-                EnterBall fn enter_ball(ray: &Ray, ball: &Sphere) -> Option<f32>
-                    = stage8_scene_graph::enter_ball;
-                |q: BallEntryQuery| -> Option<f32> { F::enter_ball(&q.ray, &q.ball) }
+                EnterBoundingSphere fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32>
+                    = stage8_scene_graph::enter_bounding_sphere;
+                |q: BoundingSphereQuery| -> Option<f32> { F::enter_bounding_sphere(&q.ray, &q.sphere) }
                 /// The closest hit in a scene graph, with the given optimisations; `None` if nothing is hit.
                 /// Of two hits at the same `t` the smaller primitive number wins.
                 GraphHit fn closest_hit_in_graph[P: Probe](graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings) -> Option<PrimitiveHit>

@@ -46,7 +46,7 @@ pub use partitions::{
 };
 pub use recursion::{Bounce, SecondaryRay, ScatterQuery, FresnelQuery, Limits, RefractQuery};
 pub use scene_graph::{
-    BallEntryQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,
+    BoundingSphereQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,
     SolidQuery,
 };
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};

@@ -57,11 +57,11 @@ pub struct SolidHit {
 
 /// Asks where `ray` enters a bounding sphere; the answer is a `t` if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BallEntryQuery {
+pub struct BoundingSphereQuery {
     /// The ray; its range says where an entry counts.
     pub ray: Ray,
     /// The bounding sphere, which is closed.
-    pub ball: Sphere,
+    pub sphere: Sphere,
 }
 
 /// Asks for the closest hit in `graph`, with a table that has the answer to every call of the search. The

@@ -94,14 +94,14 @@ diffuse = [1, 0, 0]
 [materials.unused]
 mirror = 1
 [[nodes]]
-name = "ball"
+name = "sphere"
 shape = { sphere = { center = [0, 0, 0], radius = 1 } }
 [[nodes]]
 material = "red"
-children = ["ball"]
+children = ["sphere"]
 transform_end = [{ translate = [1, 0, 0] }]
 [[nodes]]
-children = ["ball"]
+children = ["sphere"]
 "#;
         let scene = parse(Path::new("test.toml"), text).expect("a scene");
         let shown: Vec<_> = scene.shown().into_iter().map(|s| (s.node, s.materials, s.moves)).collect();

@@ -9,7 +9,7 @@ use crate::graph::Placement;
 use crate::kit::{StudentFunctions, Surface};
 use crate::ray::Ray;
 use crate::shape::{Plane, Sphere, Triangle};
-use crate::world::{Geometry, Instance, Primitive, Solid, SolidShape, World, around_ball};
+use crate::world::{Geometry, Instance, Primitive, Solid, SolidShape, World, around_sphere};
 use glam::{DVec3, Vec2, Vec3, vec2};
 
 /// A point at which a ray hits a surface, with everything that shading needs.
@@ -187,8 +187,8 @@ fn on_plane(ray: &Ray, t: f32, plane: &Plane) -> Point {
 fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid: &Solid) -> Point {
     let placement = &solid.placement;
     let own = F::ray_to_object(ray, &placement.to_object);
-    if let SolidShape::Ball(ball) = &solid.shape {
-        return to_world::<F>(on_sphere::<F>(&own, hit.t, ball), placement);
+    if let SolidShape::Sphere(sphere) = &solid.shape {
+        return to_world::<F>(on_sphere::<F>(&own, hit.t, sphere), placement);
     }
     let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(-own.dir.normalize_or(Vec3::Z));
     let point = own.at(hit.t);
@@ -262,7 +262,7 @@ pub fn texture_coordinates<F: StudentFunctions>(
             }
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at::<F>(world, primitive, ray.time) {
-                Geometry::Sphere(sphere) => around_ball(world.ball_axes[image] * (point - sphere.center)),
+                Geometry::Sphere(sphere) => around_sphere(world.sphere_axes[image] * (point - sphere.center)),
                 Geometry::Triangle(triangle) => {
                     uv_on_triangle(world, image, barycentric::<F>(tests, ray, &triangle, hit.detail))
                 }

@@ -22,9 +22,9 @@ pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
         Structure::Graph { graph, volumes: Volumes::Boxes(boxes) } => {
             edges(nodes_at(graph, depth).into_iter().map(|node| boxes[node as usize]).collect())
         }
-        Structure::Graph { graph, volumes: Volumes::Balls(balls) } => {
-            let balls = nodes_at(graph, depth).into_iter().filter_map(|node| balls[node as usize]);
-            balls.flat_map(|ball| circles(&ball)).collect()
+        Structure::Graph { graph, volumes: Volumes::Spheres(spheres) } => {
+            let spheres = nodes_at(graph, depth).into_iter().filter_map(|node| spheres[node as usize]);
+            spheres.flat_map(|sphere| circles(&sphere)).collect()
         }
         Structure::Grid(grid) => edges(grid.cells(depth)),
         Structure::Octree { tree, .. } => edges(tree.cells(depth)),
@@ -48,12 +48,12 @@ fn edges_of(bounds: &Aabb) -> Vec<[Vec3; 2]> {
 }
 
 /// Three circles on the sphere, one around each axis, of 48 segments each.
-fn circles(ball: &Sphere) -> Vec<[Vec3; 2]> {
+fn circles(sphere: &Sphere) -> Vec<[Vec3; 2]> {
     const CORNERS: usize = 48;
     let circle = |axis: usize| {
         let at = move |i: usize| {
             let (sin, cos) = (TAU * i as f32 / CORNERS as f32).sin_cos();
-            ball.center + ball.radius * (cos * Vec3::AXES[(axis + 1) % 3] + sin * Vec3::AXES[(axis + 2) % 3])
+            sphere.center + sphere.radius * (cos * Vec3::AXES[(axis + 1) % 3] + sin * Vec3::AXES[(axis + 2) % 3])
         };
         (0..CORNERS).map(move |i| [at(i), at(i + 1)])
     };

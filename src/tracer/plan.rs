@@ -302,7 +302,7 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
         Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
         Accelerator::BoundingBoxes => (8, &[Function::closest_hit_in_graph]),
         Accelerator::BoundingSpheres => {
-            (8, &[Function::closest_hit_in_graph, Function::bounding_ball, Function::enter_ball])
+            (8, &[Function::closest_hit_in_graph, Function::bounding_sphere, Function::enter_bounding_sphere])
         }
         Accelerator::CachedBvh => (9, &[Function::cached_search]),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),

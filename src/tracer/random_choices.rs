@@ -18,7 +18,7 @@ pub fn sample_area_light<F: StudentFunctions>(
     let sample = match shape {
         AreaShape::Rectangle { corner, edges } => light.from_place(F::sample_rectangle(*corner, *edges, u), at),
         AreaShape::Disk(disk) => light.from_place(F::sample_light_disk(disk, u), at),
-        AreaShape::Sphere(ball) => light.from_ball(ball, F::sample_sphere(ball, at, u), at),
+        AreaShape::Sphere(sphere) => light.from_sphere(sphere, F::sample_sphere(sphere, at, u), at),
     };
     LightSample { radiance: sample.radiance / parts as f32, ..sample }
 }

@@ -13,9 +13,9 @@ use crate::world::{Solid, SolidShape};
 pub fn intersect_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, solid: &Solid) -> Option<SolidHit> {
     let ray = &F::ray_to_object(ray, &solid.placement.to_object);
     match &solid.shape {
-        SolidShape::Ball(ball) => {
-            let t = tests.sphere::<F>(ray, ball)?;
-            Some(SolidHit { t, normal: F::sphere_normal(ball.center, ray.at(t)) })
+        SolidShape::Sphere(sphere) => {
+            let t = tests.sphere::<F>(ray, sphere)?;
+            Some(SolidHit { t, normal: F::sphere_normal(sphere.center, ray.at(t)) })
         }
         SolidShape::Cuboid(shape) => F::cuboid(ray, shape),
         SolidShape::Cylinder(shape) => F::cylinder(ray, shape),
@@ -28,7 +28,7 @@ pub fn intersect_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, solid:
 /// The bounding box of a solid in world space, with room for rounding errors.
 pub fn bounds_of_solid<F: StudentFunctions>(solid: &Solid) -> Aabb {
     let own = match &solid.shape {
-        SolidShape::Ball(ball) => F::sphere_bounds(ball),
+        SolidShape::Sphere(sphere) => F::sphere_bounds(sphere),
         other => other.bounds(),
     };
     placed_bounds::<F>(&own, &solid.placement)

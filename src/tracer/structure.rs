@@ -56,7 +56,7 @@ pub enum Volumes {
     /// Axis-aligned bounding boxes.
     Boxes(Vec<Aabb>),
     /// Bounding spheres.
-    Balls(Vec<Option<Sphere>>),
+    Spheres(Vec<Option<Sphere>>),
 }
 
 /// The primitives below a structure, with the questions that searches ask about them.
@@ -106,7 +106,7 @@ impl Structure {
             }
             (Some(Accelerator::BoundingSpheres), Some(graph)) => {
                 let volumes =
-                    Volumes::Balls(boxes::<F>(&graph, bounds).iter().map(ball_around::<F>).collect());
+                    Volumes::Spheres(boxes::<F>(&graph, bounds).iter().map(sphere_around::<F>).collect());
                 Structure::Graph { graph, volumes }
             }
             (Some(Accelerator::Grid), _) => {
@@ -203,7 +203,7 @@ impl Structure {
                     graph.nodes.iter().map(|n| bytes(&n.children) + bytes(&n.primitives)).sum();
                 let volumes = match volumes {
                     Volumes::Boxes(boxes) => bytes(boxes),
-                    Volumes::Balls(balls) => bytes(balls),
+                    Volumes::Spheres(spheres) => bytes(spheres),
                 };
                 let references = graph.nodes.iter().map(|node| node.primitives.len()).sum();
                 (graph.nodes.len(), graph.depth(), references, bytes(&graph.nodes) + lists + volumes)
@@ -248,7 +248,7 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
                 let bounds = &boxes[node as usize];
                 F::slab(ray, self.probe.inverse_dir(), bounds).map(|(enter, _)| enter)
             }
-            Volumes::Balls(balls) => F::enter_ball(ray, balls[node as usize].as_ref()?),
+            Volumes::Spheres(spheres) => F::enter_bounding_sphere(ray, spheres[node as usize].as_ref()?),
         }
     }
 
@@ -291,6 +291,6 @@ fn boxes<F: StudentFunctions>(graph: &Graph, bounds: &[Aabb]) -> Vec<Aabb> {
     boxes
 }
 
-fn ball_around<F: StudentFunctions>(bounds: &Aabb) -> Option<Sphere> {
-    (!bounds.is_empty()).then(|| F::bounding_ball(&corners(bounds)))
+fn sphere_around<F: StudentFunctions>(bounds: &Aabb) -> Option<Sphere> {
+    (!bounds.is_empty()).then(|| F::bounding_sphere(&corners(bounds)))
 }

@@ -160,7 +160,7 @@ mod tests {
 
     fn check_volume(facets: &[Facet], exact: f32) {
         let share = volume(facets) / exact;
-        assert!((0.998..1.0001).contains(&share), "{share}"); // 128 corners: 0.04 % of a circle is missing, twice on a ball
+        assert!((0.998..1.0001).contains(&share), "{share}"); // 128 corners: 0.04 % of a circle is missing, twice on a sphere
         for facet in facets {
             let [a, b, c] = facet.corners;
             let normal = (b - a).cross(c - a);

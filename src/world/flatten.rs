@@ -192,7 +192,7 @@ impl Flattener<'_> {
         let image = match self.reads_image(material) {
             true => {
                 let own = Mat3::from(way.start.matrix3).transpose();
-                Slot::push(&mut self.world.ball_axes, own)
+                Slot::push(&mut self.world.sphere_axes, own)
             }
             false => Slot::NONE,
         };

@@ -16,9 +16,9 @@ impl Light {
     pub fn from_its_middle(&self, point: Vec3) -> LightSample {
         match &self.emitter {
             Emitter::Point { position, .. } => self.from_place(*position, point),
-            Emitter::Area { shape: AreaShape::Sphere(ball), .. } => {
-                let direction = (ball.center - point).normalize_or(Vec3::Y);
-                self.from_ball(ball, direction, point)
+            Emitter::Area { shape: AreaShape::Sphere(sphere), .. } => {
+                let direction = (sphere.center - point).normalize_or(Vec3::Y);
+                self.from_sphere(sphere, direction, point)
             }
             Emitter::Area { shape, .. } => self.from_place(shape.center(), point),
             Emitter::Directional { direction } => {
@@ -41,15 +41,15 @@ impl Light {
         self.arriving(direction, distance, distance)
     }
 
-    /// The light that would arrive at `point` from the point of the spherical light `ball` that it sees in
+    /// The light that would arrive at `point` from the point of the spherical light `sphere` that it sees in
     /// the unit direction `direction`: the near side from outside of the sphere, the far side from inside.
     ///
     /// It weakens with the distance to the centre, as if all light came from there. A direction that just
     /// misses the sphere by a rounding error counts as touching it. At the centre, inverse-square falloff
     /// gives infinite radiance (NaN in a channel that is 0).
-    pub fn from_ball(&self, ball: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
-        let distance = distance_to_ball(ball, direction, point);
-        self.arriving(direction, distance, point.distance(ball.center))
+    pub fn from_sphere(&self, sphere: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
+        let distance = distance_to_sphere(sphere, direction, point);
+        self.arriving(direction, distance, point.distance(sphere.center))
     }
 
     #[inline]
@@ -68,10 +68,10 @@ impl Light {
 
 /// The distance along the unit vector `direction` to the sphere: to its near side from outside, to its far
 /// side from inside. A direction that just misses the sphere by a rounding error counts as touching it.
-fn distance_to_ball(ball: &Sphere, direction: Vec3, point: Vec3) -> f32 {
+fn distance_to_sphere(sphere: &Sphere, direction: Vec3, point: Vec3) -> f32 {
     // In double precision: 24 bits do not hold the square of a small radius beside that of a long way.
-    let (to_center, direction) = (ball.center.as_dvec3() - point.as_dvec3(), direction.as_dvec3());
-    let radius = f64::from(ball.radius);
+    let (to_center, direction) = (sphere.center.as_dvec3() - point.as_dvec3(), direction.as_dvec3());
+    let radius = f64::from(sphere.radius);
     let middle = to_center.dot(direction);
     let half_chord = (radius * radius - (to_center - middle * direction).length_squared()).max(0.0).sqrt();
     let outside = to_center.length_squared() > radius * radius;
@@ -83,12 +83,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_to_a_ball_ends_at_its_surface() {
-        let ball = Sphere { center: Vec3::new(0.0, 5.0, 0.0), radius: 2.0 };
-        assert_eq!(distance_to_ball(&ball, Vec3::Y, Vec3::ZERO), 3.0);
-        assert_eq!(distance_to_ball(&ball, Vec3::Y, Vec3::new(0.0, 4.0, 0.0)), 3.0); // from inside
+    fn the_way_to_a_sphere_ends_at_its_surface() {
+        let sphere = Sphere { center: Vec3::new(0.0, 5.0, 0.0), radius: 2.0 };
+        assert_eq!(distance_to_sphere(&sphere, Vec3::Y, Vec3::ZERO), 3.0);
+        assert_eq!(distance_to_sphere(&sphere, Vec3::Y, Vec3::new(0.0, 4.0, 0.0)), 3.0); // from inside
         let touching = Vec3::new(2.0, 21f32.sqrt(), 0.0).normalize();
-        assert!((distance_to_ball(&ball, touching, Vec3::ZERO) - 21f32.sqrt()).abs() < 2e-3);
+        assert!((distance_to_sphere(&sphere, touching, Vec3::ZERO) - 21f32.sqrt()).abs() < 2e-3);
     }
 
     #[test]

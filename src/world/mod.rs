@@ -12,7 +12,7 @@ mod meshes;
 mod solids;
 mod transforms;
 
-pub use solids::{Solid, SolidShape, around_ball};
+pub use solids::{Solid, SolidShape, around_sphere};
 
 use crate::camera::Camera;
 use crate::effects::Effects;
@@ -71,7 +71,7 @@ pub struct Primitive {
     /// there holds its normals at time 1.
     pub normals: Slot,
     /// For a primitive whose colour is read from an image: index into [`World::uvs`] for a triangle, into
-    /// [`World::ball_axes`] for a sphere.
+    /// [`World::sphere_axes`] for a sphere.
     pub image: Slot,
     /// Index into [`World::ends`] of the geometry at time 1, if the primitive moves.
     pub end: Slot,
@@ -136,7 +136,7 @@ pub struct World {
     pub uvs: Vec<[Vec2; 3]>,
     /// For spheres with an image: the matrix from directions in the world to directions in the space of the
     /// sphere, up to a positive factor.
-    pub ball_axes: Vec<Mat3>,
+    pub sphere_axes: Vec<Mat3>,
     /// The geometry of moving primitives at time 1; [`Primitive::geometry`] is that at time 0.
     pub ends: Vec<Geometry>,
     /// All materials, with the indices that they have in the scene.

@@ -19,7 +19,7 @@ pub struct Solid {
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolidShape {
     /// A sphere; in the world its transform makes it an ellipsoid.
-    Ball(Sphere),
+    Sphere(Sphere),
     /// A box with faces along the axes of its own space.
     Cuboid(Cuboid),
     /// A cylinder, closed by a disk at either end.
@@ -36,7 +36,7 @@ impl SolidShape {
     /// The solid of `shape`; `None` for infinite planes, triangles, meshes and Bézier patches.
     pub(super) fn of(shape: &Shape) -> Option<SolidShape> {
         Some(match shape {
-            Shape::Sphere(ball) => SolidShape::Ball(*ball),
+            Shape::Sphere(sphere) => SolidShape::Sphere(*sphere),
             Shape::Cuboid(cuboid) => SolidShape::Cuboid(*cuboid),
             Shape::Cylinder(cylinder) => SolidShape::Cylinder(*cylinder),
             Shape::Cone(cone) => SolidShape::Cone(*cone),
@@ -50,7 +50,7 @@ impl SolidShape {
     /// that it loses no point of the shape.
     pub fn bounds(&self) -> Aabb {
         let shape = match self.clone() {
-            SolidShape::Ball(ball) => Shape::Sphere(ball),
+            SolidShape::Sphere(sphere) => Shape::Sphere(sphere),
             SolidShape::Cuboid(cuboid) => Shape::Cuboid(cuboid),
             SolidShape::Cylinder(cylinder) => Shape::Cylinder(cylinder),
             SolidShape::Cone(cone) => Shape::Cone(cone),
@@ -66,12 +66,12 @@ impl SolidShape {
     /// Texture coordinates at `point` of the surface, whose normal is `normal`, both in the space of the
     /// shape; the result lies in `0..=1` along u and v.
     ///
-    /// A sphere has an image around it, as in [`around_ball`]. A box has the whole image on each face. A
+    /// A sphere has an image around it, as in [`around_sphere`]. A box has the whole image on each face. A
     /// coordinate of `point` that is not finite, or along which the box is flat, counts as the middle of the
     /// face. Other shapes show the middle of the image, `(0.5, 0.5)`.
     pub fn texture_coordinates(&self, point: Vec3, normal: Vec3) -> Vec2 {
         match self {
-            SolidShape::Ball(ball) => around_ball(point - ball.center),
+            SolidShape::Sphere(sphere) => around_sphere(point - sphere.center),
             SolidShape::Cuboid(cuboid) => on_face(cuboid, point, normal),
             _ => vec2(0.5, 0.5),
         }
@@ -83,7 +83,7 @@ impl SolidShape {
 ///
 /// The v coordinate is 0 at -y and 1 at +y. The u coordinate is 0.5 at +z and 0.75 at +x, and jumps from 1 to
 /// 0 at -z. The direction may be of any length; zero, infinite and NaN directions count as +y.
-pub fn around_ball(direction: Vec3) -> Vec2 {
+pub fn around_sphere(direction: Vec3) -> Vec2 {
     let own = direction.normalize_or(Vec3::Y);
     vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
 }

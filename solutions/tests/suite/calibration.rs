@@ -26,10 +26,10 @@ const STATISTICAL: [(&str, u32); 11] = [
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
     ("places_on_a_round_lamp_are_even", 1),
-    ("directions_to_a_ball_are_even", 2),
-    ("a_far_ball_is_still_a_ball", 1),
-    ("from_inside_a_ball_it_is_everywhere", 1),
-    ("half_a_ball_makes_half_a_shadow", 4),
+    ("directions_to_a_sphere_are_even", 2),
+    ("a_far_sphere_is_still_a_sphere", 1),
+    ("from_inside_a_sphere_it_is_everywhere", 1),
+    ("half_a_sphere_makes_half_a_shadow", 4),
     ("phong_lobe_falls_with_the_power_of_the_cosine", 6),
     ("slightly_rough_is_not_a_few_angles", 1),
     ("times_are_even", 1),
@@ -120,12 +120,12 @@ fn rectangle(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
     })))
 }
 
-/// Directions to a ball from its rim's sine and cosine and two random numbers.
-fn ball(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<Answer> {
+/// Directions to a sphere from its rim's sine and cosine and two random numbers.
+fn sphere(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<Answer> {
     let Request::SampleSphere(queries) = request else { return None };
-    Some(Answer::SampleSphere(each(queries, |SphereSampleQuery { ball, from, u }| {
-        let to_center = ball.center - *from;
-        let sin_rim = ball.radius / to_center.length();
+    Some(Answer::SampleSphere(each(queries, |SphereSampleQuery { sphere, from, u }| {
+        let to_center = sphere.center - *from;
+        let sin_rim = sphere.radius / to_center.length();
         around(to_center.normalize_or(Vec3::Y), cosine(sin_rim, u.x), u.y)
     })))
 }
@@ -158,7 +158,7 @@ type Wrong = (&'static str, &'static str, fn(&Request) -> Option<Answer>);
 
 const WRONG: &[Wrong] = &[
     ("disk: radius even", "places_on_the_disk_are_even", |r| disk(r, |u| polar(u.x, u.y))),
-    ("disk: radius as in a ball, ∛u", "places_on_the_disk_are_even", |r| {
+    ("disk: radius as in a sphere, ∛u", "places_on_the_disk_are_even", |r| {
         disk(r, |u| polar(u.x.cbrt(), u.y))
     }),
     ("disk: radius u^0.45", "places_on_the_disk_are_even", |r| disk(r, |u| polar(u.x.powf(0.45), u.y))),
@@ -189,17 +189,17 @@ const WRONG: &[Wrong] = &[
     }),
     ("rectangle: u²", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x * u.x, u.y))),
     ("rectangle: u^1.1", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x.powf(1.1), u.y))),
-    ("ball: θ even", "directions_to_a_ball_are_even", |r| ball(r, |rim, u| (u * rim.min(1.0).asin()).cos())),
-    ("ball: a flat disk in its middle", "directions_to_a_ball_are_even", |r| {
-        ball(r, |rim, u| (1.0 / (1.0 + u * rim * rim)).sqrt())
+    ("sphere: θ even", "directions_to_a_sphere_are_even", |r| sphere(r, |rim, u| (u * rim.min(1.0).asin()).cos())),
+    ("sphere: a flat disk in its middle", "directions_to_a_sphere_are_even", |r| {
+        sphere(r, |rim, u| (1.0 / (1.0 + u * rim * rim)).sqrt())
     }),
-    ("ball: sin² even", "directions_to_a_ball_are_even", |r| ball(r, |rim, u| (1.0 - u * rim * rim).sqrt())),
-    ("ball: far, 1 - cos θ rounded", "a_far_ball_is_still_a_ball", |r| {
-        ball(r, |rim, u| 1.0 - u * (1.0 - (1.0 - rim * rim).sqrt()))
+    ("sphere: sin² even", "directions_to_a_sphere_are_even", |r| sphere(r, |rim, u| (1.0 - u * rim * rim).sqrt())),
+    ("sphere: far, 1 - cos θ rounded", "a_far_sphere_is_still_a_sphere", |r| {
+        sphere(r, |rim, u| 1.0 - u * (1.0 - (1.0 - rim * rim).sqrt()))
     }),
-    ("ball: inside, θ even", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| (PI * u).cos())),
-    ("ball: inside, half of it", "from_inside_a_ball_it_is_everywhere", |r| ball(r, |_, u| u)),
-    ("ball: half of the rim", "half_a_ball_makes_half_a_shadow", |r| {
+    ("sphere: inside, θ even", "from_inside_a_sphere_it_is_everywhere", |r| sphere(r, |_, u| (PI * u).cos())),
+    ("sphere: inside, half of it", "from_inside_a_sphere_it_is_everywhere", |r| sphere(r, |_, u| u)),
+    ("sphere: half of the rim", "half_a_sphere_makes_half_a_shadow", |r| {
         let Request::SampleSphere(queries) = r else { return None };
         let halved = |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
         Some(

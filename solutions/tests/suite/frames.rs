@@ -191,8 +191,8 @@ fn a_film_of_one_pixel_and_an_empty_scene_are_frames_too() {
     assert_eq!(rendering.counts, Counts { primary: 1, ..Counts::default() });
 }
 
-/// A floor and a wall in ambient light, with a ball of this material before them.
-fn ball_of(material: &str) -> Scene {
+/// A floor and a wall in ambient light, with a sphere of this material before them.
+fn sphere_of(material: &str) -> Scene {
     scene(&format!(
         r#"
 [film]
@@ -204,7 +204,7 @@ look_at = [0, 1, 0]
 [environment]
 background = [0.2, 0.4, 0.8]
 ambient = 1
-[materials.ball]
+[materials.sphere]
 diffuse = 0
 {material}
 [materials.wall]
@@ -215,7 +215,7 @@ shape = {{ plane = {{ point = [0, 0, 0], normal = [0, 1, 0] }} }}
 material = "wall"
 shape = {{ box = {{ min = [-1, 0, -4], max = [0.3, 2, -3] }} }}
 [[nodes]]
-material = "ball"
+material = "sphere"
 shape = {{ sphere = {{ center = [0, 1, 0], radius = 1 }} }}
 "#
     ))
@@ -224,14 +224,14 @@ shape = {{ sphere = {{ center = [0, 1, 0], radius = 1 }} }}
 #[test]
 fn glass_that_bends_nothing_is_not_seen() {
     let empty = {
-        let mut scene = ball_of("");
+        let mut scene = sphere_of("");
         scene.roots.pop();
         render(&scene)
     };
-    let glass = render(&ball_of("transmission = 1"));
+    let glass = render(&sphere_of("transmission = 1"));
     let off =
         empty.film.pixels.iter().zip(&glass.film.pixels).filter(|(p, q)| (**p - **q).length() > 1e-3).count();
-    // Where the ball is entered its surface moves the ray by a rounding, which an outline behind it may notice.
+    // Where the sphere is entered its surface moves the ray by a rounding, which an outline behind it may notice.
     assert!(off <= 3, "{off} of 2700 pixels differ");
     assert_eq!(empty.counts.transmission, 0);
     assert!(glass.counts.transmission > 0 && glass.counts.reflection == 0);
@@ -239,10 +239,10 @@ fn glass_that_bends_nothing_is_not_seen() {
 
 #[test]
 fn a_mirror_traces_one_ray_for_each_ray_that_meets_it() {
-    let mirror = render(&ball_of("mirror = 0.5"));
-    let dull = render(&ball_of("mirror = 0"));
+    let mirror = render(&sphere_of("mirror = 0.5"));
+    let dull = render(&sphere_of("mirror = 0"));
     assert_eq!(dull.counts.reflection, 0);
-    // The ball is convex: no mirrored ray meets it again, so there are as many as pixels that show it.
+    // The sphere is convex: no mirrored ray meets it again, so there are as many as pixels that show it.
     let shown = mirror.film.pixels.iter().zip(&dull.film.pixels).filter(|(p, q)| p != q).count();
     assert_eq!(mirror.counts.reflection, shown as u64);
 }
@@ -250,7 +250,7 @@ fn a_mirror_traces_one_ray_for_each_ray_that_meets_it() {
 #[test]
 fn deeper_glass_adds_rays_up_to_the_depth_and_then_none() {
     let rays = |depth: u32| {
-        let mut scene = ball_of("transmission = 1\nindex_of_refraction = 1.5\nfresnel = \"exact\"");
+        let mut scene = sphere_of("transmission = 1\nindex_of_refraction = 1.5\nfresnel = \"exact\"");
         (scene.quality.max_depth, scene.quality.min_contribution) = (depth, 0.0);
         let counts = render(&scene).counts;
         counts.reflection + counts.transmission

@@ -21,7 +21,7 @@ fn n_rays() -> u64 {
 
 enum Thing {
     Tile(Triangle),
-    Ball(Sphere),
+    Sphere(Sphere),
 }
 
 struct Things(Vec<Thing>);
@@ -30,7 +30,7 @@ impl Things {
     fn boxes(&self) -> Vec<Aabb> {
         let bounds = |thing: &Thing| match thing {
             Thing::Tile(tile) => stage3_bvh::triangle_bounds(tile),
-            Thing::Ball(ball) => stage3_bvh::sphere_bounds(ball),
+            Thing::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
         };
         self.0.iter().map(bounds).collect()
     }
@@ -38,7 +38,7 @@ impl Things {
     fn hulls(&self) -> Vec<Vec<Vec3>> {
         let hull = |thing: &Thing| match thing {
             Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
-            Thing::Ball(ball) => corners(&stage3_bvh::sphere_bounds(ball)),
+            Thing::Sphere(sphere) => corners(&stage3_bvh::sphere_bounds(sphere)),
         };
         self.0.iter().map(hull).collect()
     }
@@ -56,7 +56,7 @@ impl Asked<'_> {
     fn meet(&self, primitive: u32, ray: &Ray) -> Option<f32> {
         match &self.things.0[primitive as usize] {
             Thing::Tile(tile) => stage2_triangles::triangle_choice(ray, tile).map(|hit| hit.t),
-            Thing::Ball(ball) => stage1_shapes::sphere_algebraic(ray, ball.center, ball.radius),
+            Thing::Sphere(sphere) => stage1_shapes::sphere_algebraic(ray, sphere.center, sphere.radius),
         }
     }
 }
@@ -83,14 +83,14 @@ impl Probe for Asked<'_> {
     }
 }
 
-/// A soup of triangles and balls, `size` large and moved to `at`; some on a lattice, so that much touches and coincides.
+/// A soup of triangles and spheres, `size` large and moved to `at`; some on a lattice, so that much touches and coincides.
 fn soup(random: &mut Random, n: usize, size: f32, at: Vec3) -> Things {
     let things = (0..n).map(|i| {
         let snap = |p: Vec3| if i % 3 == 0 { (4.0 * p).round() / 4.0 } else { p };
         let p = snap(random.in_cube());
         let mut corner = || at + size * (p + 0.2 * snap(random.in_cube()));
         match i % 4 {
-            3 => Thing::Ball(Sphere { center: corner(), radius: 0.06 * size }),
+            3 => Thing::Sphere(Sphere { center: corner(), radius: 0.06 * size }),
             _ => Thing::Tile(Triangle { a: corner(), b: corner(), c: corner() }),
         }
     });
@@ -131,7 +131,7 @@ fn ray(random: &mut Random, things: &Things, size: f32, at: Vec3) -> Ray {
         1 => random.direction(),
         _ => match &things.0[random.below(things.0.len() as u64) as usize] {
             Thing::Tile(tile) => (tile.a - origin).normalize_or(Vec3::X),
-            Thing::Ball(ball) => (ball.center - origin).normalize_or(Vec3::X),
+            Thing::Sphere(sphere) => (sphere.center - origin).normalize_or(Vec3::X),
         },
     };
     Ray::new(origin, dir)

@@ -96,7 +96,7 @@ fn light_leaks_through_a_wall_in_single_precision_only() {
 }
 
 #[test]
-fn the_rim_of_a_far_ball_is_exact_in_double() {
+fn the_rim_of_a_far_sphere_is_exact_in_double() {
     let text = r#"
 [film]
 width = 48
@@ -111,13 +111,13 @@ background = 1
 shape = { sphere = { center = [0.3, 0.1, -0.2], radius = 1 } }
 "#;
     let mut scene = scene(text);
-    let (camera, ball) = (camera_for(&scene), Sphere { center: vec3(0.3, 0.1, -0.2), radius: 1.0 });
-    assert_eq!(scene.nodes[0].shape, Some(Shape::Sphere(ball)));
+    let (camera, sphere) = (camera_for(&scene), Sphere { center: vec3(0.3, 0.1, -0.2), radius: 1.0 });
+    assert_eq!(scene.nodes[0].shape, Some(Shape::Sphere(sphere)));
     let wrong = |frame: &Rendering| {
         let pixel = |index: u32| [index % 48, index / 48].map(|place| (place as f32 + 0.5) / 48.0);
         let is_wrong = |index: &u32| {
             let [x, y] = pixel(*index);
-            let hit = verdict(&camera.ray(x, y), Body::Sphere(ball)).is_some_and(|verdict| verdict.is_hit());
+            let hit = verdict(&camera.ray(x, y), Body::Sphere(sphere)).is_some_and(|verdict| verdict.is_hit());
             hit != (frame.film.pixels[*index as usize] == Vec3::ZERO)
         };
         (0..48 * 48).filter(is_wrong).count()

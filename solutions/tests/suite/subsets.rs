@@ -108,7 +108,7 @@ fn meets(tree: &[TracedRay], materials: &[&str]) -> bool {
     tree.iter().any(|ray| ray.hit.as_ref().is_some_and(|(_, name)| materials.contains(&name.as_str())))
 }
 
-/// Whether some ray of the tree, were it endless, would pass where the toy ball goes.
+/// Whether some ray of the tree, were it endless, would pass where the toy sphere goes.
 fn passes_the_toy(tree: &[TracedRay]) -> bool {
     let way = Aabb::new(vec3(0.34, 0.0, 1.34), vec3(1.76, 0.92, 2.31));
     tree.iter().any(|ray| {

@@ -97,7 +97,7 @@ fn result(stage: u8, name: &str, outcome: Outcome) -> CheckResult {
 
 /// A golden picture stands in for a picture of differences.
 fn picture() -> Option<Picture> {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden/stage1_ball_on_a_plane.png");
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden/stage1_sphere_on_a_plane.png");
     let png = BASE64.encode(std::fs::read(file).ok()?);
     Some(Picture { caption: "reference | yours | difference".to_owned(), png })
 }

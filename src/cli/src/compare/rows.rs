@@ -72,14 +72,14 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             };
             let none = Savings { volumes: false, skip: false, sort: false };
             let boxes = Accelerator::BoundingBoxes;
-            let balls = Accelerator::BoundingSpheres;
+            let spheres = Accelerator::BoundingSpheres;
             vec![
                 graph("graph, nothing saved", boxes, none),
                 graph("graph, boxes first", boxes, Savings { volumes: true, ..none }),
                 graph("graph, boxes, skip", boxes, Savings { sort: false, ..Savings::default() }),
                 graph("graph, boxes, sort", boxes, Savings { skip: false, ..Savings::default() }),
                 graph("graph, boxes, skip and sort", boxes, Savings::default()),
-                graph("graph, balls, skip and sort", balls, Savings::default()),
+                graph("graph, spheres, skip and sort", spheres, Savings::default()),
                 with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
                 with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),
                 with("bvh, packets of 8", &|quality| quality.accelerator = Accelerator::PacketBvh),

@@ -97,7 +97,7 @@ fn light_name(scene: &Scene, light: usize) -> String {
         Emitter::Directional { .. } => "directional",
         Emitter::Area { shape: AreaShape::Rectangle { .. }, .. } => "rectangle",
         Emitter::Area { shape: AreaShape::Disk(_), .. } => "disk",
-        Emitter::Area { shape: AreaShape::Sphere(_), .. } => "ball",
+        Emitter::Area { shape: AreaShape::Sphere(_), .. } => "sphere",
     };
     format!("lamp {} ({kind})", light + 1)
 }

@@ -8,7 +8,7 @@ mod roots;
 mod sphere_method;
 mod spheres;
 
-use picture::picture_of_a_ball_on_a_plane;
+use picture::picture_of_a_sphere_on_a_plane;
 use planes::{
     face_forward_turns_the_normal_to_the_ray, plane_agrees_with_double_precision, plane_far_from_the_origin,
     plane_is_missed_by_rays_along_it,
@@ -48,5 +48,5 @@ checks::stage! { ($ crate) 1 [
     plane_is_missed_by_rays_along_it
     plane_far_from_the_origin
     face_forward_turns_the_normal_to_the_ray
-    picture_of_a_ball_on_a_plane
+    picture_of_a_sphere_on_a_plane
 ] }

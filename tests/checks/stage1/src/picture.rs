@@ -6,28 +6,28 @@ use glam::Vec3;
 use raykata::kit::{PlaneQuery, SphereQuery};
 use raykata::shape::{Plane, Sphere};
 
-pub(super) fn picture_of_a_ball_on_a_plane(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> Outcome {
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
-    let ball = Sphere { center: Vec3::Y, radius: 1.0 };
+    let sphere = Sphere { center: Vec3::Y, radius: 1.0 };
     let rays = picture::rays(Vec3::new(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
     let on_floor =
         trial.kit.plane(&rays.iter().map(|&ray| PlaneQuery { ray, plane: floor }).collect::<Vec<_>>());
-    let to_ball: Vec<SphereQuery> = rays.iter().map(|&ray| SphereQuery { ray, sphere: ball }).collect();
-    let on_ball = trial.kit.sphere_geometric(&to_ball);
+    let to_sphere: Vec<SphereQuery> = rays.iter().map(|&ray| SphereQuery { ray, sphere: sphere }).collect();
+    let on_sphere = trial.kit.sphere_geometric(&to_sphere);
     let points: Vec<(Sphere, Vec3)> =
-        rays.iter().zip(&on_ball).map(|(ray, t)| (ball, ray.at(t.unwrap_or(0.0)))).collect();
+        rays.iter().zip(&on_sphere).map(|(ray, t)| (sphere, ray.at(t.unwrap_or(0.0)))).collect();
     let outwards = trial.kit.sphere_normal(&points);
     let normals: Vec<(Vec3, Vec3)> = rays
         .iter()
-        .zip(&on_ball)
+        .zip(&on_sphere)
         .zip(outwards)
         .map(|((ray, t), out)| (t.map_or(Vec3::Y, |_| out), ray.dir))
         .collect();
     let facing = trial.kit.face_forward(&normals);
-    // The ball hides the floor wherever both are hit: it stands between the floor and the eye.
-    let hit = on_floor.iter().zip(&on_ball).map(|(floor, ball)| floor.is_some() || ball.is_some());
+    // The sphere hides the floor wherever both are hit: it stands between the floor and the eye.
+    let hit = on_floor.iter().zip(&on_sphere).map(|(floor, sphere)| floor.is_some() || sphere.is_some());
     let colors =
         hit.zip(facing).map(|(hit, normal)| if hit { picture::normal_color(normal) } else { Vec3::ZERO });
-    // The outline of the ball crosses about 60 of 4800 pixels, and a ray that only just hits may fall either way.
-    picture::compare("stage1_ball_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
+    // The outline of the sphere crosses about 60 of 4800 pixels, and a ray that only just hits may fall either way.
+    picture::compare("stage1_sphere_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
 }

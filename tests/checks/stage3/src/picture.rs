@@ -10,14 +10,14 @@ use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(1.0, 1.0, 0.3);
 
-/// Two turns of a spiral of balls. Each ray brings the whole tree and all answers along, so it is a small one.
+/// Two turns of a spiral of spheres. Each ray brings the whole tree and all answers along, so it is a small one.
 fn spiral() -> Vec<Sphere> {
-    let ball = |i: u8| {
+    let sphere = |i: u8| {
         let turns = f32::from(i) / 12.0;
         let (sin, cos) = (TAU * turns).sin_cos();
         Sphere { center: TARGET + vec3(1.8 * cos, 1.8 * (turns - 1.0), 1.8 * sin), radius: 0.42 }
     };
-    (0..24).map(ball).collect()
+    (0..24).map(sphere).collect()
 }
 
 pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
@@ -26,7 +26,7 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
     let bvh = tree::joined(&boxes, 2);
     let rays = picture::rays(vec3(4.0, 5.0, 6.0), TARGET);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect();
-    // White near the eye, black behind the balls.
+    // White near the eye, black behind the spheres.
     let depths = trial
         .kit
         .closest_hit(&queries)

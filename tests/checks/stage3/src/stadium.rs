@@ -125,12 +125,12 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
     Ok(())
 }
 
-/// A row of 64 balls along the ray: the first is hit, and of each pair of nodes the farther one lies behind that hit.
+/// A row of 64 spheres along the ray: the first is hit, and of each pair of nodes the farther one lies behind that hit.
 fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
-    let balls: Vec<Sphere> =
+    let spheres: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
-    let bvh = tree::joined(&balls.iter().map(tree::sphere_box).collect::<Vec<_>>(), 1);
-    let query = tree::search_query(&bvh, &balls, &Ray::new(vec3(-9.0, 0.0, 0.0), Vec3::X));
+    let bvh = tree::joined(&spheres.iter().map(tree::sphere_box).collect::<Vec<_>>(), 1);
+    let query = tree::search_query(&bvh, &spheres, &Ray::new(vec3(-9.0, 0.0, 0.0), Vec3::X));
     let needed = tree::needed(&query).0.len() as u64;
     let yours = trial.kit.closest_hit(std::slice::from_ref(&query))[0].counts.node_visits;
     let told = |n: u64| format!("{n} nodes opened");
@@ -144,7 +144,7 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
         }
         _ => "the farther box is not tested again after a nearer hit was found",
     };
-    let input = "a ray along a row of 64 balls, of which it hits the first";
+    let input = "a ray along a row of 64 spheres, of which it hits the first";
     let most = format!("at most {}", told(needed));
     Err(Broken::told(input, told(yours), most, "counted").looks_like(Some(diagnosis)))
 }

@@ -14,8 +14,8 @@ pub(super) fn lamps(at: Vec3) -> Vec<LightSample> {
     vec![lamp(vec3(4.0, 5.0, 3.0), vec3(0.9, 0.8, 0.7)), lamp(vec3(-5.0, 2.0, 4.0), vec3(0.1, 0.2, 0.5))]
 }
 
-/// A point of a unit ball at the origin, lit by two lamps, one of which a second ball hides from the lower left.
-pub(super) fn ball_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
+/// A point of a unit sphere at the origin, lit by two lamps, one of which a second sphere hides from the lower left.
+pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
     let surface =
         Surface { point: normal, error: Vec3::splat(4e-7), geometric_normal: normal, shading_normal: normal };
     let material = Material {
@@ -35,7 +35,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
             let (azimuth, height) = ((i % 8) as f32 * 0.785, 0.8 - (i / 8) as f32 * 0.7);
             let flat = (1.0 - height * height).sqrt();
             let normal = vec3(flat * azimuth.cos(), height, flat * azimuth.sin());
-            ball_point(normal, (vec3(0.0, 1.0, 6.0) - normal).normalize())
+            sphere_point(normal, (vec3(0.0, 1.0, 6.0) - normal).normalize())
         })
         .collect();
     let lines: Vec<String> = queries
@@ -51,10 +51,10 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
             )
         })
         .collect();
-    golden::compare("stage4_shading_table", "24 points of a ball, two lamps", &lines.join("\n"))
+    golden::compare("stage4_shading_table", "24 points of a sphere, two lamps", &lines.join("\n"))
 }
 
-pub(super) fn picture_of_a_lit_ball(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {
     let rays = picture::rays(vec3(0.0, 1.0, 3.2), Vec3::ZERO);
     let points: Vec<Option<Vec3>> = rays
         .iter()
@@ -66,9 +66,9 @@ pub(super) fn picture_of_a_lit_ball(trial: &Trial<'_>) -> Outcome {
         })
         .collect();
     let queries: Vec<ShadeQuery> =
-        rays.iter().zip(&points).map(|(ray, point)| ball_point(point.unwrap_or(Vec3::Y), -ray.dir)).collect();
+        rays.iter().zip(&points).map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.dir)).collect();
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
     // The points are given, so only light on the horizon may round either way: a few of 4800 pixels.
-    picture::compare("stage4_lit_ball", &picture::film_of(colors.collect()), &rays, 0.001)
+    picture::compare("stage4_lit_sphere", &picture::film_of(colors.collect()), &rays, 0.001)
 }

@@ -10,7 +10,7 @@ mod shadows;
 mod terms;
 
 use gamma::{gamma_is_two, gamma_survives_nonsense};
-use golden::{picture_of_a_lit_ball, shading_table};
+use golden::{picture_of_a_lit_sphere, shading_table};
 use normals::{shading_normal_faces_the_viewer, shading_normal_falls_back_to_flat};
 use shades::{
     shade_adds_up_the_lights, shade_leaves_out_what_is_hidden, shade_traces_one_ray_a_light_at_most,
@@ -39,5 +39,5 @@ checks::stage! { ($ crate) 4 [
     gamma_is_two
     gamma_survives_nonsense
     shading_table
-    picture_of_a_lit_ball
+    picture_of_a_lit_sphere
 ] }

@@ -23,7 +23,7 @@ use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees
 use spawn::rays_that_go_on_leave_their_surface;
 use trees::{
     facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,
-    tree_of_a_glass_ball,
+    tree_of_a_glass_sphere,
 };
 use weights::scatter_count_by_their_own_weight;
 
@@ -45,5 +45,5 @@ checks::stage! { ($ crate) 5 [
     tree_ends_at_its_depth
     tree_ends_where_children_count_too_little
     facing_mirrors_end
-    tree_of_a_glass_ball
+    tree_of_a_glass_sphere
 ] }

@@ -108,8 +108,8 @@ pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// The tree of a ray through a glass ball, each ray with its weight. Every correct solution makes this one.
-pub(super) fn tree_of_a_glass_ball(trial: &Trial<'_>) -> Outcome {
+/// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution makes this one.
+pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> Outcome {
     let glass = Material {
         transmission: Vec3::ONE,
         index_of_refraction: 1.5,
@@ -121,13 +121,13 @@ pub(super) fn tree_of_a_glass_ball(trial: &Trial<'_>) -> Outcome {
     let (sine, cosine) = (0.5f32, 0.75f32.sqrt());
     follow(trial, &glass, start, vec3(cosine, sine, 0.0), true, Vec3::ONE, 0, &mut text);
     golden::compare(
-        "stage5_tree_of_a_glass_ball",
-        "a ray into a ball of glass (index 1.5, Fresnel::Exact) at 30°, depth 4",
+        "stage5_tree_of_a_glass_sphere",
+        "a ray into a sphere of glass (index 1.5, Fresnel::Exact) at 30°, depth 4",
         &text,
     )
 }
 
-/// Writes the children of a ray that meets the unit ball at `point`, and theirs.
+/// Writes the children of a ray that meets the unit sphere at `point`, and theirs.
 #[allow(clippy::too_many_arguments, reason = "a recursion over plain data")]
 fn follow(
     trial: &Trial<'_>,
@@ -152,7 +152,7 @@ fn follow(
     for child in children {
         let indent = "  ".repeat(depth as usize);
         let goes_in = (child.bounce == Bounce::Transmission) == entering;
-        let fate = if goes_in { "to the ball" } else { "away" };
+        let fate = if goes_in { "to the sphere" } else { "away" };
         text.push_str(&format!("{indent}{:?} {:.3} {fate}\n", child.bounce, child.weight.x));
         if goes_in {
             // Inside, the next hit is the other end of the chord.

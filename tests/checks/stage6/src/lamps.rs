@@ -90,13 +90,13 @@ pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
     covers_evenly("sample_light_disk(…, u)", &places, ["radius²", "angle"], uneven_disk)
 }
 
-/// The directions to a ball, as shares of the solid angle under which it is seen: from its middle to its rim, and
+/// The directions to a sphere, as shares of the solid angle under which it is seen: from its middle to its rim, and
 /// around it.
-fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, Broken> {
+fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, Broken> {
     let queries: Vec<SphereSampleQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { ball, from, u }).collect();
-    let to_center = ball.center.as_dvec3() - from.as_dvec3();
-    let sin_squared = f64::from(ball.radius).powi(2) / to_center.length_squared();
+        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { sphere, from, u }).collect();
+    let to_center = sphere.center.as_dvec3() - from.as_dvec3();
+    let sin_squared = f64::from(sphere.radius).powi(2) / to_center.length_squared();
     let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
     let axis = to_center.normalize();
     let (x, y) = axis.any_orthonormal_pair();
@@ -114,16 +114,16 @@ fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, 
         if !(unit && share <= 1.0 + slack) {
             let input = format!(
                 "sample_sphere(&Sphere {{ center: {}, radius: {} }}, {}, {})",
-                ball.center.paste(),
-                ball.radius.paste(),
+                sphere.center.paste(),
+                sphere.radius.paste(),
                 from.paste(),
                 query.u.paste()
             );
-            let broken = Broken::new(input, direction, "a unit direction to the ball", "the definition");
+            let broken = Broken::new(input, direction, "a unit direction to the sphere", "the definition");
             let diagnosis = match () {
-                () if dir.is_nan() => "NaN: 1 - sin² is below 0 from inside the ball",
+                () if dir.is_nan() => "NaN: 1 - sin² is below 0 from inside the sphere",
                 () if !unit => "not of unit length",
-                () => "this way misses the ball",
+                () => "this way misses the sphere",
             };
             return Err(broken.looks_like(Some(diagnosis)));
         }
@@ -134,14 +134,14 @@ fn seen(trial: &Trial<'_>, ball: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, 
 
 const AXES: [&str; 2] = ["1 - cos θ, as a share of the rim's", "the angle around the centre"];
 
-pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
-    let ball = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
+pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
+    let sphere = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
     let from = vec3(1.0, 1.0, 2.0);
-    let shares = seen(trial, ball, from)?;
+    let shares = seen(trial, sphere, from)?;
     covers_evenly("sample_sphere from 1.25 radii away", &shares, AXES, |counts| {
         let rings = columns(counts);
         if rings[7] == 0 {
-            "part of the ball is never asked: it is seen up to its rim, where sin θ is radius / distance"
+            "part of the sphere is never asked: it is seen up to its rim, where sin θ is radius / distance"
         } else if 2 * rings[0] > 3 * rings[7] {
             "crowded in the middle: slices of equal height, not rings of equal width, have equal area"
         } else if 2 * rings[7] > 3 * rings[0] {
@@ -150,55 +150,55 @@ pub(super) fn directions_to_a_ball_are_even(trial: &Trial<'_>) -> Outcome {
             ""
         }
     })?;
-    // The light that a surface facing the ball gets: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
+    // The light that a surface facing the sphere gets: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
     let cos_rim = 0.6; // its sine is 2.4 / 3
     let cosines: Vec<f64> = shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
     has_mean("the cosine of sample_sphere with the way to the centre", &cosines, 0.5 * (1.0 + cos_rim), "")
 }
 
-pub(super) fn a_far_ball_is_still_a_ball(trial: &Trial<'_>) -> Outcome {
+pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> Outcome {
     // Ten thousand radii away: 1 - cos θ of its rim is 5e-9, and f32 does not know it from 0.
-    let ball = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
+    let sphere = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
     let rounded = "1 - cos θ is rounded to 0 and all directions to one: take sin²θ / (1 + cos θ)";
-    let shares = seen(trial, ball, Vec3::ZERO)?;
+    let shares = seen(trial, sphere, Vec3::ZERO)?;
     covers_evenly("sample_sphere from 10,000 radii away", &shares, AXES, |counts| {
         // Directions are rounded to a thousandth of the rim's angle, which moves none by more than a cell.
         if counts.iter().max() > Some(&(SAMPLES as u64 / 8)) { rounded } else { "" }
     })
 }
 
-pub(super) fn from_inside_a_ball_it_is_everywhere(trial: &Trial<'_>) -> Outcome {
-    let ball = Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 };
-    let shares = seen(trial, ball, vec3(0.5, 0.0, 0.5))?;
+pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> Outcome {
+    let sphere = Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 };
+    let shares = seen(trial, sphere, vec3(0.5, 0.0, 0.5))?;
     covers_evenly("sample_sphere from inside", &shares, AXES, |counts| {
         let rings = columns(counts);
         if rings[4..].iter().sum::<u64>() == 0 { "only half of all directions" } else { "" }
     })?;
     // From its very middle no direction is special, and none may be NaN.
-    let query = SphereSampleQuery { ball, from: ball.center, u: Vec2::splat(0.25) };
+    let query = SphereSampleQuery { sphere, from: sphere.center, u: Vec2::splat(0.25) };
     let direction = trial.kit.sample_sphere(&[query])[0];
     if (direction.length() - 1.0).abs() < 1e-5 {
         return Ok(());
     }
-    let input = format!("sample_sphere from the centre of the ball, {}", call("u =", &[&query.u]));
+    let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
     Err(Broken::new(input, direction, "any unit direction", "the definition")
         .looks_like(direction.is_nan().then_some("the way to the centre has no direction")))
 }
 
-/// The share of a ball that is seen past the straight edge of a wall.
-pub(super) fn half_a_ball_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
-    let ball = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
+/// The share of a sphere that is seen past the straight edge of a wall.
+pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
+    let sphere = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
     let queries: Vec<SphereSampleQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { ball, from: Vec3::ZERO, u }).collect();
+        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { sphere, from: Vec3::ZERO, u }).collect();
     let directions = trial.kit.sample_sphere(&queries);
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
         let seen: Vec<f64> =
             directions.iter().map(|dir| f64::from(u8::from(dir.as_dvec3().dot(normal) > 0.0))).collect();
         has_mean(
-            "sample_sphere past a wall that hides just half of the ball",
+            "sample_sphere past a wall that hides just half of the sphere",
             &seen,
             0.5,
-            "one side of the ball is asked more often than the other",
+            "one side of the sphere is asked more often than the other",
         )?;
     }
     Ok(())

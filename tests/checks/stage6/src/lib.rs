@@ -13,8 +13,8 @@ mod rough;
 use checks::generate::unit;
 use glam::Vec3;
 use lamps::{
-    a_far_ball_is_still_a_ball, directions_to_a_ball_are_even, from_inside_a_ball_it_is_everywhere,
-    half_a_ball_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_lamp_are_even,
+    a_far_sphere_is_still_a_sphere, directions_to_a_sphere_are_even, from_inside_a_sphere_it_is_everywhere,
+    half_a_sphere_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_lamp_are_even,
 };
 use lens::{
     lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens, lens_without_width_is_a_pinhole,
@@ -56,10 +56,10 @@ checks::stage! { ($ crate) 6 [
     lens_is_as_sharp_a_million_units_away
     places_on_a_rectangle_are_even
     places_on_a_round_lamp_are_even
-    directions_to_a_ball_are_even
-    a_far_ball_is_still_a_ball
-    from_inside_a_ball_it_is_everywhere
-    half_a_ball_makes_half_a_shadow
+    directions_to_a_sphere_are_even
+    a_far_sphere_is_still_a_sphere
+    from_inside_a_sphere_it_is_everywhere
+    half_a_sphere_makes_half_a_shadow
     smooth_surfaces_stay_sharp
     phong_lobe_falls_with_the_power_of_the_cosine
     slightly_rough_is_not_a_few_angles

@@ -1,6 +1,6 @@
 //! What lights and materials call for.
 
-use super::scenes::{ball_lamp, lamp};
+use super::scenes::{sphere_lamp, lamp};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -36,27 +36,27 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
         ("a black lamp", lamp(Vec3::ZERO, 3.0), quality(1), nothing, "black light is none: it takes nothing"),
         ("a faint red lamp", lamp(vec3(1e-6, 0.0, 0.0), 1.0), quality(1), one, "faint light is light"),
         (
-            "a ball of light",
-            ball_lamp(Vec3::ONE),
+            "a sphere of light",
+            sphere_lamp(Vec3::ONE),
             quality(16),
             LightEffects { samples: 16, area: true, shadows: true },
             "a lamp with an extent is asked light_samples times",
         ),
         (
-            "a ball of light with light_samples = 1",
-            ball_lamp(Vec3::ONE),
+            "a sphere of light with light_samples = 1",
+            sphere_lamp(Vec3::ONE),
             quality(1),
             LightEffects { samples: 1, area: true, shadows: true },
             "one place is drawn at random as well",
         ),
         (
-            "a ball of light with light_samples = 0",
-            ball_lamp(Vec3::ONE),
+            "a sphere of light with light_samples = 0",
+            sphere_lamp(Vec3::ONE),
             quality(0),
             one,
             "it shines from its middle",
         ),
-        ("a black ball", ball_lamp(Vec3::ZERO), quality(16), nothing, "it gives no light: it takes nothing"),
+        ("a black sphere", sphere_lamp(Vec3::ZERO), quality(16), nothing, "it gives no light: it takes nothing"),
     ];
     let queries: Vec<LightQuery> = cases
         .iter()

@@ -14,7 +14,7 @@ pub(super) fn lamp(color: Vec3, intensity: f32) -> Light {
     Light { emitter, color, intensity, shadows: true }
 }
 
-pub(super) fn ball_lamp(color: Vec3) -> Light {
+pub(super) fn sphere_lamp(color: Vec3) -> Light {
     let shape = AreaShape::Sphere(Sphere { center: vec3(0.0, 5.0, 0.0), radius: 1.0 });
     Light { emitter: Emitter::Area { shape, falloff: Falloff::None }, ..lamp(color, 1.0) }
 }
@@ -23,25 +23,25 @@ pub(super) fn camera() -> Camera {
     Camera::new(vec3(0.0, 1.0, 5.0), Vec3::NEG_Z, Vec3::Y, 40.0, 1.0).expect("a camera that looks along -z")
 }
 
-pub(super) fn ball(material: usize) -> Node {
+pub(super) fn sphere(material: usize) -> Node {
     let shape = Shape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
-    Node { name: "ball".into(), shape: Some(shape), material: Some(material), ..Node::default() }
+    Node { name: "sphere".into(), shape: Some(shape), material: Some(material), ..Node::default() }
 }
 
-/// A scene with one ball of `material` and a lamp.
-pub(super) fn one_ball(material: Material) -> Scene {
+/// A scene with one sphere of `material` and a lamp.
+pub(super) fn one_sphere(material: Material) -> Scene {
     let mut scene = Scene::empty(camera());
     scene.lights.push(lamp(Vec3::ONE, 1.0));
     scene.materials.push(material);
-    scene.material_names.push("ball".into());
-    scene.nodes.push(ball(1));
+    scene.material_names.push("sphere".into());
+    scene.nodes.push(sphere(1));
     scene.roots.push(0);
     scene
 }
 
 /// A scene that calls for every effect that is built.
 pub(super) fn everything() -> Scene {
-    let mut scene = one_ball(Material {
+    let mut scene = one_sphere(Material {
         mirror: Vec3::splat(0.3),
         roughness: 0.2,
         texture: Some(0),
@@ -55,11 +55,11 @@ pub(super) fn everything() -> Scene {
         pixels: Arc::new(vec![Vec3::ONE]),
         wrap: Wrap::Repeat,
     });
-    scene.lights.push(ball_lamp(Vec3::ONE));
+    scene.lights.push(sphere_lamp(Vec3::ONE));
     scene.camera.lens = Some(Lens { aperture: 0.1, focal_distance: 4.0 });
     scene.camera.shutter = Some(Shutter { open: 0.0, close: 1.0 });
     let transform_end = Some(Affine3A::from_translation(Vec3::X));
-    scene.nodes.push(Node { transform_end, ..ball(2) });
+    scene.nodes.push(Node { transform_end, ..sphere(2) });
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
         smooth: true,

@@ -1,6 +1,6 @@
 //! What whole scenes call for.
 
-use super::scenes::{BUILT, everything, lamp, one_ball, one_triangle};
+use super::scenes::{BUILT, everything, lamp, one_sphere, one_triangle};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -44,35 +44,35 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
 }
 
 pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome {
-    let scene = one_ball(Material::default());
-    judge(trial, "a dull ball under a lamp", scene.clone(), &plain(), "no shape is of the default material")?;
+    let scene = one_sphere(Material::default());
+    judge(trial, "a dull sphere under a lamp", scene.clone(), &plain(), "no shape is of the default material")?;
     let indirect = Scene { indirect_light: true, ..scene };
     let as_it_says = "indirect_light is as the scene says";
     let expected = Effects { indirect_light: true, ..plain() };
     judge(trial, "the same with indirect light", indirect, &expected, as_it_says)?;
 
-    let mut dark = one_ball(Material::default());
+    let mut dark = one_sphere(Material::default());
     dark.lights.insert(0, lamp(Vec3::ZERO, 1.0));
     let mut expected = plain();
     expected.lights.insert(0, LightEffects::default());
     expected.materials[1].lights = vec![1];
     let in_place =
         "a lamp without light takes nothing and keeps its place: one entry for each light of the scene";
-    judge(trial, "a dull ball under a black lamp and a white one", dark, &expected, in_place)
+    judge(trial, "a dull sphere under a black lamp and a white one", dark, &expected, in_place)
 }
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
     let shown = "only what is reached from a root is shown: ask scene.shown()";
-    let mut scene = one_ball(Material::default());
+    let mut scene = one_sphere(Material::default());
     scene.materials.push(Material { mirror: Vec3::ONE, ..Material::default() });
     scene.material_names.push("mirror".into());
     let mut expected = plain();
     expected.materials.push(MaterialEffects::default());
-    judge(trial, "a dull ball, and a mirror that nothing is made of", scene.clone(), &expected, shown)?;
+    judge(trial, "a dull sphere, and a mirror that nothing is made of", scene.clone(), &expected, shown)?;
 
     // The same mirror on a node that no root leads to.
-    scene.nodes.push(super::scenes::ball(2));
-    judge(trial, "a dull ball, and a mirror ball that is not in the scene", scene.clone(), &expected, shown)?;
+    scene.nodes.push(super::scenes::sphere(2));
+    judge(trial, "a dull sphere, and a mirror sphere that is not in the scene", scene.clone(), &expected, shown)?;
 
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
@@ -81,7 +81,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
         materials: Vec::new(),
     });
     expected.smooth_meshes = vec![false];
-    judge(trial, "a dull ball, and a smooth mesh that stands nowhere", scene.clone(), &expected, shown)?;
+    judge(trial, "a dull sphere, and a smooth mesh that stands nowhere", scene.clone(), &expected, shown)?;
 
     // The mesh stands there, half of it of the mirror.
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 2], face_materials: vec![0, 1], ..one_triangle() };
@@ -91,11 +91,11 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
     scene.roots.push(scene.nodes.len() - 1);
     expected.materials[2] = MaterialEffects { mirror: true, ..expected.materials[1].clone() };
     let several = "a mesh may be of several materials: look at all of shape.materials";
-    judge(trial, "a dull ball, and a mesh that is half a mirror", scene, &expected, several)
+    judge(trial, "a dull sphere, and a mesh that is half a mirror", scene, &expected, several)
 }
 
 pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> Outcome {
-    let still = one_ball(Material::default());
+    let still = one_sphere(Material::default());
     let mut moving = still.clone();
     moving.nodes[0].transform_end = Some(glam::Affine3A::from_translation(Vec3::X));
     let with = |scene: &Scene, lens: Option<f32>, shutter: Option<(f32, f32)>| {
@@ -118,32 +118,32 @@ pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -
             lens,
             "an aperture above 0 blurs, with or without a shutter",
         ),
-        ("a shutter before a still ball", with(&still, None, Some((0.0, 1.0))), plain(), "nothing moves"),
+        ("a shutter before a still sphere", with(&still, None, Some((0.0, 1.0))), plain(), "nothing moves"),
         (
-            "a moving ball without a shutter",
+            "a moving sphere without a shutter",
             with(&moving, None, None),
             plain(),
             "the picture is taken at time 0",
         ),
         (
-            "a moving ball, and a shutter that closes when it opens",
+            "a moving sphere, and a shutter that closes when it opens",
             with(&moving, None, Some((0.5, 0.5))),
             plain(),
             "all rays have the same time",
         ),
         (
-            "a moving ball before a shutter",
+            "a moving sphere before a shutter",
             with(&moving, None, Some((0.25, 0.5))),
             motion,
             "it moves while the shutter is open, with or without a lens",
         ),
         (
-            "a shutter, and a moving ball that is not in the scene",
+            "a shutter, and a moving sphere that is not in the scene",
             elsewhere,
             plain(),
             "only what is shown moves",
         ),
-        ("a ball that moves to where it is", in_place, plain(), "it does not move: ask scene.shown()"),
+        ("a sphere that moves to where it is", in_place, plain(), "it does not move: ask scene.shown()"),
     ];
     for (what, scene, expected, diagnosis) in cases {
         judge(trial, what, scene, &expected, diagnosis)?;

@@ -1,10 +1,10 @@
 //! Stage 8: scene graph and solids.
 //!
-//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `balls` (around points) · `graph` (searches) ·
+//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `spheres` (around points) · `graph` (searches) ·
 //! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard`, `flat` (where their formulas lie) · `surfaces`
 //! (patches) · `subdivision` (meshes; `quarters`: their triangles)
 
-mod balls;
+mod bounding_spheres;
 mod boxes;
 mod flat;
 mod graph;
@@ -16,8 +16,8 @@ mod spaces;
 mod subdivision;
 mod surfaces;
 
-use balls::{
-    ball_holds_all_points, ball_is_small, enter_ball_finds_what_is_met, enter_ball_passes_what_is_missed,
+use bounding_spheres::{
+    sphere_holds_all_points, sphere_is_small, enter_bounding_sphere_finds_what_is_met, enter_bounding_sphere_passes_what_is_missed,
 };
 use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
 use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};
@@ -54,10 +54,10 @@ checks::stage! { ($ crate) 8 [
     placement_refuses_what_cannot_be_undone
     boxes_hold_what_they_should_after_transforms
     boxes_have_little_room_after_transforms
-    ball_holds_all_points
-    ball_is_small
-    enter_ball_finds_what_is_met
-    enter_ball_passes_what_is_missed
+    sphere_holds_all_points
+    sphere_is_small
+    enter_bounding_sphere_finds_what_is_met
+    enter_bounding_sphere_passes_what_is_missed
     graph_finds_the_closest_hit
     graph_asks_for_everything_without_savings
     graph_asks_for_volumes_first

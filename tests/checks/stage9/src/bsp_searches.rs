@@ -1,8 +1,8 @@
 //! The way of a ray through a BSP tree.
 
 use super::parts;
-use super::scenes::{Scene, Thing, ball, wall};
-use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
+use super::scenes::{Scene, Thing, sphere, wall};
+use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
 use super::structures::bsp;
 use checks::Trial;
 use checks::broken::Outcome;
@@ -13,9 +13,9 @@ use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
-    // The large ball reaches through the plane x + y = 0, and is hit behind it and behind the small one.
-    let large = Thing::Ball(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
-    let scene = Scene::new(vec![large, ball(0.25, 0.2, 0.0, 0.125)]);
+    // The large sphere reaches through the plane x + y = 0, and is hit behind it and behind the small one.
+    let large = Thing::Sphere(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
+    let scene = Scene::new(vec![large, sphere(0.25, 0.2, 0.0, 0.125)]);
     let says = "the search stopped before it came to the side with a nearer hit: a hit need not be on the side that lists it";
     let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
@@ -49,7 +49,7 @@ fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, say
 pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
     let says = "trap A7: where the plane is behind the ray or beyond its end, the ray is on one side all the way, and that side must be searched";
     let scene =
-        Scene::new(vec![ball(-4.0, -4.0, 0.0, 1.0), ball(4.0, 4.0, 0.0, 1.0), ball(-4.0, 2.0, 0.0, 1.0)]);
+        Scene::new(vec![sphere(-4.0, -4.0, 0.0, 1.0), sphere(4.0, 4.0, 0.0, 1.0), sphere(-4.0, 2.0, 0.0, 1.0)]);
     let tree = two_leaves(diagonal(), &[0, 2], &[1]);
     let cases = [
         ("the plane is behind the ray", Ray::new(vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0))),
@@ -73,8 +73,8 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
 /// Rays in the plane and from it, and polygons that lie in it.
 pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
     let says = "a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
-    let balls =
-        Scene::new(vec![ball(3.0, -3.0, 0.0, 0.5), ball(-3.0, 3.0, 0.0, 0.5), ball(0.0, 0.0, 4.0, 0.5)]);
+    let spheres =
+        Scene::new(vec![sphere(3.0, -3.0, 0.0, 0.5), sphere(-3.0, 3.0, 0.0, 0.5), sphere(0.0, 0.0, 4.0, 0.5)]);
     let tile = |z: f32| {
         Thing::Tile(Triangle {
             a: vec3(4.0, -4.0, z - 4.0),
@@ -91,7 +91,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
             ask(
                 trial,
                 &tree,
-                &balls,
+                &spheres,
                 &Ray::new(Vec3::ZERO, dir),
                 "BSP tree of one plane x + y = 0, and a ray in it",
                 says,
@@ -111,7 +111,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
         }
     }
     // From a point of the plane to either side.
-    let sides = Scene::new(vec![ball(3.0, 3.0, 0.0, 0.5), ball(-3.0, -3.0, 0.0, 0.5)]);
+    let sides = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5), sphere(-3.0, -3.0, 0.0, 0.5)]);
     let tree = two_leaves(diagonal(), &[1], &[0]);
     for dir in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
         for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
@@ -140,11 +140,11 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
-    let (scene, rays) = balls_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
+    let (scene, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
     let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
-        judge_visits("BSP tree over 64 balls", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
+        judge_visits("BSP tree over 64 spheres", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
     }
     Ok(())
 }

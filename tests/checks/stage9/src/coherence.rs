@@ -1,6 +1,6 @@
 //! The last hit, and packets of rays: the same answers for less.
 
-use super::scenes::{Scene, ball, closest, rays, scenes};
+use super::scenes::{Scene, sphere, closest, rays, scenes};
 use checks::broken::{Broken, Outcome};
 use checks::generate::unit;
 use checks::judge::{compare, known};
@@ -28,7 +28,7 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
         (cached(&scene, &ray, (n > 0).then(|| pick % n)), n)
     });
     // Two at one t, and the larger number is known: the smaller one must still be heard.
-    let pair = Scene::new(vec![ball(5.0, 0.0, 0.0, 1.0); 2]);
+    let pair = Scene::new(vec![sphere(5.0, 0.0, 0.0, 1.0); 2]);
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let tie = (cached(&pair, &ray, Some(1)), 2);
     let judge = |queries: &[(CachedQuery, u32)]| {
@@ -61,15 +61,15 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
                 .looks_like(known(diagnosis)))
         })
     };
-    let behind = Scene::new(vec![ball(2.0, 0.0, 0.0, 0.5), ball(5.0, 0.0, 0.0, 1.0)]);
+    let behind = Scene::new(vec![sphere(2.0, 0.0, 0.0, 0.5), sphere(5.0, 0.0, 0.0, 1.0)]);
     let nearer = (cached(&behind, &ray, Some(1)), 2);
     judge(&[nearer, tie]).into_iter().collect::<Outcome>()?;
     trial.forall(1000, inputs, judge)
 }
 
 pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
-    // A row of balls one behind the other, numbered from the far end: without a known hit all are tested.
-    let row = Scene::new((0..32).rev().map(|i| ball(3.0 * i as f32, 0.0, 0.0, 1.0)).collect());
+    // A row of spheres one behind the other, numbered from the far end: without a known hit all are tested.
+    let row = Scene::new((0..32).rev().map(|i| sphere(3.0 * i as f32, 0.0, 0.0, 1.0)).collect());
     let [first, again] =
         [vec3(-5.0, 0.1, 0.0), vec3(-5.0, 0.11, 0.0)].map(|origin| Ray::new(origin, Vec3::X));
     let answers = trial.kit.cached_search(&[cached(&row, &first, None), cached(&row, &again, Some(31))]);
@@ -86,7 +86,7 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
         _ => "",
     };
     Err(Broken::told(
-        "a ray along 32 balls in a row, and the next ray, which hits the same one",
+        "a ray along 32 spheres in a row, and the next ray, which hits the same one",
         told(counts),
         told([32, 2]),
         "counted",
@@ -152,7 +152,7 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
-    // A row of balls, of which the first is hit, from either end: no two boxes overlap, so there is one order.
+    // A row of spheres, of which the first is hit, from either end: no two boxes overlap, so there is one order.
     let row: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
     for (x, dir) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
@@ -160,7 +160,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         judge_opened("8 equal rays along a row of", &yours, opened_alone(&singles[0]))?;
     }
-    let balls: Vec<Sphere> = (0..64)
+    let spheres: Vec<Sphere> = (0..64)
         .map(|i| Sphere {
             center: vec3((i % 8) as f32, (i / 8) as f32, 0.3 * (i % 3) as f32) * 2.0,
             radius: 0.6,
@@ -169,14 +169,14 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
     let ray = |x: f32, y: f32| Ray::new(vec3(-6.0, 7.0, 9.0), vec3(x + 6.0, y - 7.0, -9.0).normalize());
     for (x, y) in [(1.0, 1.0), (7.0, 9.0), (12.0, 3.0), (14.5, 14.0)] {
         // Eight times the same ray: what one of them costs, it costs once.
-        let (query, singles) = packet(&balls, &[ray(x, y); 8]);
+        let (query, singles) = packet(&spheres, &[ray(x, y); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         // Where both children are entered at one t either may come first.
         let most = opened_alone(&singles[0]) + 2;
         judge_opened("8 equal rays through", &yours, most)?;
         // And eight rays side by side open fewer nodes than one after the other.
         let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
-        let (query, singles) = packet(&balls, &beam);
+        let (query, singles) = packet(&spheres, &beam);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         let alone: u64 = singles.iter().map(opened_alone).sum();
         judge_opened("8 rays side by side through", &yours, alone / 2)?;
@@ -192,7 +192,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         // The rays go together, so a few may go into the farther child first.
         if needless > yours.opened.len() / 4 {
             let told = format!("{needless} of {} nodes opened without need", yours.opened.len());
-            return Err(Broken::told("8 rays side by side through 64 balls", told, "few", "counted").looks_like(Some(
+            return Err(Broken::told("8 rays side by side through 64 spheres", told, "few", "counted").looks_like(Some(
                 "nodes are opened that no ray enters before its hit: shorten each ray by its hits, and take the nearer child first",
             )));
         }
@@ -210,7 +210,7 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
     opened.sort_unstable();
     let again = opened.windows(2).find(|pair| pair[0] == pair[1]);
     let told = |n: u64| format!("{n} nodes opened");
-    let input = format!("{what} 64 balls");
+    let input = format!("{what} 64 spheres");
     if let Some(pair) = again {
         let broken =
             Broken::told(input, format!("node {} is opened again", pair[0]), "once a packet", "counted");

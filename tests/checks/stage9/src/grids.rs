@@ -2,7 +2,7 @@
 
 use super::lists::{bounds_fault, is_far_off, some_boxes};
 use super::parts;
-use super::scenes::{Scene, Thing, ball, rays, wall};
+use super::scenes::{Scene, Thing, sphere, rays, wall};
 use super::searches::{Searcher, agrees, grid_queries, judge, judge_visits};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
@@ -93,12 +93,12 @@ pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome 
     agrees(trial, Searcher::Grid)
 }
 
-/// Trap A8: a large ball of the first cell is met in the third, and a small one in the second is nearer.
+/// Trap A8: a large sphere of the first cell is met in the third, and a small one in the second is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> Outcome {
-    let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
-    let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25), ball(0.0, 3.0, 0.0, 0.5)]);
+    let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
+    let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25), sphere(0.0, 3.0, 0.0, 0.5)]);
     let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
-    // The large ball is listed from the first cell on, as a longer thing would be.
+    // The large sphere is listed from the first cell on, as a longer thing would be.
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 4.5, 4.0));
     let cells = filled(bounds, uvec3(4, 1, 1), &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
     let hits = scene.hits(&ray);
@@ -122,13 +122,13 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
         let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
         compare(&queries, trial.kit.grid_search(&queries), |query, yours| judge_way(query, &yours.visits))
     })?;
-    // A row of balls of which the first is hit: what lies behind is not visited.
-    let row = Scene::new((0..32).map(|i| ball(i as f32, 0.0, 0.0, 0.25)).collect());
+    // A row of spheres of which the first is hit: what lies behind is not visited.
+    let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
     let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
     for query in grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1)) {
         let ray = query.ray;
         let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
-        judge_visits("grid over a row of 32 balls", &ray, &parts::of_grid(&query.cells, &ray), &yours, true)?;
+        judge_visits("grid over a row of 32 spheres", &ray, &parts::of_grid(&query.cells, &ray), &yours, true)?;
     }
     Ok(())
 }
@@ -235,7 +235,7 @@ fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
 /// Through lattice corners, from faces, along faces, in a flat grid: what touches is found.
 pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Outcome {
     let lattice: Vec<Thing> = (0..27)
-        .map(|i| ball((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
+        .map(|i| sphere((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
         .collect();
     let walls: Vec<Thing> =
         (0..3).flat_map(|axis| [wall(axis, -2.0, 2.0), wall(axis, 2.0, 2.0)]).flatten().collect();
@@ -250,7 +250,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ou
         .flat_map(|dir| starts.map(|start| Ray::new(start, dir)))
         .collect();
     for (name, things, resolution) in [
-        ("27 balls", lattice, uvec3(4, 4, 4)),
+        ("27 spheres", lattice, uvec3(4, 4, 4)),
         ("a room", walls, uvec3(4, 4, 4)),
         ("flat tiles", flat, uvec3(6, 6, 1)),
     ] {

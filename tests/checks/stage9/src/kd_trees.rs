@@ -2,8 +2,8 @@
 
 use super::lists::{Fault, ended, endless, judge_references, lists_fault, some_boxes};
 use super::parts;
-use super::scenes::{Scene, Thing, ball, closest, wall};
-use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
+use super::scenes::{Scene, Thing, sphere, closest, wall};
+use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
 use super::structures::kd_tree;
 use checks::Trial;
 use checks::broken::Outcome;
@@ -164,8 +164,8 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
 }
 
 pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
-    let large = Thing::Ball(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
-    let scene = Scene::new(vec![large, ball(3.5, 0.0, 0.0, 0.25)]);
+    let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
+    let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25)]);
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 5.0, 4.0));
     let tree = two_leaves(bounds, 2.0, &[0], &[0, 1]);
     let says =
@@ -198,16 +198,16 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
     for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])] {
         let tree = two_leaves(bounds, 1.0, left, right);
-        // Two balls whose middles lie in the plane, and walls in it.
-        let balls =
-            Scene::new(vec![ball(1.0, 5.0, 0.0, 0.5), ball(1.0, 0.0, 5.0, 0.5), ball(1.0, -5.0, 0.0, 0.5)]);
+        // Two spheres whose middles lie in the plane, and walls in it.
+        let spheres =
+            Scene::new(vec![sphere(1.0, 5.0, 0.0, 0.5), sphere(1.0, 0.0, 5.0, 0.5), sphere(1.0, -5.0, 0.0, 0.5)]);
         for zero in [0.0, -0.0] {
             for (y, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)] {
                 let ray = Ray::new(vec3(1.0, 0.0, 0.0), vec3(zero, y, z));
                 ask(
                     trial,
                     &tree,
-                    &balls,
+                    &spheres,
                     &ray,
                     "kd-tree of two leaves, and a ray in the plane between them",
                     says,
@@ -216,7 +216,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
         }
         // From a point of the plane to what touches it on either side.
         let beside =
-            Scene::new(vec![ball(-3.0, 0.5, 0.0, 0.5), ball(-5.0, -0.5, 0.5, 1.0), ball(5.0, 0.5, 0.0, 0.5)]);
+            Scene::new(vec![sphere(-3.0, 0.5, 0.0, 0.5), sphere(-5.0, -0.5, 0.5, 1.0), sphere(5.0, 0.5, 0.0, 0.5)]);
         let sides = two_leaves(bounds, 1.0, &[0, 1], &[2]);
         for dir in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
             ask(
@@ -250,13 +250,13 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
 
 pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
-    let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
+    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
     let cells = kd_tree(&scene.boxes(), 10);
     let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.kd_search(&queries)) {
-        assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a ball");
+        assert!(closest(&query.hits, &query.ray).is_some(), "each ray is aimed at a sphere");
         judge_visits(
-            "kd-tree over 128 balls",
+            "kd-tree over 128 spheres",
             &query.ray,
             &parts::of_kd_tree(&cells, &query.ray),
             &yours,

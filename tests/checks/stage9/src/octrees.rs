@@ -2,8 +2,8 @@
 
 use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
 use super::parts;
-use super::scenes::{Scene, Thing, ball};
-use super::searches::{Searcher, agrees, balls_and_rays, judge, judge_visits, queries};
+use super::scenes::{Scene, Thing, sphere};
+use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -130,7 +130,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
     // Nothing in the middle, where octants meet.
     let things: Vec<Thing> = (0..27)
         .filter(|i| *i != 13)
-        .map(|i| ball((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
+        .map(|i| sphere((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
         .collect();
     let scene = Scene::new(things);
     let steps = [-1.0, 0.0, -0.0, 1.0];
@@ -145,13 +145,13 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
     let answers = match mishap::catch(|| searcher.ask(trial.kit, &scene, &rays)) {
         Ok(answers) => answers,
         Err(mishap::Mishap::Panicked { message, .. }) => {
-            let input = format!("{} over 26 balls, rays along axes and diagonals", searcher.name());
+            let input = format!("{} over 26 spheres, rays along axes and diagonals", searcher.name());
             return Err(Broken::told(input, message, "an answer", "brute force").looks_like(Some(says)));
         }
         Err(mishap) => mishap::unwind(mishap),
     };
     for (ray, yours) in rays.iter().zip(&answers) {
-        judge(&format!("{} over 26 balls", searcher.name()), ray, &scene.hits(ray), yours)
+        judge(&format!("{} over 26 spheres", searcher.name()), ray, &scene.hits(ray), yours)
             .map_err(|broken| broken.looks_like(Some(says)))?;
     }
     Ok(())
@@ -167,11 +167,11 @@ pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) 
     along_edges(trial, Searcher::Octree, says)
 }
 
-/// Trap A9: a large ball that reaches into the first octant is met in the second, behind a small one.
+/// Trap A9: a large sphere that reaches into the first octant is met in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
     let says = "trap A9: the hit of an octant lies beyond it, where another is nearer: go on until the next octant begins behind it";
-    let large = Thing::Ball(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
-    let scene = Scene::new(vec![large, ball(4.5, 1.0, 1.0, 0.25)]);
+    let large = Thing::Sphere(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
+    let scene = Scene::new(vec![large, sphere(4.5, 1.0, 1.0, 0.25)]);
     let ray = Ray::new(vec3(-1.0, 1.0, 1.0), Vec3::X);
     let mut cells = Octree::new(Aabb::new(Vec3::ZERO, Vec3::splat(8.0)));
     let first = cells.divide(0, 1, 1);
@@ -191,7 +191,7 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
-    let (scene, rays) = balls_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
+    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
     let cells = octree(&scene.boxes(), 4);
     let queries = queries(&cells, &scene, &rays);
     let by_cells = trial.kit.octree_by_cells(&queries);
@@ -199,12 +199,12 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
         queries.iter().zip(trial.kit.octree_search(&queries).into_iter().zip(by_cells))
     {
         let parts = parts::of_octree(&cells, &query.ray);
-        judge_visits("octree over 128 balls, from the root down", &query.ray, &parts, &down, true)?;
+        judge_visits("octree over 128 spheres, from the root down", &query.ray, &parts, &down, true)?;
         // On the way down to a leaf, nodes above are visited each time.
         let leaves = parts::of_leaves(&cells, &parts);
         let visits = along.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
         let along = CellsAnswer { visits, ..along };
-        judge_visits("octree over 128 balls, cell by cell", &query.ray, &parts, &along, true)?;
+        judge_visits("octree over 128 spheres, cell by cell", &query.ray, &parts, &along, true)?;
     }
     Ok(())
 }

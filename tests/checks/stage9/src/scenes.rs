@@ -1,4 +1,4 @@
-//! Balls and tiles, the boxes and hulls around them, and where a ray hits them: in double precision, then rounded as if
+//! Spheres and tiles, the boxes and hulls around them, and where a ray hits them: in double precision, then rounded as if
 //! each had a formula of its own.
 
 use checks::double::sphere_roots;
@@ -13,8 +13,8 @@ use raykata::shape::{Sphere, Triangle};
 /// A primitive.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Thing {
-    /// A ball.
-    Ball(Sphere),
+    /// A sphere.
+    Sphere(Sphere),
     /// A triangle.
     Tile(Triangle),
 }
@@ -38,7 +38,7 @@ impl Scene {
 
     pub(super) fn hulls(&self) -> Vec<Vec<Vec3>> {
         let hull = |thing: &Thing| match thing {
-            Thing::Ball(_) => corners(&bounds(thing)),
+            Thing::Sphere(_) => corners(&bounds(thing)),
             Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
         };
         self.things.iter().map(hull).collect()
@@ -48,8 +48,8 @@ impl Scene {
     pub(super) fn hits(&self, ray: &Ray) -> Vec<f32> {
         let hit = |(index, thing): (usize, &Thing)| {
             let t = match thing {
-                Thing::Ball(ball) => {
-                    let roots = sphere_roots(ray, ball).ok();
+                Thing::Sphere(sphere) => {
+                    let roots = sphere_roots(ray, sphere).ok();
                     roots.and_then(|roots| [roots.near, roots.far].into_iter().find(|t| *t > 0.0))
                 }
                 Thing::Tile(tile) => tile_t(ray, tile),
@@ -73,7 +73,7 @@ pub(super) fn closest(hits: &[f32], ray: &Ray) -> Option<(u32, f32)> {
 
 fn bounds(thing: &Thing) -> Aabb {
     match thing {
-        Thing::Ball(ball) => checks::tree::sphere_box(ball),
+        Thing::Sphere(sphere) => checks::tree::sphere_box(sphere),
         Thing::Tile(Triangle { a, b, c }) => Aabb::new(a.min(*b).min(*c), a.max(*b).max(*c)),
     }
 }
@@ -101,20 +101,20 @@ pub(super) fn wall(axis: usize, at: f32, size: f32) -> [Thing; 2] {
     [Thing::Tile(Triangle { a, b, c }), Thing::Tile(Triangle { a, b: c, c: d })]
 }
 
-/// A ball.
-pub(super) fn ball(x: f32, y: f32, z: f32, radius: f32) -> Thing {
-    Thing::Ball(Sphere { center: vec3(x, y, z), radius })
+/// A sphere.
+pub(super) fn sphere(x: f32, y: f32, z: f32, radius: f32) -> Thing {
+    Thing::Sphere(Sphere { center: vec3(x, y, z), radius })
 }
 
-/// Scenes of balls and walls on a coarse grid, where much touches and coincides, with a ray that likes axes, diagonals and
+/// Scenes of spheres and walls on a coarse grid, where much touches and coincides, with a ray that likes axes, diagonals and
 /// zeros of either sign.
 pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
-    let balls = prop::collection::vec((point(6), 1..=12i32), 0..16);
+    let spheres = prop::collection::vec((point(6), 1..=12i32), 0..16);
     let walls = prop::collection::vec((0..3usize, -4..=4i32, 1..=4i32), 0..5);
-    (balls, walls, rays(), any::<bool>(), any::<bool>()).prop_map(|(balls, walls, ray, rough, twice)| {
-        let balls = balls.into_iter().map(|(p, r)| ball(p.x, p.y, p.z, r as f32 / 8.0));
+    (spheres, walls, rays(), any::<bool>(), any::<bool>()).prop_map(|(spheres, walls, ray, rough, twice)| {
+        let spheres = spheres.into_iter().map(|(p, r)| sphere(p.x, p.y, p.z, r as f32 / 8.0));
         let walls = walls.into_iter().flat_map(|(axis, at, size)| wall(axis, at as f32, size as f32));
-        let mut things: Vec<Thing> = balls.chain(walls).collect();
+        let mut things: Vec<Thing> = spheres.chain(walls).collect();
         if twice && !rough {
             things.extend(things.clone());
         }
@@ -148,7 +148,7 @@ pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
 pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
     let cluster = |scale: f32, offset: Vec3| -> Vec<Thing> {
         let place = |i: i32| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
-        let thing = |i: i32| Thing::Ball(Sphere { center: scale * place(i) + offset, radius: 0.375 * scale });
+        let thing = |i: i32| Thing::Sphere(Sphere { center: scale * place(i) + offset, radius: 0.375 * scale });
         (0..48).map(thing).collect()
     };
     let looks = |scale: f32, offset: Vec3| -> Vec<Ray> {
@@ -158,7 +158,7 @@ pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
         targets.flat_map(|target| eyes.map(|eye| ray(eye, target))).collect()
     };
     let far = vec3(1e5, -1e5, 2e5);
-    let line = (0..20).map(|i| ball(i as f32, 0.0, 0.0, 0.25)).collect();
+    let line = (0..20).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect();
     let flat: Vec<Thing> = (0..6).flat_map(|i| wall(2, 0.0, 1.0 + 0.5 * i as f32)).collect();
     let broken = Thing::Tile(Triangle { a: Vec3::NAN, b: Vec3::ONE, c: Vec3::splat(f32::NAN) });
     let with_broken = cluster(1.0, Vec3::ZERO).into_iter().chain([broken, broken]).collect();
@@ -166,14 +166,14 @@ pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
     let stadium = (0..3).flat_map(|axis| [-1.0, 1.0].map(|side| wall(axis, side * 1e5, 1e5))).flatten();
     [
         ("nothing", Vec::new(), looks(1.0, Vec3::ZERO)),
-        ("one ball", vec![ball(1.0, 1.0, 1.0, 1.0)], looks(1.0, Vec3::ZERO)),
-        ("sixty balls in one place", vec![ball(1.0, 1.0, 1.0, 1.0); 60], looks(1.0, Vec3::ZERO)),
+        ("one sphere", vec![sphere(1.0, 1.0, 1.0, 1.0)], looks(1.0, Vec3::ZERO)),
+        ("sixty spheres in one place", vec![sphere(1.0, 1.0, 1.0, 1.0); 60], looks(1.0, Vec3::ZERO)),
         ("twelve tiles in one plane", flat, looks(1.0, Vec3::ZERO)),
-        ("twenty balls in a line", line, looks(1.0, Vec3::ZERO)),
+        ("twenty spheres in a line", line, looks(1.0, Vec3::ZERO)),
         ("two of fifty primitives not numbers", with_broken, looks(1.0, Vec3::ZERO)),
-        ("48 balls at (1e5, -1e5, 2e5)", cluster(1.0, far), looks(1.0, far)),
-        ("48 balls of 1e-6", cluster(1e-6, Vec3::ZERO), looks(1e-6, Vec3::ZERO)),
-        ("48 balls of 1e30", cluster(1e30, Vec3::ZERO), looks(1e30, Vec3::ZERO)),
+        ("48 spheres at (1e5, -1e5, 2e5)", cluster(1.0, far), looks(1.0, far)),
+        ("48 spheres of 1e-6", cluster(1e-6, Vec3::ZERO), looks(1e-6, Vec3::ZERO)),
+        ("48 spheres of 1e30", cluster(1e30, Vec3::ZERO), looks(1e30, Vec3::ZERO)),
         ("a teapot of 1e-3 in a stadium of 1e5", teapot.chain(stadium).collect(), looks(1e-3, Vec3::ZERO)),
     ]
     .map(|(name, things, rays)| (name, Scene::new(things), rays))

@@ -1,6 +1,6 @@
 //! The five searches of cells, asked and judged alike.
 
-use super::scenes::{Scene, Thing, ball, closest, odd_scenes, scenes};
+use super::scenes::{Scene, Thing, sphere, closest, odd_scenes, scenes};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -84,13 +84,13 @@ pub(super) fn grid_queries(
     rays.iter().map(query).collect()
 }
 
-/// Small balls at `places`, and rays at every `step`th of them from three eyes, of which one is at `x`.
-pub(super) fn balls_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
-    let balls = places.iter().map(|&center| Thing::Ball(Sphere { center, radius: 0.3 }));
+/// Small spheres at `places`, and rays at every `step`th of them from three eyes, of which one is at `x`.
+pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
+    let spheres = places.iter().map(|&center| Thing::Sphere(Sphere { center, radius: 0.3 }));
     let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
     let at =
         |eye: Vec3| places.iter().step_by(step).map(move |place| Ray::new(eye, (*place - eye).normalize()));
-    (Scene::new(balls.collect()), eyes.into_iter().flat_map(at).collect())
+    (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
 /// Whether the answer is that of brute force.
@@ -130,17 +130,17 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
 
 /// What brute force finds, in random scenes and in odd ones.
 pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
-    // Three balls in a row in one leaf, the nearest of them listed last; and a ball that reaches through many
+    // Three spheres in a row in one leaf, the nearest of them listed last; and a sphere that reaches through many
     // cells, with a nearer one before it.
-    let row = Scene::new((0..3).map(|i| ball(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
-    let large = Thing::Ball(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
-    let small = (0..8).map(|i| ball(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
+    let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
+    let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
+    let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
     let ray = Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X);
     let in_a_row = searcher.ask_to(0, trial.kit, &row, &[ray]);
     let passing = searcher.ask(trial.kit, &through, &[ray]);
     for (name, scene, yours) in
-        [("three balls in a row", row, in_a_row), ("a large ball and eight small ones", through, passing)]
+        [("three spheres in a row", row, in_a_row), ("a large sphere and eight small ones", through, passing)]
     {
         let [yours] = &yours[..] else { continue };
         judge(&format!("{} over {name}", searcher.name()), &ray, &scene.hits(&ray), yours)?;

@@ -8,7 +8,7 @@ pub fn all() -> [(&'static str, Film); 3] {
     [
         ("tiles.png", paint(256, 256, tiles)),
         ("bricks.png", paint(256, 128, bricks)),
-        ("ball.png", paint(512, 256, ball)),
+        ("sphere.png", paint(512, 256, sphere)),
     ]
 }
 
@@ -55,8 +55,8 @@ fn bricks(at: Vec2) -> Vec3 {
     vec3(0.44, 0.13, 0.075) * (0.7 + 0.6 * shade(brick, course as i32))
 }
 
-/// A ball for the beach: six segments from pole to pole, in three colours and white.
-fn ball(at: Vec2) -> Vec3 {
+/// A sphere for the beach: six segments from pole to pole, in three colours and white.
+fn sphere(at: Vec2) -> Vec3 {
     let white = vec3(0.82, 0.80, 0.76);
     if !(0.07..0.93).contains(&at.y) {
         return white;

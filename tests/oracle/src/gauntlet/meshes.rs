@@ -64,11 +64,11 @@ pub fn closed() -> Vec<Closed> {
     vec![
         tetrahedron(),
         icosphere(3),
-        rough_ball(),
+        rough_sphere(),
         lattice_cube(),
         needle_prism(),
         icosphere(3).placed("offset", |p| far + p),
-        rough_ball().placed("rough, offset", |p| far + p),
+        rough_sphere().placed("rough, offset", |p| far + p),
         icosphere(1).placed("8 steps wide", |p| Vec3::ONE + 4.0 * f32::EPSILON * p),
         icosphere(3).placed("1e-6 at 1", |p| Vec3::ONE + 1e-6 * p),
         icosphere(3).placed("size 1e-14", |p| 1e-14 * p),
@@ -84,7 +84,7 @@ fn tetrahedron() -> Closed {
     Closed::new("tetrahedron", positions, triangles, Vec3::ZERO, Vec3::splat(0.1))
 }
 
-/// A ball of `20 * 4^levels` triangles.
+/// A sphere of `20 * 4^levels` triangles.
 fn icosphere(levels: u32) -> Closed {
     let g = 0.5 + 1.25f32.sqrt();
     let mut positions: Vec<Vec3> = [
@@ -145,7 +145,7 @@ fn icosphere(levels: u32) -> Closed {
 }
 
 /// Longitudes and latitudes, each vertex at another distance.
-fn rough_ball() -> Closed {
+fn rough_sphere() -> Closed {
     const RINGS: u32 = 16;
     const AROUND: u32 = 32;
     let mut random = Random::new(7, 0);
@@ -169,7 +169,7 @@ fn rough_ball() -> Closed {
             triangles.push([at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)]);
         }
     }
-    Closed::new("rough ball", positions, triangles, Vec3::ZERO, Vec3::splat(0.2))
+    Closed::new("rough sphere", positions, triangles, Vec3::ZERO, Vec3::splat(0.2))
 }
 
 /// A cube whose faces are divided into squares of whole coordinates.

@@ -21,7 +21,7 @@ pub struct HardScene {
 /// All of them: empty, of one, of copies, hair, hills, flat, in a line, on a lattice, small in large, far away, and broken.
 pub fn hard_scenes() -> Vec<HardScene> {
     let mut random = Random::new(11, 0);
-    let ball: Vec<Triangle> = closed().get(1).map(|mesh| mesh.all()).unwrap_or_default();
+    let sphere: Vec<Triangle> = closed().get(1).map(|mesh| mesh.all()).unwrap_or_default();
     let mut soup = |count: usize, size: f32, place: Vec3| -> Vec<Triangle> {
         let one = |_| {
             let at = place + 4.0 * size * random.in_cube();
@@ -35,7 +35,7 @@ pub fn hard_scenes() -> Vec<HardScene> {
 
     // A floor of 100,000 and a pot of a thousandth on it.
     let mut stadium = square(Vec3::ZERO, 1e5 * Vec3::X, 1e5 * Vec3::Z).to_vec();
-    stadium.extend(ball.iter().map(|t| map(t, |v| 1e-3 * v + vec3(0.0, 2e-3, 0.0))));
+    stadium.extend(sphere.iter().map(|t| map(t, |v| 1e-3 * v + vec3(0.0, 2e-3, 0.0))));
     let mut broken = soup(100, 1.0, Vec3::ZERO);
     for (n, number) in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].into_iter().enumerate() {
         broken[7 + 20 * n].a.x = number;
@@ -60,7 +60,7 @@ pub fn hard_scenes() -> Vec<HardScene> {
         scene("room of flat walls", room(), 0.9, Vec3::ZERO),
         scene("lattice", (0..200).map(lattice).collect(), 3.0, Vec3::ZERO),
         scene("in a line, without area", (0..50).map(line).collect(), 30.0, Vec3::ZERO),
-        scene("closed", ball.clone(), 0.1, Vec3::ZERO),
+        scene("closed", sphere.clone(), 0.1, Vec3::ZERO),
         scene("small in large", stadium, 4e-3, vec3(0.0, 4e-3, 0.0)),
         scene("far away", soup(200, 1.0, vec3(1e5, 1e5, -1e5)), 6.0, vec3(1e5, 1e5, -1e5)),
         scene("huge", soup(200, 1e14, Vec3::ZERO), 6e14, Vec3::ZERO),

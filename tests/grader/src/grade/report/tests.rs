@@ -17,7 +17,7 @@ fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
     let names = [
         (1, "nearest_root_is_the_smaller_one_that_counts", 3),
         (1, "sphere_algebraic_touches", 3),
-        (1, "picture_of_a_ball_on_a_plane", 5),
+        (1, "picture_of_a_sphere_on_a_plane", 5),
         (2, "triangle_cramer_agrees_with_double_precision", 6),
     ];
     let checks = names.into_iter().zip(outcomes);

@@ -143,8 +143,8 @@ fn ties_margins_weights_and_errors_of_t() {
 
 #[test]
 fn spheres_and_planes() {
-    let ball = |c: [f32; 3], radius| Body::Sphere(Sphere { center: c.into(), radius });
-    let unit = ball([0.0; 3], 1.0);
+    let sphere = |c: [f32; 3], radius| Body::Sphere(Sphere { center: c.into(), radius });
+    let unit = sphere([0.0; 3], 1.0);
     let along_x = |x: f32, y: f32| ray([x, y, 0.0], [1.0, 0.0, 0.0]);
     // sph/inside, behind, tangent-exact and one ulp to either side, r = 0 and below.
     assert_eq!(met(&along_x(0.0, 0.0), unit), (Verdict::In, Some(1.0)));
@@ -152,12 +152,12 @@ fn spheres_and_planes() {
     assert_eq!(met(&along_x(-5.0, 1.0), unit), (Verdict::On, Some(5.0)));
     assert_eq!(met(&along_x(-5.0, 1.0f32.next_up()), unit), MISS);
     assert_eq!(met(&along_x(-5.0, 1.0f32.next_down()), unit).0, Verdict::In);
-    assert_eq!(met(&along_x(-5.0, 0.0), ball([0.0; 3], 0.0)), MISS);
-    assert_eq!(met(&along_x(-5.0, 0.0), ball([0.0; 3], -1.0)), MISS);
+    assert_eq!(met(&along_x(-5.0, 0.0), sphere([0.0; 3], 0.0)), MISS);
+    assert_eq!(met(&along_x(-5.0, 0.0), sphere([0.0; 3], -1.0)), MISS);
     // sph/far, ground, on-surface-outward, and a direction that is not of unit length.
     assert_eq!(met(&along_x(-1e5, 0.0), unit), (Verdict::In, Some(99_999.0)));
     assert_eq!(
-        met(&ray([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), ball([0.0, -1e5, 0.0], 1e5)),
+        met(&ray([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), sphere([0.0, -1e5, 0.0], 1e5)),
         (Verdict::In, Some(1.0))
     );
     assert_eq!(met(&along_x(1.0, 0.0), unit), MISS);
@@ -175,11 +175,11 @@ fn spheres_and_planes() {
     assert_eq!(met(&diagonal, unit), (Verdict::In, Some(0.5f32.sqrt())));
     assert_eq!(order(&diagonal, unit, unit), Some(Ordering::Equal));
     assert_eq!(
-        order(&diagonal, unit, ball([-1.0, 1.0, 0.0], 3f32.sqrt())),
+        order(&diagonal, unit, sphere([-1.0, 1.0, 0.0], 3f32.sqrt())),
         Some(if f64::from(3f32.sqrt()).powi(2) < 3.0 { Ordering::Greater } else { Ordering::Less })
     );
-    assert_eq!(order(&along_x(-5.0, 0.0), ball([0.5, 0.0, 0.0], 1.5), unit), Some(Ordering::Equal));
-    assert_eq!(order(&along_x(-5.0, 0.25), unit, ball([0.0; 3], 1.0f32.next_up())), Some(Ordering::Greater));
+    assert_eq!(order(&along_x(-5.0, 0.0), sphere([0.5, 0.0, 0.0], 1.5), unit), Some(Ordering::Equal));
+    assert_eq!(order(&along_x(-5.0, 0.25), unit, sphere([0.0; 3], 1.0f32.next_up())), Some(Ordering::Greater));
 
     // pl/parallel and pl/in-plane.
     let floor = Body::Plane(Plane { point: Vec3::ZERO, normal: vec3(0.0, 3.0, 0.0) });
@@ -192,14 +192,14 @@ fn spheres_and_planes() {
 fn t_is_rounded_to_nearest_even() {
     let big = 24f32.exp2();
     let wall = |x| Body::Plane(Plane { point: vec3(x, 0.0, 0.0), normal: Vec3::X });
-    let ball = |x| Body::Sphere(Sphere { center: vec3(x + 2.0, 0.0, 0.0), radius: 2.0 });
+    let sphere = |x| Body::Sphere(Sphere { center: vec3(x + 2.0, 0.0, 0.0), radius: 2.0 });
     // From x = -1 both lie half way between two numbers, at 2^24 + 1 and at 2^24 + 3.
     let along_x = ray([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
     for tier in [Tier::Auto, Tier::Small, Tier::Narrow, Tier::Widest] {
         for (x, rounded) in [(big, big), (big + 2.0, big + 4.0)] {
             let t = |body| meet_with(tier, &along_x, body).and_then(|meeting| meeting.t);
             assert!(t(wall(x)).is_none_or(|t| t == rounded), "{tier:?} {x}");
-            assert!(t(ball(x)).is_none_or(|t| t == rounded), "{tier:?} {x}");
+            assert!(t(sphere(x)).is_none_or(|t| t == rounded), "{tier:?} {x}");
             assert!(t(wall(x)).is_some() || tier == Tier::Small);
         }
     }
