@@ -38,7 +38,7 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// then no ray is worth tracing.
 ///
 /// Where the formula lies: a ray from the point itself hits the surface it starts on in half of all cases, and one
-/// that reaches all the way hits the lamp. A fixed distance fails at other scales: move by the error of the point.
+/// that reaches all the way hits the light. A fixed distance fails at other scales: move by the error of the point.
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     todo!("return None for a light behind the surface; else a ray that leaves out both ends")
 }

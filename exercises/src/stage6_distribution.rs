@@ -1,4 +1,4 @@
-//! Stage 6 · distribution: many rays where one was, spread over the pixel, the lens, the lamp, the mirror and the time.
+//! Stage 6 · distribution: many rays where one was, spread over the pixel, the lens, the light, the mirror and the time.
 //!
 //! Slides: "Antialiasing", "Generate pixel samples", "Distributed Ray Tracing", "Depth of Field", "Soft shadows",
 //! "Temporal Jittering Sampling".

@@ -16,7 +16,7 @@ use raykata::scene::{Quality, Scene};
 /// if `light.shadows`; an area light is spread over `quality.light_samples` places if there are any; everything else
 /// shines from 1 place.
 pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
-    todo!("no light: nothing; a lamp with an extent: quality.light_samples places; else one place")
+    todo!("no light: nothing; a light with an extent: quality.light_samples places; else one place")
 }
 
 /// What a surface takes that is made of `material`.
@@ -60,7 +60,7 @@ pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
 /// front of the surface, if the light matters to the material and casts shadows; and what the material sends on, 1 ray
 /// of a kind or `quality.glossy_samples` if it is rough.
 ///
-/// Where the formula lies: hits times lights is right only if every surface is lit by every lamp.
+/// Where the formula lies: hits times lights is right only if every surface is lit by every light.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
     todo!("add up, material by material, only what its effects say")
 }

@@ -27,19 +27,19 @@ fn main() -> Result<()> {
     let scene = load::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/plain.toml"))?;
     println!(
         "{:>17}  {:>9}  {:>10}  {:>8}  {:>6}",
-        "lamps with shadow", "rays", "minimal ms", "full ms", "ratio"
+        "lights with shadow", "rays", "minimal ms", "full ms", "ratio"
     );
-    for lamps in [3, 1, 0] {
+    for lights in [3, 1, 0] {
         let mut scene = scene.clone();
-        // Without a lamp there is still one that shines, through everything.
-        scene.lights.truncate(lamps.max(1));
-        scene.lights[0].shadows = lamps > 0;
-        compare(&scene, lamps)?;
+        // Without a light there is still one that shines, through everything.
+        scene.lights.truncate(lights.max(1));
+        scene.lights[0].shadows = lights > 0;
+        compare(&scene, lights)?;
     }
     Ok(())
 }
 
-fn compare(scene: &Scene, lamps: usize) -> Result<()> {
+fn compare(scene: &Scene, lights: usize) -> Result<()> {
     let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
     let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("nobody cancels");
     let caster = Caster::new(scene);
@@ -64,7 +64,7 @@ fn compare(scene: &Scene, lamps: usize) -> Result<()> {
         fully.push(1e3 * seconds);
     }
     let [minimal, fully, ratio] = [minimal, fully, ratios].map(median);
-    println!("{lamps:>17}  {:>9}  {minimal:>10.1}  {fully:>8.1}  {ratio:>6.3}", counted.counts.rays());
+    println!("{lights:>17}  {:>9}  {minimal:>10.1}  {fully:>8.1}  {ratio:>6.3}", counted.counts.rays());
     Ok(())
 }
 
@@ -79,7 +79,7 @@ struct Caster<'a> {
     triangles: Vec<Triangle>,
     bvh: Bvh,
     /// Where they are, how they shine, and whether they cast shadows.
-    lamps: Vec<(Vec3, Vec3, bool)>,
+    lights: Vec<(Vec3, Vec3, bool)>,
     ambient: Vec3,
     diffuse: Vec3,
 }
@@ -97,7 +97,7 @@ impl<'a> Caster<'a> {
         }
         let bounds: Vec<Aabb> = triangles.iter().map(stage3_bvh::triangle_bounds).collect();
         let bvh = stage3_bvh::build(&bounds, scene.quality.split, scene.quality.leaf_size as usize);
-        let lamp = |light: &Light| match light.emitter {
+        let light = |light: &Light| match light.emitter {
             Emitter::Point { position, .. } => (position, light.radiance(), light.shadows),
             _ => panic!("a point light"),
         };
@@ -106,7 +106,7 @@ impl<'a> Caster<'a> {
             scene,
             triangles,
             bvh,
-            lamps: scene.lights.iter().map(lamp).collect(),
+            lights: scene.lights.iter().map(light).collect(),
             ambient: scene.ambient * material.ambient,
             diffuse: material.diffuse,
         }
@@ -133,10 +133,10 @@ impl<'a> Caster<'a> {
         let triangle = &self.triangles[hit.primitive as usize];
         let surface = surface(ray, triangle);
         let mut color = self.ambient;
-        for &(lamp, radiance, shadows) in &self.lamps {
-            let to_lamp = lamp - surface.point;
-            let distance = to_lamp.length();
-            let light = LightSample { direction: to_lamp / distance, distance, radiance };
+        for &(light, radiance, shadows) in &self.lights {
+            let to_light = light - surface.point;
+            let distance = to_light.length();
+            let light = LightSample { direction: to_light / distance, distance, radiance };
             let Some(shadow_ray) = stage4_shading::shadow_ray(&surface, &light) else { continue };
             if shadows {
                 *rays += 1;

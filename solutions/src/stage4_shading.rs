@@ -55,7 +55,7 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// then no ray is worth tracing.
 ///
 /// Where the formula lies: a ray from the point itself hits the surface it starts on in half of all cases, and one
-/// that reaches all the way hits the lamp. A fixed distance fails at other scales: move by the error of the point.
+/// that reaches all the way hits the light. A fixed distance fails at other scales: move by the error of the point.
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     // <solution>
     let in_front = surface.geometric_normal.dot(light.direction) > 0.0
@@ -70,7 +70,7 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
 }
 
 // <solution>
-/// A lamp may be a surface of the scene, and its distance is rounded. One part in ten thousand is a thousand roundings
+/// A light may be a surface of the scene, and its distance is rounded. One part in ten thousand is a thousand roundings
 /// of slack, and too short for anything to be seen between.
 const BEFORE_THE_LIGHT: f32 = 0.9999;
 

@@ -22,7 +22,7 @@ pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
     }
     let area = matches!(light.emitter, Emitter::Area { .. }) && quality.light_samples > 0;
     LightEffects { samples: if area { quality.light_samples } else { 1 }, area, shadows: light.shadows }
-    // <stub> todo!("no light: nothing; a lamp with an extent: quality.light_samples places; else one place")
+    // <stub> todo!("no light: nothing; a light with an extent: quality.light_samples places; else one place")
     // </solution>
 }
 
@@ -172,7 +172,7 @@ impl Branching {
     }
 }
 
-/// Places on lamps that a hit asks with a shadow ray, at most.
+/// Places on lights that a hit asks with a shadow ray, at most.
 fn shadow_places(takes: &MaterialEffects, lights: &[LightEffects]) -> u64 {
     let casting = takes.lights.iter().map(|&light| &lights[light]).filter(|light| light.shadows);
     casting.map(|light| u64::from(light.samples)).sum()
@@ -183,7 +183,7 @@ fn shadow_places(takes: &MaterialEffects, lights: &[LightEffects]) -> u64 {
 /// front of the surface, if the light matters to the material and casts shadows; and what the material sends on, 1 ray
 /// of a kind or `quality.glossy_samples` if it is rough.
 ///
-/// Where the formula lies: hits times lights is right only if every surface is lit by every lamp.
+/// Where the formula lies: hits times lights is right only if every surface is lit by every light.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
     // <solution>
     let mut rays = RayCounts::default();

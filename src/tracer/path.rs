@@ -160,7 +160,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                         scratch.lights.push(sample_area_light::<F>(light, &at.surface, &path.points, parts));
                     }
                 }
-                _ if takes.samples > 0 => scratch.lights.push(light.from_its_middle(at.surface.point)),
+                _ if takes.samples > 0 => scratch.lights.push(light.sample_center(at.surface.point)),
                 _ => {}
             }
             scratch.shadows.resize(scratch.lights.len(), takes.shadows);

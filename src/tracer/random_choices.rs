@@ -16,9 +16,9 @@ pub fn sample_area_light<F: StudentFunctions>(
     let u = F::jittered(&points.stratum(Purpose::Light(index as u32), part, parts));
     let at = surface.point;
     let sample = match shape {
-        AreaShape::Rectangle { corner, edges } => light.from_place(F::sample_rectangle(*corner, *edges, u), at),
-        AreaShape::Disk(disk) => light.from_place(F::sample_light_disk(disk, u), at),
-        AreaShape::Sphere(sphere) => light.from_sphere(sphere, F::sample_sphere(sphere, at, u), at),
+        AreaShape::Rectangle { corner, edges } => light.sample_at(F::sample_rectangle(*corner, *edges, u), at),
+        AreaShape::Disk(disk) => light.sample_at(F::sample_light_disk(disk, u), at),
+        AreaShape::Sphere(sphere) => light.sample_toward_sphere(sphere, F::sample_sphere(sphere, at, u), at),
     };
     LightSample { radiance: sample.radiance / parts as f32, ..sample }
 }

@@ -7,7 +7,7 @@
 
 mod facets;
 mod flatten;
-mod lamps;
+mod area_lights;
 mod meshes;
 mod solids;
 mod transforms;

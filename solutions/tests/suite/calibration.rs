@@ -25,7 +25,7 @@ const STATISTICAL: [(&str, u32); 11] = [
     ("jittered_samples_cover_the_pixel_evenly", 2),
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
-    ("places_on_a_round_lamp_are_even", 1),
+    ("places_on_a_round_light_are_even", 1),
     ("directions_to_a_sphere_are_even", 2),
     ("a_far_sphere_is_still_a_sphere", 1),
     ("from_inside_a_sphere_it_is_everywhere", 1),
@@ -102,7 +102,7 @@ fn disk(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
     }
 }
 
-fn round_lamp(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
+fn round_light(request: &Request, place: fn(Vec2) -> Vec2) -> Option<Answer> {
     let Request::SampleLightDisk(queries) = request else { return None };
     let point = |(disk, u): &(raykata::shape::Disk, Vec2)| {
         let (x, y) = disk.normal.normalize().any_orthonormal_pair();
@@ -177,9 +177,9 @@ const WRONG: &[Wrong] = &[
             vec2(square.x * (1.0 - square.y * square.y).sqrt(), square.y)
         })
     }),
-    ("round lamp: radius even", "places_on_a_round_lamp_are_even", |r| round_lamp(r, |u| polar(u.x, u.y))),
-    ("round lamp: a quarter, u not centred", "places_on_a_round_lamp_are_even", |r| {
-        round_lamp(r, |u| polar(u.x.sqrt(), 0.25 * u.y))
+    ("round light: radius even", "places_on_a_round_light_are_even", |r| round_light(r, |u| polar(u.x, u.y))),
+    ("round light: a quarter, u not centred", "places_on_a_round_light_are_even", |r| {
+        round_light(r, |u| polar(u.x.sqrt(), 0.25 * u.y))
     }),
     ("rectangle: one u for both edges", "places_on_a_rectangle_are_even", |r| {
         rectangle(r, |u| vec2(u.x, u.x))

@@ -1,5 +1,5 @@
 //! Whole frames of the reference with many rays where one was: what has no extent changes nothing, what is sharp stays
-//! sharp, half a lamp makes half a shadow, and whatever moves is found by every search on any number of threads.
+//! sharp, half a light makes half a shadow, and whatever moves is found by every search on any number of threads.
 
 use glam::Vec3;
 use raykata::frame::Unwatched;
@@ -157,9 +157,9 @@ fn what_lies_on_the_plane_of_focus_is_sharp_for_every_ray_of_the_lens() {
 }
 
 #[test]
-fn half_a_lamp_makes_half_a_shadow() {
-    // Each pixel sees a point of the floor straight below. A wall hides one half of the lamp from the middle column.
-    let lamp = |shape: &str| {
+fn half_a_light_makes_half_a_shadow() {
+    // Each pixel sees a point of the floor straight below. A wall hides one half of the light from the middle column.
+    let light = |shape: &str| {
         scene(&format!(
             r#"
 [film]
@@ -190,7 +190,7 @@ shape = {{ polygon = {{ corners = [[0, 5, -90], [90, 5, -90], [90, 5, 90], [0, 5
         "sphere = { center = [0, 10, 0], radius = 1 }",
     ] {
         for sampler in SAMPLERS {
-            let mut scene = lamp(shape);
+            let mut scene = light(shape);
             scene.quality.sampler = sampler;
             scene.film.width = 1;
             let shadowed = render(&scene).film.pixels[0].x;

@@ -102,7 +102,7 @@ fn all_three_triangle_tests_make_nearly_the_same_picture() {
 }
 
 #[test]
-fn a_plain_scene_costs_one_ray_a_pixel_and_one_a_lamp_that_matters() {
+fn a_plain_scene_costs_one_ray_a_pixel_and_one_a_light_that_matters() {
     let scene = scene(
         r#"
 [film]
@@ -123,7 +123,7 @@ intensity = 0
 shape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }
 "#,
     );
-    // Every pixel sees the floor. One lamp shines on it, one is below it, one is switched off.
+    // Every pixel sees the floor. One light shines on it, one is below it, one is switched off.
     assert_eq!(rays(&render(&scene).counts), (1200, 1200));
 }
 
@@ -143,7 +143,7 @@ look_at = {center}
 [environment]
 background = 1
 [[lights]]
-point = {{ position = {lamp} }}
+point = {{ position = {light} }}
 [[nodes]]
 shape = {{ sphere = {{ center = {center}, radius = {radius} }} }}
 [[nodes]]
@@ -151,9 +151,9 @@ shape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}
 [[nodes]]
 shape = {{ box = {{ min = {low}, max = {high} }} }}
 "#,
-        // The lamp sits just behind the eye, so nothing that is seen lies in shadow.
+        // The light sits just behind the eye, so nothing that is seen lies in shadow.
         eye = at(0.3, 0.5, 6.0),
-        lamp = at(0.3, 0.5, 6.1),
+        light = at(0.3, 0.5, 6.1),
         center = at(0.0, 0.0, 0.0),
         radius = size,
         a = at(-3.0, -2.0, -2.0),
@@ -174,7 +174,7 @@ fn no_surface_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
         for offset in [0.0, 30.0 * size] {
             let film = render(&scene(&lit_scene(size, offset))).film;
             assert_eq!(film.not_a_number(), 0);
-            // Lamp and eye are a little apart: along outlines a pixel or two are seen and not lit.
+            // Light and eye are a little apart: along outlines a pixel or two are seen and not lit.
             let dark = dark_pixels(&film);
             assert!(dark <= 6, "size {size}, offset {offset}: {dark} of 2700 pixels are dark");
         }

@@ -221,7 +221,7 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
     let covered = rays(&|_, ray| is_at(ray, &["floor", "toy"]));
     assert_eq!(counts.texture_reads, if set.has(Effect::Textures) { covered } else { 0 });
 
-    // Two numbers a place on the lens, on the lamp (two places a hit) and in the lobe, one a moment.
+    // Two numbers a place on the lens, on the light (two places a hit) and in the lobe, one a moment.
     let blurred = rays(&|tree, ray| {
         ray.kind == RayKind::Reflection && ray.parent.is_some_and(|parent| is_at(&tree[parent], &["brushed"]))
     });

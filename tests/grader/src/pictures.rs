@@ -84,7 +84,7 @@ impl Scenes {
             "effects",
             "effects, Gaussian",
             "effects, Random",
-            "effects, lamps from the middle",
+            "effects, lights from the middle",
             "effects, Double",
             "effects, no lens, all smooth",
             "stage8",
@@ -138,8 +138,8 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
         with("depth 0", &|quality| quality.max_depth = 0),
         with("depth 1", &|quality| quality.max_depth = 1),
         with("large contributions", &|quality| quality.min_contribution = 0.3),
-        with("lamps from the middle", &|quality| quality.light_samples = 0),
-        with("three samples a lamp", &|quality| quality.light_samples = 3),
+        with("lights from the middle", &|quality| quality.light_samples = 0),
+        with("three samples a light", &|quality| quality.light_samples = 3),
         with("three rays of glossy", &|quality| quality.glossy_samples = 3),
         with("one Gaussian sample", &|quality| {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);

@@ -148,7 +148,7 @@ impl Knob {
                 SAMPLERS.into_iter().map(of).collect()
             }
             Knob::LightSamples => {
-                needs(effects.lights.iter().any(|light| light.area), "no lamp has an area")?;
+                needs(effects.lights.iter().any(|light| light.area), "no light has an area")?;
                 numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
             }
             Knob::GlossySamples => {

@@ -112,7 +112,7 @@ fn asked(explained: &Explained<'_>) {
         println!("  {effect:<14}  {}", why::not_asked(effect, scene));
     }
     for (index, light) in effects.lights.iter().enumerate().filter(|(_, light)| light.samples == 0) {
-        println!("  lamp {:<9}  it gives no light", index + 1);
+        println!("  light {:<9}  it gives no light", index + 1);
         debug_assert!(!light.shadows);
     }
     let shown = scene.shown();
@@ -210,7 +210,7 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
     println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
     let lines = [
         ("from the camera", most.primary, counted.primary),
-        ("to lamps", most.shadow, counted.shadow),
+        ("to lights", most.shadow, counted.shadow),
         ("off mirrors", most.reflection, counted.reflection),
         ("through surfaces", most.transmission, counted.transmission),
     ];
@@ -220,7 +220,7 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
     }
     let seen = counted.primary + counted.reflection + counted.transmission;
     println!(
-        "  {} of the {} rays that look for a surface met one; only there are lamps asked about, and only those in \
+        "  {} of the {} rays that look for a surface met one; only there are lights asked about, and only those in \
          front of it.",
         Thousands(counted.hits),
         Thousands(seen)

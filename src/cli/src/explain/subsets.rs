@@ -15,7 +15,7 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
         println!("  {letter}  {effect}");
     }
     let head =
-        ["from camera", "to lamps", "mirrored", "refracted", "random numbers", "image reads", "box tests"];
+        ["from camera", "to lights", "mirrored", "refracted", "random numbers", "image reads", "box tests"];
     let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
     println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
     let bar = bar_of_steps(1 << called.len());

@@ -9,7 +9,7 @@ use raykata::shape::Shape;
 /// The parts of `scene` that ask for `effect`, in words; none if it is not called for.
 pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String> {
     let seen = |light: usize| effects.materials.iter().any(|material| material.lights.contains(&light));
-    let lamps = |wants: &dyn Fn(usize) -> bool| {
+    let lights = |wants: &dyn Fn(usize) -> bool| {
         (0..scene.lights.len())
             .filter(|&light| seen(light) && wants(light))
             .map(|light| light_name(scene, light))
@@ -19,8 +19,8 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
         (0..scene.materials.len()).filter(|&index| wants(index)).map(|index| material(scene, index)).collect()
     };
     match effect {
-        Effect::Shadows => lamps(&|light| effects.lights[light].samples > 0 && effects.lights[light].shadows),
-        Effect::AreaLights => lamps(&|light| effects.lights[light].area),
+        Effect::Shadows => lights(&|light| effects.lights[light].samples > 0 && effects.lights[light].shadows),
+        Effect::AreaLights => lights(&|light| effects.lights[light].area),
         Effect::Mirrors => materials(&|index| effects.materials[index].mirror),
         Effect::Transmission => materials(&|index| effects.materials[index].transmission),
         Effect::Glossy => materials(&|index| effects.materials[index].glossy),
@@ -62,15 +62,15 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
     let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
     let unused = "could, but nothing is made of it, or max_depth is 0";
     match effect {
-        Effect::Shadows if scene.lights.is_empty() => "there is no lamp".into(),
-        Effect::Shadows => "no lamp that lights something casts them".into(),
+        Effect::Shadows if scene.lights.is_empty() => "there is no light".into(),
+        Effect::Shadows => "no light that lights something casts them".into(),
         Effect::AreaLights if scene.lights.iter().any(area) && scene.quality.light_samples == 0 => {
-            "light_samples is 0: lamps shine from their middle".into()
+            "light_samples is 0: lights shine from their middle".into()
         }
         Effect::AreaLights if scene.lights.iter().any(area) => {
-            "the lamps that have an extent light nothing".into()
+            "the lights that have an extent light nothing".into()
         }
-        Effect::AreaLights => "no lamp has an extent".into(),
+        Effect::AreaLights => "no light has an extent".into(),
         Effect::Mirrors => has(&|m| m.mirror != Vec3::ZERO || m.fresnel != Fresnel::None, unused)
             .unwrap_or_else(|| "nothing mirrors".into()),
         Effect::Transmission => has(&|m| m.transmission != Vec3::ZERO, unused)
@@ -99,7 +99,7 @@ fn light_name(scene: &Scene, light: usize) -> String {
         Emitter::Area { shape: AreaShape::Disk(_), .. } => "disk",
         Emitter::Area { shape: AreaShape::Sphere(_), .. } => "sphere",
     };
-    format!("lamp {} ({kind})", light + 1)
+    format!("light {} ({kind})", light + 1)
 }
 
 /// A material and the first things that are made of it.

@@ -195,7 +195,7 @@ fn a_scene_is_explained_and_predictions_hold() {
     let (said, complained) = printed(&output);
     assert!(output.status.success(), "{complained}");
     for line in [
-        "  shadows         lamp 1 (rectangle), lamp 2 (point)",
+        "  shadows         light 1 (rectangle), light 2 (point)",
         "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
         "  glossy           `brushed` (brass ball)",
         "  lens            camera: opening 0.12, sharp at 7",

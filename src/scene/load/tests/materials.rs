@@ -48,7 +48,7 @@ fn materials_have_limits() {
 }
 
 #[test]
-fn lamps_arrive_as_written() {
+fn lights_arrive_as_written() {
     let scene = scene_with(
         "[[lights]]\npoint = { position = [1, 2, 3], falloff = 'inverse_square' }\nintensity = 2\n\
          [[lights]]\ndirectional = { direction = [0, -5, 0] }\ncolor = [1, 0, 0]\n\
@@ -56,22 +56,22 @@ fn lamps_arrive_as_written() {
          [[lights]]\narea = { disk = { center = [0, 1, 0], normal = [0, 0, 2], radius = 3 } }\n\
          [[lights]]\narea = { sphere = { center = [0, 1, 0], radius = 3 }, falloff = 'inverse_square' }\n",
     );
-    let lamp = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0, shadows: true };
+    let light = |emitter| Light { emitter, color: Vec3::ONE, intensity: 1.0, shadows: true };
     let (center, radius, none, square) = (Vec3::Y, 3.0, Falloff::None, Falloff::InverseSquare);
     let point = Emitter::Point { position: Vec3::new(1.0, 2.0, 3.0), falloff: square };
-    assert_eq!(scene.lights[0], Light { intensity: 2.0, ..lamp(point) });
+    assert_eq!(scene.lights[0], Light { intensity: 2.0, ..light(point) });
     let directional = Emitter::Directional { direction: Vec3::NEG_Y };
-    assert_eq!(scene.lights[1], Light { color: Vec3::X, ..lamp(directional) });
+    assert_eq!(scene.lights[1], Light { color: Vec3::X, ..light(directional) });
     let shape = AreaShape::Rectangle { corner: Vec3::ZERO, edges: (Vec3::X, Vec3::Z) };
-    assert_eq!(scene.lights[2], lamp(Emitter::Area { shape, falloff: none }));
+    assert_eq!(scene.lights[2], light(Emitter::Area { shape, falloff: none }));
     let shape = AreaShape::Disk(Disk { center, normal: Vec3::Z, radius });
-    assert_eq!(scene.lights[3], lamp(Emitter::Area { shape, falloff: none }));
+    assert_eq!(scene.lights[3], light(Emitter::Area { shape, falloff: none }));
     let shape = AreaShape::Sphere(Sphere { center, radius });
-    assert_eq!(scene.lights[4], lamp(Emitter::Area { shape, falloff: square }));
+    assert_eq!(scene.lights[4], light(Emitter::Area { shape, falloff: square }));
 }
 
 #[test]
-fn lamps_have_limits() {
+fn lights_have_limits() {
     let light = |rest: &str, message: &str| {
         check_refused_with(&format!("[[lights]]\n{rest}"), &format!("s.toml:{message}"));
     };
@@ -87,7 +87,7 @@ fn lamps_have_limits() {
     light("point = {}", "3:9: `point` lacks `position`\nhelp: add it, for example `position = [0, 5, 0]`");
     light(
         "area = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] } }",
-        "3:52: the edges run along one line, so the lamp has no area",
+        "3:52: the edges run along one line, so the light has no area",
     );
     light(
         "area = { sphere = { center = [0, 0, 0], radius = 0 } }",

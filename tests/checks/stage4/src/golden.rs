@@ -6,15 +6,15 @@ use glam::{Vec3, vec3};
 use raykata::kit::{LightSample, ShadeQuery, Surface};
 use raykata::material::Material;
 
-pub(super) fn lamps(at: Vec3) -> Vec<LightSample> {
-    let lamp = |position: Vec3, radiance: Vec3| {
+pub(super) fn lights(at: Vec3) -> Vec<LightSample> {
+    let light = |position: Vec3, radiance: Vec3| {
         let to_light = position - at;
         LightSample { direction: to_light.normalize(), distance: to_light.length(), radiance }
     };
-    vec![lamp(vec3(4.0, 5.0, 3.0), vec3(0.9, 0.8, 0.7)), lamp(vec3(-5.0, 2.0, 4.0), vec3(0.1, 0.2, 0.5))]
+    vec![light(vec3(4.0, 5.0, 3.0), vec3(0.9, 0.8, 0.7)), light(vec3(-5.0, 2.0, 4.0), vec3(0.1, 0.2, 0.5))]
 }
 
-/// A point of a unit sphere at the origin, lit by two lamps, one of which a second sphere hides from the lower left.
+/// A point of a unit sphere at the origin, lit by two lights, one of which a second sphere hides from the lower left.
 pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
     let surface =
         Surface { point: normal, error: Vec3::splat(4e-7), geometric_normal: normal, shading_normal: normal };
@@ -26,7 +26,7 @@ pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
         ..Material::default()
     };
     let visible = vec![true, normal.x + normal.y > -0.6];
-    ShadeQuery { surface, to_viewer, material, ambient: Vec3::splat(0.15), lights: lamps(normal), visible }
+    ShadeQuery { surface, to_viewer, material, ambient: Vec3::splat(0.15), lights: lights(normal), visible }
 }
 
 pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
@@ -51,7 +51,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
             )
         })
         .collect();
-    golden::compare("stage4_shading_table", "24 points of a sphere, two lamps", &lines.join("\n"))
+    golden::compare("stage4_shading_table", "24 points of a sphere, two lights", &lines.join("\n"))
 }
 
 pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {

@@ -67,7 +67,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
             }
             let reach = ray.t_max * length;
             let told = || (format!("ends after {reach}"), format!("just below {}", light.distance));
-            // L2: a lamp that is a surface of the scene must not shadow itself; what stands near it must.
+            // L2: a light that is a surface of the scene must not shadow itself; what stands near it must.
             match () {
                 () if (length - 1.0).abs() > 1e-3 && reach > light.distance && ray.t_max <= light.distance => Some((
                     told().0,
@@ -82,7 +82,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
                 () if !(reach < light.distance) => Some((
                     told().0,
                     told().1,
-                    "the ray reaches the lamp, which would shadow itself: end a little before it",
+                    "the ray reaches the light, which would shadow itself: end a little before it",
                 )),
                 () if reach < 0.99 * light.distance => Some((
                     told().0,

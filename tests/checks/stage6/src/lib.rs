@@ -1,10 +1,10 @@
 //! Stage 6: many rays where one was.
 //!
-//! `pixels` · `lens` · `lamps` · `rough` (surfaces) · `motion`
+//! `pixels` · `lens` · `lights` · `rough` (surfaces) · `motion`
 //!
 //! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million a test.
 
-mod lamps;
+mod area_lights;
 mod lens;
 mod motion;
 mod pixels;
@@ -12,9 +12,9 @@ mod rough;
 
 use checks::generate::unit;
 use glam::Vec3;
-use lamps::{
+use area_lights::{
     a_far_sphere_is_still_a_sphere, directions_to_a_sphere_are_even, from_inside_a_sphere_it_is_everywhere,
-    half_a_sphere_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_lamp_are_even,
+    half_a_sphere_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_light_are_even,
 };
 use lens::{
     lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens, lens_without_width_is_a_pinhole,
@@ -55,7 +55,7 @@ checks::stage! { ($ crate) 6 [
     plane_of_focus_is_sharp
     lens_is_as_sharp_a_million_units_away
     places_on_a_rectangle_are_even
-    places_on_a_round_lamp_are_even
+    places_on_a_round_light_are_even
     directions_to_a_sphere_are_even
     a_far_sphere_is_still_a_sphere
     from_inside_a_sphere_it_is_everywhere

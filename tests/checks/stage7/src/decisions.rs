@@ -1,6 +1,6 @@
 //! What lights and materials call for.
 
-use super::scenes::{sphere_lamp, lamp};
+use super::scenes::{sphere_light, light};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -16,47 +16,47 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
     let quality = |light_samples| Quality { light_samples, ..Quality::default() };
     let one = LightEffects { samples: 1, area: false, shadows: true };
     let nothing = LightEffects::default();
-    let silent = Light { shadows: false, ..lamp(Vec3::ONE, 1.0) };
+    let silent = Light { shadows: false, ..light(Vec3::ONE, 1.0) };
     let cases = [
-        ("a white lamp", lamp(Vec3::ONE, 1.0), quality(4), one, "a lamp without extent shines from 1 place"),
+        ("a white light", light(Vec3::ONE, 1.0), quality(4), one, "a light without extent shines from 1 place"),
         (
-            "a lamp that casts no shadows",
+            "a light that casts no shadows",
             silent,
             quality(1),
             LightEffects { shadows: false, ..one },
             "it shines all the same, and shadows is as light.shadows says",
         ),
         (
-            "a lamp of intensity 0",
-            lamp(Vec3::ONE, 0.0),
+            "a light of intensity 0",
+            light(Vec3::ONE, 0.0),
             quality(1),
             nothing,
             "it gives no light: it takes nothing",
         ),
-        ("a black lamp", lamp(Vec3::ZERO, 3.0), quality(1), nothing, "black light is none: it takes nothing"),
-        ("a faint red lamp", lamp(vec3(1e-6, 0.0, 0.0), 1.0), quality(1), one, "faint light is light"),
+        ("a black light", light(Vec3::ZERO, 3.0), quality(1), nothing, "black light is none: it takes nothing"),
+        ("a faint red light", light(vec3(1e-6, 0.0, 0.0), 1.0), quality(1), one, "faint light is light"),
         (
             "a sphere of light",
-            sphere_lamp(Vec3::ONE),
+            sphere_light(Vec3::ONE),
             quality(16),
             LightEffects { samples: 16, area: true, shadows: true },
-            "a lamp with an extent is asked light_samples times",
+            "a light with an extent is asked light_samples times",
         ),
         (
             "a sphere of light with light_samples = 1",
-            sphere_lamp(Vec3::ONE),
+            sphere_light(Vec3::ONE),
             quality(1),
             LightEffects { samples: 1, area: true, shadows: true },
             "one place is drawn at random as well",
         ),
         (
             "a sphere of light with light_samples = 0",
-            sphere_lamp(Vec3::ONE),
+            sphere_light(Vec3::ONE),
             quality(0),
             one,
             "it shines from its middle",
         ),
-        ("a black sphere", sphere_lamp(Vec3::ZERO), quality(16), nothing, "it gives no light: it takes nothing"),
+        ("a black sphere", sphere_light(Vec3::ZERO), quality(16), nothing, "it gives no light: it takes nothing"),
     ];
     let queries: Vec<LightQuery> = cases
         .iter()
@@ -93,7 +93,7 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     let (red, green, blue) = (vec3(0.5, 0.0, 0.0), vec3(0.0, 0.5, 0.0), vec3(0.0, 0.0, 0.5));
     let faint = vec3(0.0, 0.0, 1e-4);
     let (white, image, rough) = (Vec3::splat(0.5), Some(0), 0.25);
-    let lights = [red, green, faint, Vec3::ONE, Vec3::ZERO].map(|color| lamp(color, 1.0));
+    let lights = [red, green, faint, Vec3::ONE, Vec3::ZERO].map(|color| light(color, 1.0));
     let nothing = MaterialEffects::default;
     let lit = |lights: &[usize]| MaterialEffects { lights: lights.to_vec(), ..nothing() };
     let reads = || MaterialEffects { texture: true, ..nothing() };
@@ -319,7 +319,7 @@ fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {
     let texture = prop_oneof![Just(None), Just(Some(0))];
     let colors = (color(), color(), color(), color(), color());
     let index = prop_oneof![Just(1.0f32), Just(1.5f32)];
-    let lights = prop::collection::vec(color().prop_map(|color| lamp(color, 2.0)), 0..4);
+    let lights = prop::collection::vec(color().prop_map(|color| light(color, 2.0)), 0..4);
     (colors, fresnel, rough, texture, lights, 0..3u32, index).prop_map(
         |(
             (ambient, diffuse, specular, mirror, transmission),

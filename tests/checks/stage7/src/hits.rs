@@ -88,7 +88,7 @@ const MISTAKES: [(RayCounts, &str); 10] = [
     // 3 + 4 · 20 + 4.
     (
         RayCounts { shadow: 87, ..DRAWN },
-        "in_front counts places on lamps already, over all hits: do not multiply it again",
+        "in_front counts places on lights already, over all hits: do not multiply it again",
     ),
     (RayCounts { reflection: 10, transmission: 10, ..DRAWN }, "a rough surface sends glossy_samples rays"),
     (

@@ -1,6 +1,6 @@
 //! The most rays that a scene can take.
 
-use super::scenes::{lamp, one_sphere};
+use super::scenes::{light, one_sphere};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -17,7 +17,7 @@ fn film(width: u32, height: u32) -> FilmSettings {
 /// A scene of one material, and what it takes.
 fn query(material: Material, n_lights: usize, quality: Quality) -> BoundQuery {
     let mut scene = Scene { quality, ..one_sphere(material) };
-    scene.lights = vec![lamp(Vec3::ONE, 1.0); n_lights];
+    scene.lights = vec![light(Vec3::ONE, 1.0); n_lights];
     let material = &scene.materials[1];
     let through = material.transmission != Vec3::ZERO;
     let mirror = material.mirror != Vec3::ZERO || (through && material.fresnel != Fresnel::None);

@@ -9,14 +9,14 @@ use raykata::scene::{Node, Scene, SceneMesh};
 use raykata::shape::{Shape, Sphere};
 use std::sync::Arc;
 
-pub(super) fn lamp(color: Vec3, intensity: f32) -> Light {
+pub(super) fn light(color: Vec3, intensity: f32) -> Light {
     let emitter = Emitter::Point { position: vec3(0.0, 5.0, 0.0), falloff: Falloff::None };
     Light { emitter, color, intensity, shadows: true }
 }
 
-pub(super) fn sphere_lamp(color: Vec3) -> Light {
+pub(super) fn sphere_light(color: Vec3) -> Light {
     let shape = AreaShape::Sphere(Sphere { center: vec3(0.0, 5.0, 0.0), radius: 1.0 });
-    Light { emitter: Emitter::Area { shape, falloff: Falloff::None }, ..lamp(color, 1.0) }
+    Light { emitter: Emitter::Area { shape, falloff: Falloff::None }, ..light(color, 1.0) }
 }
 
 pub(super) fn camera() -> Camera {
@@ -28,10 +28,10 @@ pub(super) fn sphere(material: usize) -> Node {
     Node { name: "sphere".into(), shape: Some(shape), material: Some(material), ..Node::default() }
 }
 
-/// A scene with one sphere of `material` and a lamp.
+/// A scene with one sphere of `material` and a light.
 pub(super) fn one_sphere(material: Material) -> Scene {
     let mut scene = Scene::empty(camera());
-    scene.lights.push(lamp(Vec3::ONE, 1.0));
+    scene.lights.push(light(Vec3::ONE, 1.0));
     scene.materials.push(material);
     scene.material_names.push("sphere".into());
     scene.nodes.push(sphere(1));
@@ -55,7 +55,7 @@ pub(super) fn everything() -> Scene {
         pixels: Arc::new(vec![Vec3::ONE]),
         wrap: Wrap::Repeat,
     });
-    scene.lights.push(sphere_lamp(Vec3::ONE));
+    scene.lights.push(sphere_light(Vec3::ONE));
     scene.camera.lens = Some(Lens { aperture: 0.1, focal_distance: 4.0 });
     scene.camera.shutter = Some(Shutter { open: 0.0, close: 1.0 });
     let transform_end = Some(Affine3A::from_translation(Vec3::X));

@@ -1,6 +1,6 @@
 //! What whole scenes call for.
 
-use super::scenes::{BUILT, everything, lamp, one_sphere, one_triangle};
+use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -45,20 +45,20 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
 
 pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome {
     let scene = one_sphere(Material::default());
-    judge(trial, "a dull sphere under a lamp", scene.clone(), &plain(), "no shape is of the default material")?;
+    judge(trial, "a dull sphere under a light", scene.clone(), &plain(), "no shape is of the default material")?;
     let indirect = Scene { indirect_light: true, ..scene };
     let as_it_says = "indirect_light is as the scene says";
     let expected = Effects { indirect_light: true, ..plain() };
     judge(trial, "the same with indirect light", indirect, &expected, as_it_says)?;
 
     let mut dark = one_sphere(Material::default());
-    dark.lights.insert(0, lamp(Vec3::ZERO, 1.0));
+    dark.lights.insert(0, light(Vec3::ZERO, 1.0));
     let mut expected = plain();
     expected.lights.insert(0, LightEffects::default());
     expected.materials[1].lights = vec![1];
     let in_place =
-        "a lamp without light takes nothing and keeps its place: one entry for each light of the scene";
-    judge(trial, "a dull sphere under a black lamp and a white one", dark, &expected, in_place)
+        "a light without light takes nothing and keeps its place: one entry for each light of the scene";
+    judge(trial, "a dull sphere under a black light and a white one", dark, &expected, in_place)
 }
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
@@ -184,8 +184,8 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
 /// What an effect depends on that is missed, or is called for in vain.
 fn clue(effect: Effect, missed: bool) -> String {
     let depends_on = match effect {
-        Effect::Shadows => "lamps that give light and cast shadows",
-        Effect::AreaLights => "lamps with an extent, and quality.light_samples",
+        Effect::Shadows => "lights that give light and cast shadows",
+        Effect::AreaLights => "lights with an extent, and quality.light_samples",
         Effect::Mirrors => "material.mirror, and fresnel of what lets light through",
         Effect::Transmission => "material.transmission",
         Effect::Glossy => "roughness of what is mirrored or seen through",

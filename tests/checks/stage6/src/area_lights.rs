@@ -1,4 +1,4 @@
-//! Places on lamps.
+//! Places on lights.
 
 use super::lens::{polar, uneven_disk};
 use checks::Trial;
@@ -56,7 +56,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn places_on_a_round_lamp_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
     let disk = Disk { center: vec3(1.0, 2.0, 3.0), normal: vec3(0.0, 3.0, -4.0), radius: 2.5 };
     let u = pairs(trial.seed, SAMPLES);
     let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disk, *u)).collect();

@@ -13,14 +13,14 @@ impl Light {
     /// at its surface, so that a sphere that the scene shows in its place does not block it; from the centre
     /// of the sphere, the direction is +y.
     #[inline]
-    pub fn from_its_middle(&self, point: Vec3) -> LightSample {
+    pub fn sample_center(&self, point: Vec3) -> LightSample {
         match &self.emitter {
-            Emitter::Point { position, .. } => self.from_place(*position, point),
+            Emitter::Point { position, .. } => self.sample_at(*position, point),
             Emitter::Area { shape: AreaShape::Sphere(sphere), .. } => {
                 let direction = (sphere.center - point).normalize_or(Vec3::Y);
-                self.from_sphere(sphere, direction, point)
+                self.sample_toward_sphere(sphere, direction, point)
             }
-            Emitter::Area { shape, .. } => self.from_place(shape.center(), point),
+            Emitter::Area { shape, .. } => self.sample_at(shape.center(), point),
             Emitter::Directional { direction } => {
                 LightSample { direction: -*direction, distance: f32::INFINITY, radiance: self.radiance() }
             }
@@ -34,7 +34,7 @@ impl Light {
     /// Where the two points are the same, the direction is +y, and a light with inverse-square falloff has
     /// infinite radiance (NaN in a channel that is 0).
     #[inline]
-    pub fn from_place(&self, place: Vec3, point: Vec3) -> LightSample {
+    pub fn sample_at(&self, place: Vec3, point: Vec3) -> LightSample {
         let way = place - point;
         let distance = way.length();
         let direction = if distance > 0.0 { way / distance } else { Vec3::Y };
@@ -47,7 +47,7 @@ impl Light {
     /// It weakens with the distance to the centre, as if all light came from there. A direction that just
     /// misses the sphere by a rounding error counts as touching it. At the centre, inverse-square falloff
     /// gives infinite radiance (NaN in a channel that is 0).
-    pub fn from_sphere(&self, sphere: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
+    pub fn sample_toward_sphere(&self, sphere: &Sphere, direction: Vec3, point: Vec3) -> LightSample {
         let distance = distance_to_sphere(sphere, direction, point);
         self.arriving(direction, distance, point.distance(sphere.center))
     }
@@ -99,7 +99,7 @@ mod tests {
             intensity: 8.0,
             shadows: true,
         };
-        assert_eq!(light.from_its_middle(Vec3::ZERO).radiance, Vec3::splat(0.5));
-        assert_eq!(light.from_place(2.0 * Vec3::Y, Vec3::ZERO).radiance, Vec3::splat(2.0));
+        assert_eq!(light.sample_center(Vec3::ZERO).radiance, Vec3::splat(0.5));
+        assert_eq!(light.sample_at(2.0 * Vec3::Y, Vec3::ZERO).radiance, Vec3::splat(2.0));
     }
 }
