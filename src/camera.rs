@@ -79,7 +79,7 @@ impl Camera {
     /// use raykata::camera::Camera;
     /// let camera = Camera::new(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 90.0, 2.0).unwrap();
     /// assert_eq!(camera.right, Vec3::X);
-    /// assert_eq!(camera.ray(0.5, 0.5).dir, Vec3::NEG_Z);
+    /// assert_eq!(camera.ray(0.5, 0.5).direction, Vec3::NEG_Z);
     /// ```
     ///
     /// # Errors
@@ -146,7 +146,7 @@ mod tests {
         // K1: `normalize(P - P0)` leaves 19 distinct directions at this distance.
         let camera = Camera::new(Vec3::splat(1e6), Vec3::NEG_Z, Vec3::Y, 40.0, 16.0 / 9.0).expect("a camera");
         let mut xs: Vec<u32> =
-            (0..640).map(|i| camera.ray((i as f32 + 0.5) / 640.0, 0.5).dir.x.to_bits()).collect();
+            (0..640).map(|i| camera.ray((i as f32 + 0.5) / 640.0, 0.5).direction.x.to_bits()).collect();
         xs.dedup();
         assert_eq!(xs.len(), 640);
     }
@@ -154,9 +154,9 @@ mod tests {
     #[test]
     fn the_top_of_the_film_lies_half_the_field_of_view_above_the_axis() {
         let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::Y, 60.0, 2.0).expect("a camera");
-        let angle = camera.ray(0.5, 0.0).dir.angle_between(Vec3::X).to_degrees();
+        let angle = camera.ray(0.5, 0.0).direction.angle_between(Vec3::X).to_degrees();
         assert!((angle - 30.0).abs() < 1e-3, "{angle}"); // a few roundings of f32 around 30
-        let side = camera.ray(1.0, 0.5).dir;
+        let side = camera.ray(1.0, 0.5).direction;
         assert!((side.z / side.x - 2.0 * 30f32.to_radians().tan()).abs() < 1e-6); // aspect 2, not 1 (K3)
     }
 

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A ray `origin + t * dir` for `t_min < t < t_max`.
+/// A ray `origin + t * direction` for `t_min < t < t_max`.
 ///
 /// ```
 /// use glam::vec3;
@@ -14,14 +14,14 @@ use serde::{Deserialize, Serialize};
 /// assert!(shorter.contains(1.0) && !shorter.contains(0.5) && !shorter.contains(3.0)); // both ends are open
 /// ```
 ///
-/// `dir` need not be of unit length: `t` counts lengths of `dir`, so that a ray can be transformed into the
+/// `direction` need not be of unit length: `t` counts lengths of `direction`, so that a ray can be transformed into the
 /// space of an instance and back without a change of `t`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ray {
     /// The point at `t` = 0, in world units.
     pub origin: Vec3,
     /// The direction, of any length but zero.
-    pub dir: Vec3,
+    pub direction: Vec3,
     /// The lower end of the range, open: a hit at or before this `t` does not count.
     pub t_min: f32,
     /// The upper end of the range, open: a hit at or beyond this `t` does not count. A search lowers it to
@@ -32,10 +32,10 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// A ray from `origin` along `dir` (any length but zero) with the range `0 < t < ∞`, at time 0.
+    /// A ray from `origin` along `direction` (any length but zero) with the range `0 < t < ∞`, at time 0.
     #[inline]
-    pub fn new(origin: Vec3, dir: Vec3) -> Self {
-        Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Ray { origin, direction, t_min: 0.0, t_max: f32::INFINITY, time: 0.0 }
     }
 
     /// The same ray with the open range `t_min < t < t_max`. If `t_min >= t_max` or one of them is NaN, no
@@ -45,10 +45,10 @@ impl Ray {
         Ray { t_min, t_max, ..self }
     }
 
-    /// The point `origin + t * dir`, in world units. The range of the ray plays no role.
+    /// The point `origin + t * direction`, in world units. The range of the ray plays no role.
     #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
-        self.origin + t * self.dir
+        self.origin + t * self.direction
     }
 
     /// Whether a hit at `t` counts: `t_min < t < t_max`. Both ends are open, and NaN never counts.

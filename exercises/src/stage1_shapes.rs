@@ -2,9 +2,9 @@
 //!
 //! Slides: "Ray-Sphere Intersection" I and II, "Ray-plane intersection", "Negate Normal Vector".
 //!
-//! Given: [`Ray`] with `origin`, `dir`, and `ray.contains(t)`, which says whether a hit at `t` counts.
-//! Asked: the `t` of the nearest hit that counts, or `None`. `dir` is not always of unit length: `t` counts lengths
-//! of `dir`. Start with [`nearest_root`], because both sphere tests end with it.
+//! Given: [`Ray`] with `origin`, `direction`, and `ray.contains(t)`, which says whether a hit at `t` counts.
+//! Asked: the `t` of the nearest hit that counts, or `None`. `direction` is not always of unit length: `t` counts lengths
+//! of `direction`. Start with [`nearest_root`], because both sphere tests end with it.
 
 use glam::Vec3;
 use raykata::ray::Ray;
@@ -47,7 +47,7 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     todo!("solve n·(o + t d - p0) = 0 for t and return it if it counts")
 }
 
-/// `normal`, turned so that it points to the side from which a ray of direction `dir` comes.
-pub fn face_forward(normal: Vec3, dir: Vec3) -> Vec3 {
+/// `normal`, turned so that it points to the side from which a ray of direction `direction` comes.
+pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     todo!("negate the normal if it points the way the ray goes")
 }

@@ -39,14 +39,14 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 }
 
 /// Where `ray` enters and leaves `bounds`, both within `ray.t_min..=ray.t_max`; `None` if it does neither. A ray that
-/// starts inside enters at `t_min`. The box is closed: to touch it is to hit it. `inverse_dir` is `1 / ray.dir`, which
+/// starts inside enters at `t_min`. The box is closed: to touch it is to hit it. `inverse_direction` is `1 / ray.direction`, which
 /// the caller computes once for many boxes; it is infinite on an axis along which the ray does not move.
 ///
 /// Where the formula lies: `t_b⁻ ≥ 0` rejects every box that the ray starts in; "corner cases are covered by IEEE"
 /// is untrue for `0 · ∞`, which is NaN, and for a direction of -0.0; `<` in place of `≤` loses flat boxes; and rounding
 /// loses 6 of 100 rays that are aimed at a corner.
 #[inline]
-pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
+pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     todo!("intersect the intervals of the three axes with the range of the ray")
 }
 

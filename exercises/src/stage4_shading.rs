@@ -11,12 +11,12 @@ use raykata::kit::{LightSample, Surface};
 use raykata::material::Material;
 use raykata::ray::Ray;
 
-/// The normal to shade with, on the side from which a ray of direction `dir` comes: on a smooth surface the
+/// The normal to shade with, on the side from which a ray of direction `direction` comes: on a smooth surface the
 /// `interpolated` one, otherwise the `geometric` one.
 ///
 /// Where the formula lies: normals may average to zero or to NaN, which has no direction. Then the surface is shaded
 /// flat.
-pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, dir: Vec3) -> Vec3 {
+pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
     todo!("normalise the interpolated normal if there is one, and turn it to the viewer's side")
 }
 

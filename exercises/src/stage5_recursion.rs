@@ -15,8 +15,8 @@ use raykata::ray::Ray;
 ///
 /// Where the formula lies: each bounce makes the direction a rounding longer or shorter, and between two mirrors that
 /// adds up.
-pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
-    todo!("mirror dir on the normal, and normalise")
+pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
+    todo!("mirror direction on the normal, and normalise")
 }
 
 /// The direction behind the surface by Snell's law, `n1 sin θ1 = n2 sin θ2`, of unit length; `None` if all light is
@@ -24,8 +24,8 @@ pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
 ///
 /// Where the formula lies: the slide divides by `sin θ1`, which is 0 for a ray along the normal, and takes the root of
 /// `1 - sin² θ2`, which is negative beyond the critical angle.
-pub fn refract(dir: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
-    todo!("bend the part of dir along the surface by n1 / n2; None beyond the critical angle")
+pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
+    todo!("bend the part of direction along the surface by n1 / n2; None beyond the critical angle")
 }
 
 /// The share of light that a surface between two clear media mirrors, by Schlick's formula
@@ -44,7 +44,7 @@ pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 }
 
 /// The rays that go on from a surface, and what each counts. A ray with weight `weight` and `depth` bounces behind it
-/// has come along `dir`; outside of the material the index is 1, and the ray comes from outside if it is `entering`.
+/// has come along `direction`; outside of the material the index is 1, and the ray comes from outside if it is `entering`.
 ///
 /// The mirrored ray counts `weight · material.mirror`, the refracted one `weight · material.transmission`. If
 /// `material.fresnel` asks for it, the share F of the transmission is mirrored instead. A child is traced only if its
@@ -53,7 +53,7 @@ pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 /// Where the formula lies: the slide tests the weight of the parent, and so follows rays that count nothing. Leaving
 /// the material, n1 and n2 change places.
 pub fn scatter(
-    dir: Vec3,
+    direction: Vec3,
     normal: Vec3,
     entering: bool,
     material: &Material,

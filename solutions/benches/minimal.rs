@@ -150,7 +150,7 @@ impl<'a> Caster<'a> {
     }
 
     fn probe(&self, ray: &Ray) -> Triangles<'_> {
-        Triangles { bvh: &self.bvh, triangles: &self.triangles, inverse_dir: ray.dir.recip() }
+        Triangles { bvh: &self.bvh, triangles: &self.triangles, inverse_direction: ray.direction.recip() }
     }
 }
 
@@ -158,7 +158,7 @@ impl<'a> Caster<'a> {
 struct Triangles<'a> {
     bvh: &'a Bvh,
     triangles: &'a [Triangle],
-    inverse_dir: Vec3,
+    inverse_direction: Vec3,
 }
 
 impl Probe for Triangles<'_> {
@@ -170,7 +170,7 @@ impl Probe for Triangles<'_> {
     #[inline]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, self.inverse_dir, bounds).map(|(t_enter, _)| t_enter)
+        stage3_bvh::slab(ray, self.inverse_direction, bounds).map(|(t_enter, _)| t_enter)
     }
 
     #[inline]
@@ -186,7 +186,7 @@ fn surface(ray: &Ray, triangle: &Triangle) -> Surface {
     let weights = [1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma];
     let terms = [weights[0] * a, weights[1] * b, weights[2] * c];
     let normal = (b - a).cross(c - a).normalize();
-    let normal = if normal.dot(ray.dir) > 0.0 { -normal } else { normal };
+    let normal = if normal.dot(ray.direction) > 0.0 { -normal } else { normal };
     Surface {
         point: terms[0] + terms[1] + terms[2],
         error: 3.5 * f32::EPSILON * (terms[0].abs() + terms[1].abs() + terms[2].abs()),

@@ -55,10 +55,10 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// Where the formula lies: widening boxes by 1e-5 does nothing at 1000 and more. Make the way out longer by the error of
 /// its own three roundings instead, `1 + 2 γ₃`, and the way in earlier by as much: a search compares it with the `t` of
 /// hits, which are rounded in another way.
-pub fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
+pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     // That of stage 3 is.
-    crate::stage3_bvh::slab(ray, inverse_dir, bounds)
+    crate::stage3_bvh::slab(ray, inverse_direction, bounds)
     // <stub> todo!("compare so that NaN changes nothing, and let the way out be a little longer")
     // </solution>
 }
@@ -106,7 +106,7 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 /// And in no precision has an epsilon on the determinant a meaning: it grows with the cube of the size.
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
     let (from_b, from_c, from_o) = (a - b, a - c, a - o);
 
     let aside = from_c.cross(d);
@@ -130,7 +130,7 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 /// away, and all that follows is right for another sphere.
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
-    let (d, r) = (ray.dir.as_dvec3(), f64::from(radius));
+    let (d, r) = (ray.direction.as_dvec3(), f64::from(radius));
     let f = ray.origin.as_dvec3() - center.as_dvec3();
 
     // r² - |f⊥|² as in stage 1; b² - a c has digits enough here as well.

@@ -2,9 +2,9 @@
 //!
 //! Slides: "Ray-Sphere Intersection" I and II, "Ray-plane intersection", "Negate Normal Vector".
 //!
-//! Given: [`Ray`] with `origin`, `dir`, and `ray.contains(t)`, which says whether a hit at `t` counts.
-//! Asked: the `t` of the nearest hit that counts, or `None`. `dir` is not always of unit length: `t` counts lengths
-//! of `dir`. Start with [`nearest_root`], because both sphere tests end with it.
+//! Given: [`Ray`] with `origin`, `direction`, and `ray.contains(t)`, which says whether a hit at `t` counts.
+//! Asked: the `t` of the nearest hit that counts, or `None`. `direction` is not always of unit length: `t` counts lengths
+//! of `direction`. Start with [`nearest_root`], because both sphere tests end with it.
 
 use glam::Vec3;
 use raykata::ray::Ray;
@@ -30,12 +30,12 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
     let f = ray.origin - center;
-    let a = ray.dir.length_squared();
-    let b = -f.dot(ray.dir);
+    let a = ray.direction.length_squared();
+    let b = -f.dot(ray.direction);
     let c = f.length_squared() - radius * radius;
 
     // b² - a c = a (r² - |f⊥|²), where f⊥ is the part of f at right angles to the ray. This side does not cancel.
-    let f_perpendicular = f + (b / a) * ray.dir;
+    let f_perpendicular = f + (b / a) * ray.direction;
     let discriminant = radius * radius - f_perpendicular.length_squared();
     if !(discriminant >= 0.0 && radius > 0.0) {
         return None; // Beside the sphere; a NaN ends here, too.
@@ -56,11 +56,11 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
 pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
     let to_center = center - ray.origin;
-    let length_squared = ray.dir.length_squared();
+    let length_squared = ray.direction.length_squared();
 
     // Walk to the point of the ray that is nearest to the centre, and look how far it is from there.
-    let t_ca = to_center.dot(ray.dir) / length_squared;
-    let nearest = to_center - t_ca * ray.dir;
+    let t_ca = to_center.dot(ray.direction) / length_squared;
+    let nearest = to_center - t_ca * ray.direction;
     let half_chord_squared = radius * radius - nearest.length_squared();
     if !(half_chord_squared >= 0.0 && radius > 0.0) {
         return None;
@@ -91,16 +91,16 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
 /// taken for a hit. The form `t = -(D + n·o) / n·d` is the same on paper but cancels far from the origin.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // <solution>
-    let t = (point - ray.origin).dot(normal) / ray.dir.dot(normal);
+    let t = (point - ray.origin).dot(normal) / ray.direction.dot(normal);
     ray.contains(t).then_some(t) // 0/0 and 1/0 do not count
     // <stub> todo!("solve n·(o + t d - p0) = 0 for t and return it if it counts")
     // </solution>
 }
 
-/// `normal`, turned so that it points to the side from which a ray of direction `dir` comes.
-pub fn face_forward(normal: Vec3, dir: Vec3) -> Vec3 {
+/// `normal`, turned so that it points to the side from which a ray of direction `direction` comes.
+pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
-    if normal.dot(dir) > 0.0 { -normal } else { normal }
+    if normal.dot(direction) > 0.0 { -normal } else { normal }
     // <stub> todo!("negate the normal if it points the way the ray goes")
     // </solution>
 }

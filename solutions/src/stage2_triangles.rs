@@ -23,7 +23,7 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // The letters of the slide, column by column: a e i | b f j | c g k | d h l.
     let [a, e, i] = (triangle.a - triangle.b).to_array();
     let [b, f, j] = (triangle.a - triangle.c).to_array();
-    let [c, g, k] = ray.dir.to_array();
+    let [c, g, k] = ray.direction.to_array();
     let [d, h, l] = (triangle.a - ray.origin).to_array();
 
     // D expands the columns (a e i), (b f j), (c g k); the slide prints (gl - hk) and (hj - fl) here.
@@ -66,10 +66,10 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     let v = triangle.c - triangle.a;
     let normal = u.cross(v);
     let to_a = triangle.a - ray.origin;
-    let t = to_a.dot(normal) / ray.dir.dot(normal);
+    let t = to_a.dot(normal) / ray.direction.dot(normal);
 
     // I = o + t d - a, kept relative to the ray's origin: adding o to t d first would round at the size of o.
-    let point = t * ray.dir - to_a;
+    let point = t * ray.direction - to_a;
     let (point_u, point_v) = (point.dot(u), point.dot(v));
     let beta = (scalars.uv * point_v - scalars.vv * point_u) / scalars.d;
     let gamma = (scalars.uv * point_u - scalars.uu * point_v) / scalars.d;
@@ -91,10 +91,10 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // single precision neighbours agree as well, but a ray may count for the neighbour of the triangle that it meets, and
     // miss the neighbour's box: 7 of 10⁸ rays at edges leaked out of meshes in a hierarchy. The price: a plain frame of
     // 57,600 triangles takes a tenth longer.
-    let [o, d, a, b, c] = [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
+    let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
 
     // See the triangle from the ray: origin at zero, the ray's longest axis as z, sheared so that the ray is (0 0 z).
-    let z = longest_axis(ray.dir);
+    let z = longest_axis(ray.direction);
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);
     let shear = DVec2::new(d[x], d[y]) / d[z];
     let project = |corner: DVec3| {
@@ -158,7 +158,7 @@ pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
 /// `d · ((T₂ - P) × (T₁ - P))`.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
-    let side = |from: Vec3, to: Vec3| (to - point).cross(from - point).dot(ray.dir);
+    let side = |from: Vec3, to: Vec3| (to - point).cross(from - point).dot(ray.direction);
     same_side([side(triangle.a, triangle.b), side(triangle.b, triangle.c), side(triangle.c, triangle.a)])
     // <stub> todo!("test the sign of d · ((T2 - P) × (T1 - P)) for each side")
     // </solution>

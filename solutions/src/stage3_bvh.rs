@@ -65,25 +65,25 @@ pub fn surface_area(bounds: &Aabb) -> f32 {
 }
 
 /// Where `ray` enters and leaves `bounds`, both within `ray.t_min..=ray.t_max`; `None` if it does neither. A ray that
-/// starts inside enters at `t_min`. The box is closed: to touch it is to hit it. `inverse_dir` is `1 / ray.dir`, which
+/// starts inside enters at `t_min`. The box is closed: to touch it is to hit it. `inverse_direction` is `1 / ray.direction`, which
 /// the caller computes once for many boxes; it is infinite on an axis along which the ray does not move.
 ///
 /// Where the formula lies: `t_b⁻ ≥ 0` rejects every box that the ray starts in; "corner cases are covered by IEEE"
 /// is untrue for `0 · ∞`, which is NaN, and for a direction of -0.0; `<` in place of `≤` loses flat boxes; and rounding
 /// loses 6 of 100 rays that are aimed at a corner.
 #[inline]
-pub fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
+pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
     for axis in 0..3 {
         // The sign bit and not `< 0`: 1 / -0.0 is -∞, and the planes must swap for it, too.
-        let (first, last) = if inverse_dir[axis].is_sign_negative() {
+        let (first, last) = if inverse_direction[axis].is_sign_negative() {
             (bounds.max[axis], bounds.min[axis])
         } else {
             (bounds.min[axis], bounds.max[axis])
         };
-        let enter = (first - ray.origin[axis]) * inverse_dir[axis];
-        let leave = (last - ray.origin[axis]) * inverse_dir[axis];
+        let enter = (first - ray.origin[axis]) * inverse_direction[axis];
+        let leave = (last - ray.origin[axis]) * inverse_direction[axis];
         // In this order a NaN changes nothing: the ray runs within the plane of a face, and that is inside.
         if enter > near {
             near = enter;

@@ -11,14 +11,14 @@ use raykata::kit::{LightSample, Surface};
 use raykata::material::Material;
 use raykata::ray::Ray;
 
-/// The normal to shade with, on the side from which a ray of direction `dir` comes: on a smooth surface the
+/// The normal to shade with, on the side from which a ray of direction `direction` comes: on a smooth surface the
 /// `interpolated` one, otherwise the `geometric` one.
 ///
 /// Where the formula lies: normals may average to zero or to NaN, which has no direction. Then the surface is shaded
 /// flat.
-pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, dir: Vec3) -> Vec3 {
+pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
     // <solution>
-    let toward_viewer = if geometric.dot(dir) > 0.0 { -geometric } else { geometric };
+    let toward_viewer = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
     match interpolated.and_then(Vec3::try_normalize) {
         None => toward_viewer,
         Some(smooth) if smooth.dot(toward_viewer) < 0.0 => -smooth,

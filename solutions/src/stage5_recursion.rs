@@ -19,10 +19,10 @@ use crate::stage4_shading::off_surface;
 ///
 /// Where the formula lies: each bounce makes the direction a rounding longer or shorter, and between two mirrors that
 /// adds up.
-pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
+pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
     // <solution>
-    (dir - 2.0 * dir.dot(normal) * normal).normalize()
-    // <stub> todo!("mirror dir on the normal, and normalise")
+    (direction - 2.0 * direction.dot(normal) * normal).normalize()
+    // <stub> todo!("mirror direction on the normal, and normalise")
     // </solution>
 }
 
@@ -31,19 +31,19 @@ pub fn reflect(dir: Vec3, normal: Vec3) -> Vec3 {
 ///
 /// Where the formula lies: the slide divides by `sin θ1`, which is 0 for a ray along the normal, and takes the root of
 /// `1 - sin² θ2`, which is negative beyond the critical angle.
-pub fn refract(dir: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
+pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
     // <solution>
     let ratio = n1 / n2;
-    // dir = sin θ1 m - cos θ1 n for some m along the surface. Keeping sin θ1 m in one piece needs no division.
-    let cos_1 = -dir.dot(normal);
-    let along = dir + cos_1 * normal;
+    // direction = sin θ1 m - cos θ1 n for some m along the surface. Keeping sin θ1 m in one piece needs no division.
+    let cos_1 = -direction.dot(normal);
+    let along = direction + cos_1 * normal;
     let along_2 = ratio * along;
     let cos_2_squared = 1.0 - along_2.length_squared();
     if !(cos_2_squared >= 0.0) {
         return None; // Total internal reflection; NaN ends here, too.
     }
     (along_2 - cos_2_squared.sqrt() * normal).try_normalize()
-    // <stub> todo!("bend the part of dir along the surface by n1 / n2; None beyond the critical angle")
+    // <stub> todo!("bend the part of direction along the surface by n1 / n2; None beyond the critical angle")
     // </solution>
 }
 
@@ -88,7 +88,7 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 // </solution>
 
 /// The rays that go on from a surface, and what each counts. A ray with weight `weight` and `depth` bounces behind it
-/// has come along `dir`; outside of the material the index is 1, and the ray comes from outside if it is `entering`.
+/// has come along `direction`; outside of the material the index is 1, and the ray comes from outside if it is `entering`.
 ///
 /// The mirrored ray counts `weight · material.mirror`, the refracted one `weight · material.transmission`. If
 /// `material.fresnel` asks for it, the share F of the transmission is mirrored instead. A child is traced only if its
@@ -97,7 +97,7 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 /// Where the formula lies: the slide tests the weight of the parent, and so follows rays that count nothing. Leaving
 /// the material, n1 and n2 change places.
 pub fn scatter(
-    dir: Vec3,
+    direction: Vec3,
     normal: Vec3,
     entering: bool,
     material: &Material,
@@ -111,7 +111,7 @@ pub fn scatter(
     }
     let (n1, n2) =
         if entering { (1.0, material.index_of_refraction) } else { (material.index_of_refraction, 1.0) };
-    let cos_theta = (-dir.dot(normal)).clamp(0.0, 1.0);
+    let cos_theta = (-direction.dot(normal)).clamp(0.0, 1.0);
     let mirrored_share = match material.fresnel {
         Fresnel::None => 0.0,
         Fresnel::Schlick => fresnel_schlick(cos_theta, n1, n2),
@@ -126,12 +126,12 @@ pub fn scatter(
     if counts(reflected) {
         children.push(SecondaryRay {
             bounce: Bounce::Reflection,
-            direction: reflect(dir, normal),
+            direction: reflect(direction, normal),
             weight: reflected,
         });
     }
     if counts(transmitted)
-        && let Some(direction) = refract(dir, normal, n1, n2)
+        && let Some(direction) = refract(direction, normal, n1, n2)
     {
         children.push(SecondaryRay { bounce: Bounce::Transmission, direction, weight: transmitted });
     }

@@ -110,8 +110,8 @@ pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> R
         return *pinhole;
     }
     // Both seen from the middle of the lens, so that camera.position, however large, takes no part.
-    let focus = lens.focal_distance / pinhole.dir.dot(camera.towards) * pinhole.dir;
-    Ray { origin: camera.position + offset, dir: (focus - offset).normalize(), ..*pinhole }
+    let focus = lens.focal_distance / pinhole.direction.dot(camera.towards) * pinhole.direction;
+    Ray { origin: camera.position + offset, direction: (focus - offset).normalize(), ..*pinhole }
     // <stub> todo!("start on the lens and aim where the pinhole ray meets the plane of focus")
     // </solution>
 }

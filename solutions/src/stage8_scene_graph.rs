@@ -24,7 +24,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     Ray {
         // Far from the origin large terms cancel here: in double nothing of the small rest is lost.
         origin: to_object.as_daffine3().transform_point3(ray.origin.as_dvec3()).as_vec3(),
-        dir: to_object.transform_vector3(ray.dir),
+        direction: to_object.transform_vector3(ray.direction),
         ..*ray
     }
     // <stub> todo!("carry the origin as a point and the direction as a vector; leave its length alone")
@@ -109,11 +109,11 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 /// it. The like of the slab test for spheres.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // <solution>
-    let (dir, to_center) = (ray.dir.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
+    let (direction, to_center) = (ray.direction.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
     let radius = f64::from(sphere.radius);
-    // The line comes closest to the centre at t = b / a, and |to_center × dir|² / a is the square of that distance.
-    let (a, b) = (dir.length_squared(), to_center.dot(dir));
-    let reach = a * radius * radius - to_center.cross(dir).length_squared();
+    // The line comes closest to the centre at t = b / a, and |to_center × direction|² / a is the square of that distance.
+    let (a, b) = (direction.length_squared(), to_center.dot(direction));
+    let reach = a * radius * radius - to_center.cross(direction).length_squared();
     if !(reach >= 0.0) {
         return None;
     }

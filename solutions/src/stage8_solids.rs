@@ -75,7 +75,7 @@ fn roots(a: f64, b: f64, c: f64, root: f64) -> (f64, f64) {
 }
 
 fn all_finite(ray: &Ray, points: &[Vec3]) -> bool {
-    ray.origin.is_finite() && ray.dir.is_finite() && points.iter().all(|point| point.is_finite())
+    ray.origin.is_finite() && ray.direction.is_finite() && points.iter().all(|point| point.is_finite())
 }
 // </solution>
 
@@ -86,14 +86,14 @@ fn all_finite(ray: &Ray, points: &[Vec3]) -> bool {
 /// is tested against the others' edges with its rounding, so rays at edges are lost. Cut three intervals instead.
 pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
     // <solution>
-    if !all_finite(ray, &[cuboid.min, cuboid.max]) || ray.dir == Vec3::ZERO {
+    if !all_finite(ray, &[cuboid.min, cuboid.max]) || ray.direction == Vec3::ZERO {
         return None;
     }
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let (min, max) = (cuboid.min.as_dvec3(), cuboid.max.as_dvec3());
     let mut span = Span::WHOLE_LINE;
     for (axis, up) in DVec3::AXES.into_iter().enumerate() {
-        span = span.and(slab(origin[axis], dir[axis], [min[axis], max[axis]], up)?)?;
+        span = span.and(slab(origin[axis], direction[axis], [min[axis], max[axis]], up)?)?;
     }
     span.first_hit(ray)
     // <stub> todo!("cut the intervals of the three axes; the first end in the range of the ray is the hit")
@@ -109,17 +109,17 @@ pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
 /// tested as disks on their own leak at the rim.
 pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
     // <solution>
-    if !all_finite(ray, &[cylinder.base, cylinder.top]) || ray.dir == Vec3::ZERO {
+    if !all_finite(ray, &[cylinder.base, cylinder.top]) || ray.direction == Vec3::ZERO {
         return None;
     }
-    let dir = ray.dir.as_dvec3();
+    let direction = ray.direction.as_dvec3();
     let from_base = ray.origin.as_dvec3() - cylinder.base.as_dvec3();
     let axis = cylinder.top.as_dvec3() - cylinder.base.as_dvec3();
-    let between_caps = slab(from_base.dot(axis), dir.dot(axis), [0.0, axis.length_squared()], axis)?;
+    let between_caps = slab(from_base.dot(axis), direction.dot(axis), [0.0, axis.length_squared()], axis)?;
 
     // |(p + t d) × A|² ≤ r² |A|²
     let radius_squared = f64::from(cylinder.radius).powi(2);
-    let (m, n) = (dir.cross(axis), from_base.cross(axis));
+    let (m, n) = (direction.cross(axis), from_base.cross(axis));
     let (a, b, c) = (m.dot(m), n.dot(m), n.dot(n) - radius_squared * axis.length_squared());
     let round = if a == 0.0 {
         if c > 0.0 {
@@ -127,13 +127,13 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
         }
         Span::WHOLE_LINE
     } else {
-        let discriminant = a * radius_squared - axis.dot(from_base.cross(dir)).powi(2);
+        let discriminant = a * radius_squared - axis.dot(from_base.cross(direction)).powi(2);
         if discriminant < 0.0 {
             return None;
         }
         let (enter, leave) = roots(a, b, c, axis.length() * discriminant.sqrt());
         let outwards = |t: f64| {
-            let at = from_base + t * dir;
+            let at = from_base + t * direction;
             at - at.project_onto(axis)
         };
         Span { enter, leave, enter_normal: outwards(enter), leave_normal: outwards(leave) }
@@ -153,20 +153,20 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
 /// *outside* of the roots.
 pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     // <solution>
-    if !all_finite(ray, &[cone.base, cone.apex]) || ray.dir == Vec3::ZERO {
+    if !all_finite(ray, &[cone.base, cone.apex]) || ray.direction == Vec3::ZERO {
         return None;
     }
-    let dir = ray.dir.as_dvec3();
+    let direction = ray.direction.as_dvec3();
     let from_apex = ray.origin.as_dvec3() - cone.apex.as_dvec3();
     let axis = cone.base.as_dvec3() - cone.apex.as_dvec3();
-    let (height_squared, start, rate) = (axis.length_squared(), from_apex.dot(axis), dir.dot(axis));
+    let (height_squared, start, rate) = (axis.length_squared(), from_apex.dot(axis), direction.dot(axis));
     // This also cuts off the mirror image, whose points lie below 0.
     let below_apex = slab(start, rate, [0.0, height_squared], axis)?;
 
     let k = f64::from(cone.radius).powi(2) / height_squared;
-    let (m, n) = (dir.cross(axis), from_apex.cross(axis));
+    let (m, n) = (direction.cross(axis), from_apex.cross(axis));
     let (a, b, c) = (m.dot(m) - k * rate * rate, n.dot(m) - k * start * rate, n.dot(n) - k * start * start);
-    let moment = from_apex.cross(dir);
+    let moment = from_apex.cross(direction);
     let discriminant = height_squared * (k * axis.cross(moment).length_squared() - axis.dot(moment).powi(2));
     if a > 0.0 && discriminant < 0.0 {
         return None;
@@ -185,7 +185,7 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     };
     // Half the gradient of |x × A|² - k (x·A)².
     let outwards = |t: f64| {
-        let at = from_apex + t * dir;
+        let at = from_apex + t * direction;
         let gradient = height_squared * at - at.dot(axis) * (1.0 + k) * axis;
         if gradient == DVec3::ZERO { -axis } else { gradient }
     };
@@ -198,10 +198,10 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
 /// Ray against a flat disk, from either side. The rim belongs to it.
 pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
     // <solution>
-    let (dir, normal) = (ray.dir.as_dvec3(), disk.normal.as_dvec3());
+    let (direction, normal) = (ray.direction.as_dvec3(), disk.normal.as_dvec3());
     let to_center = disk.center.as_dvec3() - ray.origin.as_dvec3();
-    let t = to_center.dot(normal) / dir.dot(normal);
-    let from_center = t * dir - to_center;
+    let t = to_center.dot(normal) / direction.dot(normal);
+    let from_center = t * direction - to_center;
     // Written so that NaN, the t of a ray along the disk, fails.
     let inside = from_center.length_squared() <= f64::from(disk.radius).powi(2);
     let hit = SolidHit { t: t as f32, normal: normal.normalize_or_zero().as_vec3() };
@@ -216,11 +216,11 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 /// edge the ray passes, `d · (p × q)` for its ends `p` and `q` as seen from the origin, and a neighbour agrees.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // <solution>
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let seen: Vec<DVec3> = polygon.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
     let edges = || (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
 
-    let passes: Vec<f64> = edges().map(|(p, q)| dir.dot(p.cross(q))).collect();
+    let passes: Vec<f64> = edges().map(|(p, q)| direction.dot(p.cross(q))).collect();
     let (left, right) = (passes.iter().all(|&side| side >= 0.0), passes.iter().all(|&side| side <= 0.0));
     if !(left || right) {
         return None;
@@ -228,7 +228,7 @@ pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // Newell: the areas that all edges sweep around a corner add up to the normal, and none of them needs to be large.
     let normal: DVec3 = edges().map(|(p, q)| (p - seen[0]).cross(q - seen[0])).sum();
     let hit = SolidHit {
-        t: (seen[0].dot(normal) / dir.dot(normal)) as f32,
+        t: (seen[0].dot(normal) / direction.dot(normal)) as f32,
         normal: normal.normalize_or_zero().as_vec3(),
     };
     ray.contains(hit.t).then_some(hit)

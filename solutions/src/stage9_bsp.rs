@@ -158,7 +158,7 @@ fn search(
         BspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
             let origin = ray.origin.as_dvec3();
-            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.dir.as_dvec3()));
+            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
             // The height is a difference of numbers of this size, and off by some of their last digits.
             let digits = plane.normal.abs().dot(origin.abs()) + plane.offset.abs();
             let room = ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;

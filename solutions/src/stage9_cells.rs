@@ -83,11 +83,11 @@ pub fn span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
     if !cell.min.cmple(cell.max).all() {
         return None;
     }
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let mut part = range(ray);
     for axis in 0..3 {
         for (height, rate) in
-            [(origin[axis] - cell.min[axis], dir[axis]), (cell.max[axis] - origin[axis], -dir[axis])]
+            [(origin[axis] - cell.min[axis], direction[axis]), (cell.max[axis] - origin[axis], -direction[axis])]
         {
             part = part_above(height, rate, ROUNDING * height.abs(), part)?;
         }

@@ -112,8 +112,8 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
     // <solution>
     let bounds = Cell::new(&grid.bounds);
     let (enter, leave) = span(ray, &bounds)?;
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let start = (origin + enter * dir).clamp(bounds.min, bounds.max);
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let start = (origin + enter * direction).clamp(bounds.min, bounds.max);
     let mut cell = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, start[axis])));
 
     let mut ray = *ray;
@@ -126,18 +126,18 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         // The axis along which the ray leaves the cell first, and when.
         let (mut axis, mut exit) = (0, f64::INFINITY);
         for candidate in 0..3 {
-            let plane = grid.plane(candidate, cell[candidate] + u32::from(dir[candidate] > 0.0));
-            let t = (plane - origin[candidate]) / dir[candidate];
-            if dir[candidate] != 0.0 && t < exit {
+            let plane = grid.plane(candidate, cell[candidate] + u32::from(direction[candidate] > 0.0));
+            let t = (plane - origin[candidate]) / direction[candidate];
+            if direction[candidate] != 0.0 && t < exit {
                 (axis, exit) = (candidate, t);
             }
         }
         let at_the_end =
-            if dir[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
+            if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
         if exit.is_infinite() || exit > leave || at_the_end || settled(&best, exit) {
             return best;
         }
-        if dir[axis] > 0.0 {
+        if direction[axis] > 0.0 {
             cell[axis] += 1;
         } else {
             cell[axis] -= 1;

@@ -69,28 +69,28 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
     }
     let root = Cell::new(&octree.bounds);
     let (enter, leave) = span(ray, &root)?;
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-    let mut point = (origin + enter * dir).clamp(root.min, root.max);
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let mut point = (origin + enter * direction).clamp(root.min, root.max);
     let mut ray = *ray;
     let mut best = None;
     loop {
-        let (first, count, cell) = leaf_at(octree, probe, point, dir);
+        let (first, count, cell) = leaf_at(octree, probe, point, direction);
         look_into(octree.primitives(first, count), probe, &mut ray, &mut best);
 
         let (mut axis, mut exit, mut face) = (0, f64::INFINITY, 0.0);
         for candidate in 0..3 {
-            let far = if dir[candidate] > 0.0 { cell.max[candidate] } else { cell.min[candidate] };
-            let t = (far - origin[candidate]) / dir[candidate];
-            if dir[candidate] != 0.0 && t < exit {
+            let far = if direction[candidate] > 0.0 { cell.max[candidate] } else { cell.min[candidate] };
+            let t = (far - origin[candidate]) / direction[candidate];
+            if direction[candidate] != 0.0 && t < exit {
                 (axis, exit, face) = (candidate, t, far);
             }
         }
-        let outside = if dir[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
+        let outside = if direction[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
         if exit.is_infinite() || exit > leave || outside || settled(&best, exit) {
             return best;
         }
         // Exactly on the face, and not beside the cell by a rounding: so each step gets ahead.
-        point = (origin + exit * dir).clamp(cell.min, cell.max);
+        point = (origin + exit * direction).clamp(cell.min, cell.max);
         point[axis] = face;
     }
     // <stub> todo!("go down to the leaf that holds the point, look into it, and go on at its exit")
@@ -99,7 +99,7 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
 
 // <solution>
 /// The leaf that holds `point`. A point on a face is in the cell that a ray in this direction is about to enter.
-fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, dir: DVec3) -> (u32, u32, Cell) {
+fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVec3) -> (u32, u32, Cell) {
     let (mut node, mut cell) = (0, Cell::new(&octree.bounds));
     loop {
         probe.visit(node);
@@ -108,7 +108,7 @@ fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, dir: DVec3) ->
             OctreeNode::Inner { first } => {
                 let middle = cell.middle();
                 let upper = |axis: usize| {
-                    point[axis] > middle[axis] || point[axis] == middle[axis] && !(dir[axis] < 0.0)
+                    point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0)
                 };
                 let octant = (0..3).map(|axis| usize::from(upper(axis)) << axis).sum::<usize>();
                 (node, cell) = (first + octant as u32, cell.octant(octant));

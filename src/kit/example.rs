@@ -133,10 +133,10 @@ examples! {
         lights: Vec::new(),
         visible: Vec::new(),
     };
-    RefractQuery => RefractQuery { dir: Vec3::NEG_Z, normal: Vec3::Z, n1: 1.0, n2: 1.5 };
+    RefractQuery => RefractQuery { direction: Vec3::NEG_Z, normal: Vec3::Z, n1: 1.0, n2: 1.5 };
     FresnelQuery => FresnelQuery { cos_theta: 1.0, n1: 1.0, n2: 1.5 };
     ScatterQuery => ScatterQuery {
-        dir: Vec3::NEG_Z,
+        direction: Vec3::NEG_Z,
         normal: Vec3::Z,
         entering: true,
         material: example(),

@@ -47,10 +47,10 @@ macro_rules! student_functions {
                     = stage1_shapes::plane;
                 |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) }
                 /// `normal`, negated if necessary, so that it points to the side from which a ray of
-                /// direction `dir` comes.
-                FaceForward fn face_forward(normal: Vec3, dir: Vec3) -> Vec3
+                /// direction `direction` comes.
+                FaceForward fn face_forward(normal: Vec3, direction: Vec3) -> Vec3
                     = stage1_shapes::face_forward;
-                |(normal, dir): (Vec3, Vec3)| -> Vec3 { F::face_forward(*normal, *dir) }
+                |(normal, direction): (Vec3, Vec3)| -> Vec3 { F::face_forward(*normal, *direction) }
             }
 
             /// Stage 2: triangles and meshes. Each function gives one answer per query, in the same order,
@@ -143,11 +143,11 @@ macro_rules! student_functions {
                     = stage3_bvh::surface_area;
                 |q: Aabb| -> f32 { F::surface_area(q) }
                 /// The `t` at which a ray enters and leaves a closed box, both in `[t_min, t_max]`; `None` if
-                /// it misses. A ray that starts inside enters at `t_min`. `inverse_dir` is `1 / ray.dir`,
+                /// it misses. A ray that starts inside enters at `t_min`. `inverse_direction` is `1 / ray.direction`,
                 /// infinite where the direction is 0.
-                Slab fn slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
+                Slab fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage3_bvh::slab;
-                |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.dir.recip(), &q.bounds) }
+                |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.direction.recip(), &q.bounds) }
                 /// Object median: reorders two or more primitives along the longest axis of their box, so
                 /// that half of them come first, and returns the index at which the second half begins.
                 /// Neither side is empty.
@@ -219,11 +219,11 @@ macro_rules! student_functions {
                 ShadowRay fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray>
                     = stage4_shading::shadow_ray;
                 |q: ShadowQuery| -> Option<Ray> { F::shadow_ray(&q.surface, &q.light) }
-                /// The unit normal for shading on the side from which a ray of direction `dir` comes: the
+                /// The unit normal for shading on the side from which a ray of direction `direction` comes: the
                 /// interpolated one if it has a direction, and the geometric one otherwise.
-                ShadingNormal fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, dir: Vec3) -> Vec3
+                ShadingNormal fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3
                     = stage4_shading::shading_normal;
-                |(geometric, smooth, dir): (Vec3, Option<Vec3>, Vec3)| -> Vec3 { F::shading_normal(*geometric, *smooth, *dir) }
+                |(geometric, smooth, direction): (Vec3, Option<Vec3>, Vec3)| -> Vec3 { F::shading_normal(*geometric, *smooth, *direction) }
                 /// The colour of a point in linear light, by the Phong model. `visible(i, ray)` says whether
                 /// shadow ray `ray` to light `i` is not occluded; it is called only where the answer can
                 /// matter.
@@ -257,15 +257,15 @@ macro_rules! student_functions {
             5 trait Recursion {
                 /// The unit direction of the reflected ray, for the unit direction of a ray and a unit
                 /// normal.
-                Reflect fn reflect(dir: Vec3, normal: Vec3) -> Vec3
+                Reflect fn reflect(direction: Vec3, normal: Vec3) -> Vec3
                     = stage5_recursion::reflect;
-                |(dir, normal): (Vec3, Vec3)| -> Vec3 { F::reflect(*dir, *normal) }
+                |(direction, normal): (Vec3, Vec3)| -> Vec3 { F::reflect(*direction, *normal) }
                 /// The unit direction of the refracted ray by Snell's law; `None` in the case of total
                 /// internal reflection. The unit normal is on the side that the ray comes from, in the medium
                 /// of index `n1`.
-                Refract fn refract(dir: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3>
+                Refract fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3>
                     = stage5_recursion::refract;
-                |q: RefractQuery| -> Option<Vec3> { F::refract(q.dir, q.normal, q.n1, q.n2) }
+                |q: RefractQuery| -> Option<Vec3> { F::refract(q.direction, q.normal, q.n1, q.n2) }
                 /// The Fresnel reflectance, `0..=1`, by Schlick's approximation; 1 in the case of total
                 /// internal reflection. `cos_theta` is the cosine of the angle of incidence, `0..=1`.
                 FresnelSchlick fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32
@@ -281,11 +281,11 @@ macro_rules! student_functions {
                 /// weight is 0 or below `limits.min_contribution` in every channel, or if
                 /// `depth >= limits.max_depth`.
                 Scatter fn scatter(
-                    dir: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
+                    direction: Vec3, normal: Vec3, entering: bool, material: &Material, weight: Vec3, depth: u32, limits: &Limits
                 ) -> Vec<SecondaryRay>
                     = stage5_recursion::scatter;
                 |q: ScatterQuery| -> Vec<SecondaryRay> {
-                    F::scatter(q.dir, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
+                    F::scatter(q.direction, q.normal, q.entering, &q.material, q.weight, q.depth, &q.limits)
                 }
                 /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
                 /// the side to which it goes.
@@ -582,9 +582,9 @@ macro_rules! student_functions {
                 |q: TriangleQuery| -> Option<TriangleHit> { F::watertight(&q.ray, &q.triangle) }
                 /// The `t` at which a ray enters and leaves a closed box, as in stage 3, but never `None` for
                 /// a box that the ray meets exactly.
-                ConservativeSlab fn conservative_slab(ray: &Ray, inverse_dir: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
+                ConservativeSlab fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
                     = stage10_stability::conservative_slab;
-                |q: SlabQuery| -> Option<(f32, f32)> { F::conservative_slab(&q.ray, q.ray.dir.recip(), &q.bounds) }
+                |q: SlabQuery| -> Option<(f32, f32)> { F::conservative_slab(&q.ray, q.ray.direction.recip(), &q.bounds) }
                 /// The origin of a ray that leaves a surface whose true position is within `error` of `point`
                 /// along each axis: off the surface, on the side to which `direction` goes (the ray offset
                 /// that avoids shadow acne).

@@ -121,7 +121,7 @@ impl CachedQuery {
 pub struct PacketQuery {
     /// The hierarchy that is searched.
     pub bvh: Bvh,
-    /// The rays. The probe tells them apart by `origin`, `dir` and `t_min`; all answers come from the tables.
+    /// The rays. The probe tells them apart by `origin`, `direction` and `t_min`; all answers come from the tables.
     pub rays: Vec<Ray>,
     /// The answers: one table per ray, in the same order.
     pub tables: Vec<Table>,
@@ -178,7 +178,7 @@ impl Cells for CellsProbe<'_> {
 }
 
 /// Answers a packet search from the tables of several rays, and counts its calls. A ray is recognised by its
-/// `origin`, `dir` and `t_min`.
+/// `origin`, `direction` and `t_min`.
 ///
 /// # Panics
 ///
@@ -198,7 +198,7 @@ impl<'a> PacketProbe<'a> {
 
     #[track_caller]
     fn table(&self, ray: &Ray) -> &'a Table {
-        let same = |one: &Ray| (one.origin, one.dir, one.t_min) == (ray.origin, ray.dir, ray.t_min);
+        let same = |one: &Ray| (one.origin, one.direction, one.t_min) == (ray.origin, ray.direction, ray.t_min);
         match self.query.rays.iter().position(same) {
             Some(index) => &self.query.tables[index],
             None => panic!("a ray that is not of the packet: only t_max may change"),

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefractQuery {
     /// The direction of the ray, of unit length.
-    pub dir: Vec3,
+    pub direction: Vec3,
     /// The unit normal on the side that the ray comes from.
     pub normal: Vec3,
     /// The index of refraction of the medium that the ray comes from, above 0.
@@ -62,7 +62,7 @@ pub struct SecondaryRay {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScatterQuery {
     /// The direction of the incoming ray, of unit length.
-    pub dir: Vec3,
+    pub direction: Vec3,
     /// The unit normal on the side that the ray comes from.
     pub normal: Vec3,
     /// Whether the ray comes from outside of the material.

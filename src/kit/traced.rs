@@ -31,8 +31,8 @@ pub struct TracedRay {
     /// The origin of the ray, in world units.
     pub origin: Vec3,
     /// The direction of the ray, of any length but zero.
-    pub dir: Vec3,
-    /// The `t` of the hit, in lengths of `dir`, and the name of the material there; `None` if nothing is hit.
+    pub direction: Vec3,
+    /// The `t` of the hit, in lengths of `direction`, and the name of the material there; `None` if nothing is hit.
     /// An occluded shadow ray has `t` 0 and an empty name.
     pub hit: Option<(f32, String)>,
 }

@@ -76,13 +76,13 @@ impl SurfaceInteraction {
             Target::Instance(outer, inner) => in_instance::<F>(world, looks, ray, outer, inner, hit.detail),
         };
         let Point { point, error, normal, smooth } = point;
-        let geometric_normal = if looks.facing { F::face_forward(normal, ray.dir) } else { normal };
+        let geometric_normal = if looks.facing { F::face_forward(normal, ray.direction) } else { normal };
         let shading_normal = match smooth {
-            Some(_) => F::shading_normal(geometric_normal, smooth, ray.dir),
+            Some(_) => F::shading_normal(geometric_normal, smooth, ray.direction),
             None => geometric_normal,
         };
         let surface = Surface { point, error, geometric_normal, shading_normal };
-        SurfaceInteraction { surface, entering: normal.dot(ray.dir) < 0.0, material: material as usize }
+        SurfaceInteraction { surface, entering: normal.dot(ray.direction) < 0.0, material: material as usize }
     }
 }
 
@@ -190,11 +190,11 @@ fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid:
     if let SolidShape::Sphere(sphere) = &solid.shape {
         return to_world::<F>(on_sphere::<F>(&own, hit.t, sphere), placement);
     }
-    let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(-own.dir.normalize_or(Vec3::Z));
+    let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(-own.direction.normalize_or(Vec3::Z));
     let point = own.at(hit.t);
     // The rounding of t moves the point along the ray, and the sum and the product are rounded as well; twice that for
     // tests that are not in double.
-    let error = 4.0 * HALF_STEP * (hit.t * own.dir).abs() + 2.0 * HALF_STEP * point.abs();
+    let error = 4.0 * HALF_STEP * (hit.t * own.direction).abs() + 2.0 * HALF_STEP * point.abs();
     to_world::<F>(Point { point, error, normal, smooth: None }, placement)
 }
 

@@ -179,7 +179,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         mut record: impl FnMut(&Ray, bool),
     ) -> Vec3 {
         let Scratch { tally, lights, shadows, .. } = scratch;
-        let to_viewer = -path.ray.dir.normalize();
+        let to_viewer = -path.ray.direction.normalize();
         let ambient = self.job.scene.ambient;
         F::shade(&at.surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
             if !shadows[light] {
@@ -208,10 +208,10 @@ impl<F: StudentFunctions> Frame<'_, F> {
         if !(takes.mirror || takes.transmission) {
             return;
         }
-        let dir = path.ray.dir.normalize();
+        let direction = path.ray.direction.normalize();
         let normal = at.surface.shading_normal;
         let (weight, depth) = (path.weight, path.depth);
-        let children = F::scatter(dir, normal, at.entering, material, weight, depth, &self.limits);
+        let children = F::scatter(direction, normal, at.entering, material, weight, depth, &self.limits);
         let parts = if takes.glossy { self.quality().glossy_samples } else { 1 };
         for child in children {
             let (event, kind) = match child.bounce {

@@ -39,7 +39,7 @@ pub struct SceneProbe<'a, F, T> {
     primitives: &'a [Primitive],
     world: &'a World,
     tests: ShapeTests,
-    inverse_dir: Vec3,
+    inverse_direction: Vec3,
     tally: &'a mut T,
     scene: &'a Structured,
     notes: &'a mut Notes,
@@ -96,7 +96,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             primitives,
             world: &scene.world,
             tests: scene.tests,
-            inverse_dir: ray.dir.recip(),
+            inverse_direction: ray.direction.recip(),
             tally,
             scene,
             notes,
@@ -187,7 +187,7 @@ impl<F: StudentFunctions, T: Tally> Probe for SceneProbe<'_, F, T> {
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::BoxTest);
         let bounds = &self.nodes[node as usize].bounds;
-        F::slab(ray, self.inverse_dir, bounds).map(|(enter, _)| enter)
+        F::slab(ray, self.inverse_direction, bounds).map(|(enter, _)| enter)
     }
 
     #[inline(always)]
@@ -220,8 +220,8 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     }
 
     #[inline]
-    fn inverse_dir(&self) -> Vec3 {
-        self.inverse_dir
+    fn inverse_direction(&self) -> Vec3 {
+        self.inverse_direction
     }
 }
 
@@ -245,7 +245,7 @@ impl<F: StudentFunctions, T: Tally> Probe for PacketProbe<'_, F, T> {
 
     #[inline]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
-        self.0.inverse_dir = ray.dir.recip();
+        self.0.inverse_direction = ray.direction.recip();
         self.0.enter(node, ray)
     }
 

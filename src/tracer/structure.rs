@@ -68,7 +68,7 @@ pub trait Primitives: Probe + Cells {
     fn count(&mut self, event: Event);
 
     /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
-    fn inverse_dir(&self) -> Vec3;
+    fn inverse_direction(&self) -> Vec3;
 }
 
 /// Cells per primitive, if the scene does not say how many (Wald et al., "Ray Tracing Animated Scenes Using Coherent
@@ -246,7 +246,7 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
         match self.volumes {
             Volumes::Boxes(boxes) => {
                 let bounds = &boxes[node as usize];
-                F::slab(ray, self.probe.inverse_dir(), bounds).map(|(enter, _)| enter)
+                F::slab(ray, self.probe.inverse_direction(), bounds).map(|(enter, _)| enter)
             }
             Volumes::Spheres(spheres) => F::enter_bounding_sphere(ray, spheres[node as usize].as_ref()?),
         }

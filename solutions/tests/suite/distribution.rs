@@ -130,9 +130,9 @@ fn what_has_no_extent_changes_no_bit() {
 fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
     let place = |seed| {
         let ray = &solutions::Kit.door().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
-        let along = ray.dir.dot(scene.camera.towards);
+        let along = ray.direction.dot(scene.camera.towards);
         ray.origin
-            + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along * ray.dir
+            + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along * ray.direction
     };
     (0..64).map(place).collect()
 }

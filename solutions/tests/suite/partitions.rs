@@ -76,7 +76,7 @@ impl Probe for Asked<'_> {
     }
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, ray.dir.recip(), bounds).map(|(enter, _)| enter)
+        stage3_bvh::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
     }
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.meet(primitive, ray)
@@ -122,7 +122,7 @@ fn ray(random: &mut Random, things: &Things, size: f32, at: Vec3) -> Ray {
         1 => at + 20.0 * size * random.direction(),
         _ => at + size * random.in_cube(),
     };
-    let dir = match random.below(4) {
+    let direction = match random.below(4) {
         0 => {
             let step = |n: u64| [0.0, -0.0, 1.0, -1.0][n as usize];
             let [x, y, z] = [random.below(4), random.below(4), random.below(4)].map(step);
@@ -134,7 +134,7 @@ fn ray(random: &mut Random, things: &Things, size: f32, at: Vec3) -> Ray {
             Thing::Sphere(sphere) => (sphere.center - origin).normalize_or(Vec3::X),
         },
     };
-    Ray::new(origin, dir)
+    Ray::new(origin, direction)
 }
 
 fn check(seed: u64, n: usize, size: f32, at: Vec3) {
@@ -221,10 +221,10 @@ impl Cells for Saved<'_> {
 /// Where the ray enters the cell, without any room for rounding.
 fn entry(ray: &Ray, cell: &Cell) -> Option<f64> {
     let mut part = (f64::from(ray.t_min), f64::from(ray.t_max));
-    let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     for axis in 0..3 {
         for (height, rate) in
-            [(origin[axis] - cell.min[axis], dir[axis]), (cell.max[axis] - origin[axis], -dir[axis])]
+            [(origin[axis] - cell.min[axis], direction[axis]), (cell.max[axis] - origin[axis], -direction[axis])]
         {
             part = stage9_cells::part_above(height, rate, 0.0, part)?;
         }

@@ -112,7 +112,7 @@ fn meets(tree: &[TracedRay], materials: &[&str]) -> bool {
 fn passes_the_toy(tree: &[TracedRay]) -> bool {
     let way = Aabb::new(vec3(0.34, 0.0, 1.34), vec3(1.76, 0.92, 2.31));
     tree.iter().any(|ray| {
-        let (a, b) = ((way.min - ray.origin) / ray.dir, (way.max - ray.origin) / ray.dir);
+        let (a, b) = ((way.min - ray.origin) / ray.direction, (way.max - ray.origin) / ray.direction);
         a.min(b).max_element().max(0.0) <= a.max(b).min_element()
     })
 }

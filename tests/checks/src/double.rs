@@ -59,11 +59,11 @@ pub struct Roots {
 
 /// The roots of a line and a sphere; `Err(true)` if the line clearly misses, `Err(false)` if it is too close to call.
 pub fn sphere_roots(ray: &Ray, sphere: &Sphere) -> Result<Roots, bool> {
-    let dir = ray.dir.as_dvec3();
+    let direction = ray.direction.as_dvec3();
     let f = ray.origin.as_dvec3() - sphere.center.as_dvec3();
     let radius = f64::from(sphere.radius);
-    let along = -f.dot(dir) / dir.length_squared();
-    let distance = (f + along * dir).length();
+    let along = -f.dot(direction) / direction.length_squared();
+    let distance = (f + along * direction).length();
     // f is rounded, and so is each step of its part at right angles to the ray: some sixteen roundings of |f|.
     let slack = 16.0 * U * (f.length() + radius);
     if distance > radius + slack {
@@ -73,7 +73,7 @@ pub fn sphere_roots(ray: &Ray, sphere: &Sphere) -> Result<Roots, bool> {
         return Err(false);
     }
     let half = (radius * radius - distance * distance).sqrt();
-    let length = dir.length();
+    let length = direction.length();
     // The half chord moves by distance / half for each step sideways: steep near the rim.
     let tolerance = 2.0 * slack * (1.0 + distance / half) / length;
     Ok(Roots { near: along - half / length, far: along + half / length, tolerance })
@@ -104,15 +104,15 @@ fn first_in_range(ray: &Ray, roots: &[f64], tolerance: f64) -> Expected {
 
 /// Where a ray meets a plane.
 pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
-    let (normal, dir) = (plane.normal.as_dvec3(), ray.dir.as_dvec3());
+    let (normal, direction) = (plane.normal.as_dvec3(), ray.direction.as_dvec3());
     let offset = plane.point.as_dvec3() - ray.origin.as_dvec3();
-    let (distance, slope) = (offset.dot(normal), dir.dot(normal));
+    let (distance, slope) = (offset.dot(normal), direction.dot(normal));
     if slope == 0.0 {
         return Expected::Miss;
     }
     // Each dot product is off by a few roundings of its largest term.
     let distance_slack = 8.0 * U * (offset.abs().dot(normal.abs()));
-    let slope_slack = 8.0 * U * dir.abs().dot(normal.abs());
+    let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
     if slope.abs() <= 16.0 * slope_slack {
         return Expected::Open;
     }
@@ -160,7 +160,7 @@ impl TriangleExpected {
 /// Where a ray meets a triangle: Cramer's rule in double precision, with a margin for the rounding of single
 /// precision in all the ways that students may choose.
 pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
-    let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.dir].map(Vec3::as_dvec3);
+    let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.direction].map(Vec3::as_dvec3);
     let (u, v, s) = (b - a, c - a, o - a);
     let normal = u.cross(v);
     let slope = -d.dot(normal);
@@ -211,10 +211,10 @@ pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
 pub fn slabs_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {
-        let [low, high, origin, dir] =
-            [bounds.min[axis], bounds.max[axis], ray.origin[axis], ray.dir[axis]].map(f64::from);
-        let (enter, leave) = if dir != 0.0 {
-            let (first, last) = ((low - origin) / dir, (high - origin) / dir);
+        let [low, high, origin, direction] =
+            [bounds.min[axis], bounds.max[axis], ray.origin[axis], ray.direction[axis]].map(f64::from);
+        let (enter, leave) = if direction != 0.0 {
+            let (first, last) = ((low - origin) / direction, (high - origin) / direction);
             (first.min(last), first.max(last))
         } else if low <= origin && origin <= high {
             (f64::NEG_INFINITY, f64::INFINITY)

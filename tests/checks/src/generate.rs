@@ -39,7 +39,7 @@ pub fn sphere() -> impl Strategy<Value = Sphere> + Clone {
 
 /// A ray with a unit direction from a point near the origin.
 pub fn ray() -> impl Strategy<Value = Ray> + Clone {
-    (point(8), unit()).prop_map(|(origin, dir)| Ray::new(origin, dir))
+    (point(8), unit()).prop_map(|(origin, direction)| Ray::new(origin, direction))
 }
 
 /// A triangle near the origin; some have no area.

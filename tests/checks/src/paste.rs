@@ -61,7 +61,7 @@ impl Paste for Stratum {
 
 impl Paste for Ray {
     fn paste(&self) -> String {
-        let ray = format!("&Ray::new({}, {})", self.origin.paste(), self.dir.paste());
+        let ray = format!("&Ray::new({}, {})", self.origin.paste(), self.direction.paste());
         if (self.t_min, self.t_max) == (0.0, f32::INFINITY) {
             ray
         } else {
@@ -211,7 +211,7 @@ impl Arguments for InsideQuery {
 
 impl Arguments for SlabQuery {
     fn call(&self, function: &str) -> String {
-        call(function, &[&self.ray, &self.ray.dir.recip(), &self.bounds])
+        call(function, &[&self.ray, &self.ray.direction.recip(), &self.bounds])
     }
 }
 

@@ -46,7 +46,7 @@ pub fn search_query(bvh: &Bvh, spheres: &[Sphere], ray: &Ray) -> SearchQuery {
 
 /// The nearest hit in front of the ray, rounded to a 64th, so that ties are common.
 fn sphere_t(ray: &Ray, sphere: &Sphere) -> f32 {
-    match crate::double::sphere(&Ray::new(ray.origin, ray.dir), sphere) {
+    match crate::double::sphere(&Ray::new(ray.origin, ray.direction), sphere) {
         crate::double::Expected::Hit { t, .. } => ((64.0 * t).ceil() / 64.0) as f32,
         _ => f32::INFINITY,
     }

@@ -21,7 +21,7 @@ pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> Outcome {
         .iter()
         .zip(&on_sphere)
         .zip(outwards)
-        .map(|((ray, t), out)| (t.map_or(Vec3::Y, |_| out), ray.dir))
+        .map(|((ray, t), out)| (t.map_or(Vec3::Y, |_| out), ray.direction))
         .collect();
     let facing = trial.kit.face_forward(&normals);
     // The sphere hides the floor wherever both are hit: it stands between the floor and the eye.

@@ -18,7 +18,7 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
         if expected.accepts(yours) {
             return Ok(());
         }
-        let length = query.ray.dir.length();
+        let length = query.ray.direction.length();
         let endless = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
         let mirrored = |t: f32| double::plane(&endless, &query.plane).accepts(Some(-t));
         let diagnosis = match (yours, expected) {
@@ -28,12 +28,12 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
             (Some(t), Expected::Hit { t: exact, tolerance })
                 if (f64::from(t / length) - exact).abs() <= tolerance =>
             {
-                "your t counts world units; it must count lengths of dir"
+                "your t counts world units; it must count lengths of direction"
             }
-            (None, Expected::Hit { .. }) if query.ray.dir.dot(query.plane.normal).abs() < 0.01 => {
+            (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal).abs() < 0.01 => {
                 "a fixed limit for n·d: only a ray with n·d = 0 is parallel, however flat it comes in"
             }
-            (None, Expected::Hit { .. }) if query.ray.dir.dot(query.plane.normal) > 0.0 => {
+            (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal) > 0.0 => {
                 "the plane can be hit from behind, too"
             }
             _ => "",
@@ -45,8 +45,8 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
 }
 
 pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    let inputs = (point(8), direction(), point(8), direction()).prop_map(|(origin, dir, point, normal)| {
-        PlaneQuery { ray: Ray::new(origin, dir), plane: Plane { point, normal } }
+    let inputs = (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
+        PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
     });
     trial.forall(4000, inputs, |queries| judge_planes(trial, queries))?;
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
@@ -82,9 +82,9 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
     // T12: -(D + n·o) subtracts two numbers of the size of the coordinates; (p0 - o)·n does not.
-    let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, dir, normal)| {
+    let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
         let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
-        PlaneQuery { ray: Ray::new(point + offset, dir), plane: Plane { point, normal } }
+        PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }
     });
     let cancels = "-(D + n·o) cancels far from the origin; (p0 - o)·n does not";
     trial
@@ -94,12 +94,12 @@ pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, (direction(), direction()), |queries| {
-        compare(queries, trial.kit.face_forward(queries), |(normal, dir), yours| {
-            let expected = if normal.dot(*dir) > 0.0 { -*normal } else { *normal };
+        compare(queries, trial.kit.face_forward(queries), |(normal, direction), yours| {
+            let expected = if normal.dot(*direction) > 0.0 { -*normal } else { *normal };
             // At a right angle either side will do.
-            let right = yours == expected || (normal.dot(*dir) == 0.0 && yours == -expected);
+            let right = yours == expected || (normal.dot(*direction) == 0.0 && yours == -expected);
             let diagnosis = (yours == -expected).then_some("the normal points away from the viewer");
-            let input = format!("face_forward({}, {})", normal.paste(), dir.paste());
+            let input = format!("face_forward({}, {})", normal.paste(), direction.paste());
             if right {
                 Ok(())
             } else {

@@ -73,7 +73,7 @@ pub(super) fn sphere_diagnosis(
     expected: Expected,
 ) -> Option<&'static str> {
     let roots = double::sphere_roots(&query.ray, &query.sphere).ok();
-    let length = f64::from(query.ray.dir.length());
+    let length = f64::from(query.ray.direction.length());
     let near = |t: f32, exact: f64, tolerance: f64| {
         (f64::from(t) - exact).abs() <= 4.0 * tolerance + 1e-6 * exact.abs()
     };
@@ -93,7 +93,7 @@ pub(super) fn sphere_diagnosis(
         (Some(t), Expected::Hit { t: exact, .. }, Some(roots))
             if (length - 1.0).abs() > 1e-3 && near(t, exact * length, roots.tolerance) =>
         {
-            "your t counts world units; it must count lengths of dir (is dir taken for a unit vector?)"
+            "your t counts world units; it must count lengths of direction (is direction taken for a unit vector?)"
         }
         (Some(t), _, Some(roots))
             if near(t, -roots.near, roots.tolerance) || near(t, -roots.far, roots.tolerance) =>
@@ -114,7 +114,7 @@ pub(super) fn sphere_diagnosis(
             "a far, small sphere: b² - a c (or L·L - t_ca²) cancels; use r² - |f⊥|²"
         }
         (Some(_), Expected::Hit { .. }, Some(_)) if (length - 1.0).abs() > 1e-3 => {
-            "dir is not of unit length here: is a = d·d left out?"
+            "direction is not of unit length here: is a = d·d left out?"
         }
         (None, Expected::Hit { .. }, _) => {
             "a hit is lost: is -r² left out, or the sign of b (or t_ca) wrong?"

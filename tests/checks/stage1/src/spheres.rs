@@ -44,33 +44,33 @@ pub(super) fn sphere_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
     let inputs = (ray(), sphere(), any::<bool>()).prop_map(|(ray, sphere, aim)| {
         // Half of the rays are aimed at the sphere, or hardly any would hit it.
         let to_center = sphere.center - ray.origin;
-        let dir = if aim && to_center != Vec3::ZERO {
-            (to_center.normalize() + 0.1 * ray.dir).normalize()
+        let direction = if aim && to_center != Vec3::ZERO {
+            (to_center.normalize() + 0.1 * ray.direction).normalize()
         } else {
-            ray.dir
+            ray.direction
         };
-        SphereQuery { ray: Ray::new(ray.origin, dir), sphere }
+        SphereQuery { ray: Ray::new(ray.origin, direction), sphere }
     });
     trial.forall(4000, inputs, |queries| method.judge(trial, queries))
 }
 
 pub(super) fn sphere_from_inside(trial: &Trial<'_>, method: Method) -> Outcome {
-    let inputs = (sphere(), unit(), unit(), 0..=7i32).prop_map(|(sphere, dir, out, eighths)| {
+    let inputs = (sphere(), unit(), unit(), 0..=7i32).prop_map(|(sphere, direction, out, eighths)| {
         let origin = sphere.center + 0.9 * sphere.radius * eighths as f32 / 8.0 * out;
-        SphereQuery { ray: Ray::new(origin, dir), sphere }
+        SphereQuery { ray: Ray::new(origin, direction), sphere }
     });
     trial.forall(2000, inputs, |queries| method.judge(trial, queries))
 }
 
 pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
     let inputs = (point(8), direction(), sphere())
-        .prop_map(|(origin, dir, sphere)| SphereQuery { ray: Ray::new(origin, dir), sphere });
+        .prop_map(|(origin, direction, sphere)| SphereQuery { ray: Ray::new(origin, direction), sphere });
     trial.forall(2000, inputs.clone(), |queries| method.judge(trial, queries))?;
 
     // A direction twice as long makes t half as large, to the last bit: powers of two change no rounding.
     trial.forall(500, inputs, |queries| {
         let longer = |query: &SphereQuery| SphereQuery {
-            ray: Ray::new(query.ray.origin, 1024.0 * query.ray.dir),
+            ray: Ray::new(query.ray.origin, 1024.0 * query.ray.direction),
             ..*query
         };
         let answers = (method.ask)(trial.kit, queries);
@@ -82,9 +82,9 @@ pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
             false => {
                 let expected = answer.map(|t| t / 1024.0);
                 let lost = scaled.is_none().then_some(
-                    "a fixed epsilon drops it: t is small because dir is long, not because the hit is near",
+                    "a fixed epsilon drops it: t is small because direction is long, not because the hit is near",
                 );
-                let source = "1/1024 of the t for dir / 1024";
+                let source = "1/1024 of the t for direction / 1024";
                 Err(Broken::new(query.call(method.name), scaled, expected, source).looks_like(lost))
             }
         })
@@ -126,11 +126,11 @@ pub(super) fn sphere_far(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(4000, inputs, |queries| method.judge(trial, queries))?;
     // S6: from 100 above a ground of radius 100,000 no formula in single precision keeps all digits, but the error
     // must stay within the rounding of the inputs.
-    let ground = (rough_point(100.0), unit()).prop_map(|(origin, dir)| {
+    let ground = (rough_point(100.0), unit()).prop_map(|(origin, direction)| {
         let origin = origin + Vec3::new(0.0, 110.0, 0.0);
-        let dir = Vec3::new(dir.x, -dir.y.abs() - 0.2, dir.z).normalize();
+        let direction = Vec3::new(direction.x, -direction.y.abs() - 0.2, direction.z).normalize();
         SphereQuery {
-            ray: Ray::new(origin, dir),
+            ray: Ray::new(origin, direction),
             sphere: Sphere { center: Vec3::new(0.0, -1e5, 0.0), radius: 1e5 },
         }
     });
@@ -169,7 +169,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
 pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
     // Points exactly on the sphere: leaving it outwards meets nothing, crossing it meets the other side.
     let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
-    let from = |origin: Vec3, dir: Vec3| SphereQuery { ray: Ray::new(origin, dir), sphere };
+    let from = |origin: Vec3, direction: Vec3| SphereQuery { ray: Ray::new(origin, direction), sphere };
     method.judge_exact(
         trial,
         &[
@@ -204,8 +204,8 @@ pub(super) fn sphere_nonsense(trial: &Trial<'_>, method: Method) -> Outcome {
             (SphereQuery { ray, sphere: Sphere { radius: 0.0, ..unit } }, None, nothing),
             (SphereQuery { ray, sphere: Sphere { radius: f32::NAN, ..unit } }, None, nothing),
             (SphereQuery { ray, sphere: Sphere { center: Vec3::NAN, ..unit } }, None, nothing),
-            (SphereQuery { ray: Ray { dir: Vec3::NAN, ..ray }, sphere: unit }, None, nothing),
-            (SphereQuery { ray: Ray { dir: Vec3::ZERO, ..ray }, sphere: unit }, None, nothing),
+            (SphereQuery { ray: Ray { direction: Vec3::NAN, ..ray }, sphere: unit }, None, nothing),
+            (SphereQuery { ray: Ray { direction: Vec3::ZERO, ..ray }, sphere: unit }, None, nothing),
             (SphereQuery { ray: Ray { origin: Vec3::INFINITY, ..ray }, sphere: unit }, None, nothing),
         ],
     )

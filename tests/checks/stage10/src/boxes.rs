@@ -31,7 +31,7 @@ impl Loss {
     fn of(SlabQuery { ray, bounds, .. }: &SlabQuery) -> Loss {
         let (mut near, mut far) = (ray.t_min, ray.t_max);
         for axis in 0..3 {
-            let inverse = 1.0 / ray.dir[axis];
+            let inverse = 1.0 / ray.direction[axis];
             let ends = [bounds.min, bounds.max].map(|corner| (corner[axis] - ray.origin[axis]) * inverse);
             let (enter, leave) =
                 if inverse.is_sign_negative() { (ends[1], ends[0]) } else { (ends[0], ends[1]) };
@@ -40,7 +40,7 @@ impl Loss {
         }
         match () {
             () if near > far => Loss::Rounding,
-            () if ray.dir.cmpeq(Vec3::ZERO).any() => Loss::Parallel,
+            () if ray.direction.cmpeq(Vec3::ZERO).any() => Loss::Parallel,
             () if bounds.contains(ray.origin) => Loss::Inside,
             () if near == far => Loss::Touch,
             () => Loss::Cancellation,
@@ -79,10 +79,10 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 13);
     // The same rays, but beside the corner by 1e-5 to a tenth of the way.
     let beside = |query: SlabQuery| {
-        let aside = 10f32.powf(-1.0 - 4.0 * random.unit()) * query.ray.dir.length() * random.in_cube();
+        let aside = 10f32.powf(-1.0 - 4.0 * random.unit()) * query.ray.direction.length() * random.in_cube();
         let mut ray = query.ray;
-        ray.dir += aside;
-        (ray.dir != Vec3::ZERO).then_some(SlabQuery { ray, ..query })
+        ray.direction += aside;
+        (ray.direction != Vec3::ZERO).then_some(SlabQuery { ray, ..query })
     };
     let mut corners = Random::new(trial.seed, 14);
     let queries: Vec<SlabQuery> =

@@ -116,7 +116,7 @@ fn enlarged(query: &TriangleQuery) -> TriangleQuery {
         [a, b, c, ray.origin].map(|point| point.abs().max_element()).into_iter().fold(0.0, f32::max);
     let size = (20.0 - largest.log2().floor()).max(0.0).exp2();
     TriangleQuery {
-        ray: Ray { origin: size * ray.origin, dir: size * ray.dir, ..ray },
+        ray: Ray { origin: size * ray.origin, direction: size * ray.direction, ..ray },
         triangle: Triangle { a: size * a, b: size * b, c: size * c },
     }
 }
@@ -205,7 +205,7 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
     let triangles = odd.triangles();
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
         let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
-        let nan = [ray.origin, ray.dir, *a, *b, *c].iter().any(|vector| vector.is_nan());
+        let nan = [ray.origin, ray.direction, *a, *b, *c].iter().any(|vector| vector.is_nan());
         match yours {
             Some(hit) if nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
                 let input = query.call("triangle_in_double");
@@ -231,7 +231,7 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
     }));
     let judge = |query: &SphereQuery, yours: Option<f32>| {
         let SphereQuery { ray, sphere } = query;
-        let nan = ray.origin.is_nan() || ray.dir.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
+        let nan = ray.origin.is_nan() || ray.direction.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
         let broken = |expected: &str, diagnosis: &'static str| {
             let input = query.call("sphere_in_double");
             Err(Broken::told(input, format!("{yours:?}"), expected, "the definition")

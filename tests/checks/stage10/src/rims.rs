@@ -38,8 +38,8 @@ fn aimed(random: &mut Random, away: f64, aside: f64) -> SphereQuery {
     let across = back.cross(random.direction().as_dvec3()).normalize();
     let sin = (aside * f64::from(radius) / from_center.length()).min(1.0);
     let cos = (1.0 - sin * sin).sqrt();
-    let dir = from_center.length() * cos * (cos * back + sin * across);
-    SphereQuery { ray: Ray::new(origin, dir.as_vec3()), sphere: Sphere { center, radius } }
+    let direction = from_center.length() * cos * (cos * back + sin * across);
+    SphereQuery { ray: Ray::new(origin, direction.as_vec3()), sphere: Sphere { center, radius } }
 }
 
 /// Powers of ten.
@@ -59,7 +59,7 @@ fn at_rim(random: &mut Random) -> SphereQuery {
     match random.below(12) {
         0 => {
             let query = aimed(random, away, well_inside);
-            SphereQuery { ray: Ray::new(query.ray.origin, -query.ray.dir), ..query }
+            SphereQuery { ray: Ray::new(query.ray.origin, -query.ray.direction), ..query }
         }
         1 => ranged(random, 0.0, 0.4),
         2 => ranged(random, 2.0, f32::INFINITY),
@@ -81,7 +81,7 @@ fn from_inside(random: &mut Random, away: f64) -> SphereQuery {
 
 /// What roundings can turn: `|r² - |f⊥|²| / |f|²`.
 fn margin(SphereQuery { ray, sphere }: &SphereQuery) -> f64 {
-    let (f, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.dir.as_dvec3());
+    let (f, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
     (f64::from(sphere.radius).powi(2) - f.cross(d).length_squared() / d.length_squared()).abs()
         / f.length_squared()
 }
@@ -151,14 +151,14 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     let mut queries: Vec<SphereQuery> = (0..4000).map(|_| through(&mut random)).collect();
     // Near a tangent both roots are as uncertain as the root of a difference that is nearly 0.
     queries.retain(|query| {
-        let (f, d) = (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.dir.as_dvec3());
+        let (f, d) = (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.direction.as_dvec3());
         let aside = f.cross(d).length() / d.length();
         aside < 0.96 * f64::from(query.sphere.radius)
     });
     let allowed = |SphereQuery { ray, sphere }: &SphereQuery, rounded: f32| {
         let step = f64::from(rounded.next_up()) - f64::from(rounded);
         let f: DVec3 = ray.origin.as_dvec3() - sphere.center.as_dvec3();
-        step + CANCELLED * f.length() / ray.dir.as_dvec3().length()
+        step + CANCELLED * f.length() / ray.direction.as_dvec3().length()
     };
     let judge = |(query, yours): (&SphereQuery, Option<f32>)| {
         let (yours, body) = (yours?, Body::Sphere(query.sphere));

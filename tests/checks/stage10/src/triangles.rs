@@ -170,7 +170,7 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
             };
             // t is the worse known the flatter the ray meets the plane: a thousandth at right angles is generous to
             // every formula that uses the plane, and tells those that lose all digits.
-            let slope = normal.dot(query.ray.dir.as_dvec3().normalize()).abs();
+            let slope = normal.dot(query.ray.direction.as_dvec3().normalize()).abs();
             let tolerance = 1e-3 * exact.abs() / slope.max(1e-3);
             if (f64::from(yours.t) - exact).abs() <= tolerance {
                 return Ok(());
@@ -200,7 +200,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
             .map(|query| {
                 let Triangle { a, b, c } = query.triangle;
                 TriangleQuery {
-                    ray: Ray::new(size * query.ray.origin, size * query.ray.dir),
+                    ray: Ray::new(size * query.ray.origin, size * query.ray.direction),
                     triangle: Triangle { a: size * a, b: size * b, c: size * c },
                 }
             })

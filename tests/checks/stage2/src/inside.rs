@@ -27,7 +27,7 @@ pub(super) fn clearly_inside(query: &InsideQuery, weights: [f64; 3]) -> Option<b
     let Triangle { a, b, c } = query.triangle;
     let area = (b - a).cross(c - a).length();
     let thin = (b - a).length() * (c - a).length() / area;
-    let facing = query.ray.dir.normalize().dot((b - a).cross(c - a) / area).abs();
+    let facing = query.ray.direction.normalize().dot((b - a).cross(c - a) / area).abs();
     let least = weights.into_iter().fold(f64::INFINITY, f64::min);
     // A side's plane through the eye is no plane if the eye lies on the side's line; grazing rays come close.
     let sharp = thin < 30.0 && facing > 0.05 && weights.iter().all(|w| w.is_finite());
@@ -46,7 +46,7 @@ pub(super) fn judge_inside(
                 Some(inside) if inside != yours => {
                     let normal =
                         (query.triangle.b - query.triangle.a).cross(query.triangle.c - query.triangle.a);
-                    let backwards = normal.dot(query.ray.dir) > 0.0;
+                    let backwards = normal.dot(query.ray.direction) > 0.0;
                     let diagnosis = match yours {
                         false if backwards => {
                             "seen from behind all three signs turn: accept all ≥ 0 or all ≤ 0"

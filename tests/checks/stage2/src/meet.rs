@@ -83,9 +83,9 @@ pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
         (0.5, -0.25, false),
         (1.5, 0.5, false),
     ];
-    for dir in [Vec3::NEG_Z, vec3(1.0, 2.0, -4.0), vec3(-0.5, 0.25, -1.0)] {
+    for direction in [Vec3::NEG_Z, vec3(1.0, 2.0, -4.0), vec3(-0.5, 0.25, -1.0)] {
         let queries = places.map(|(x, y, _)| TriangleQuery {
-            ray: Ray::new(vec3(x, y, 0.0) - 2.0 * dir, dir),
+            ray: Ray::new(vec3(x, y, 0.0) - 2.0 * direction, direction),
             triangle: unit,
         });
         method.judge(trial, &queries).into_iter().collect::<Outcome>()?;
@@ -237,8 +237,8 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
             (with(Vec3::ZERO, 0.5 * p, 2.0 * p), None, flat),
             (with(Vec3::NAN, Vec3::X, Vec3::Y), None, nan),
             (with(Vec3::ZERO, Vec3::NAN, Vec3::Y), None, nan),
-            (TriangleQuery { ray: Ray { dir: Vec3::NAN, ..down }, triangle: unit }, None, nan),
-            (TriangleQuery { ray: Ray { dir: Vec3::ZERO, ..down }, triangle: unit }, None, flat),
+            (TriangleQuery { ray: Ray { direction: Vec3::NAN, ..down }, triangle: unit }, None, nan),
+            (TriangleQuery { ray: Ray { direction: Vec3::ZERO, ..down }, triangle: unit }, None, flat),
             (TriangleQuery { ray: Ray { origin: Vec3::NAN, ..down }, triangle: unit }, None, nan),
         ],
     )?;

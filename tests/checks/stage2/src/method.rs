@@ -96,9 +96,9 @@ pub(super) fn triangle_diagnosis(
         }
         (Some(hit), Expected::Hit { t, .. }) if f64::from(hit.t) * t < 0.0 => "the sign of t is wrong",
         (Some(hit), Expected::Hit { t, .. })
-            if (f64::from(hit.t) - t * f64::from(query.ray.dir.length())).abs() <= 1e-3 * t.abs() =>
+            if (f64::from(hit.t) - t * f64::from(query.ray.direction.length())).abs() <= 1e-3 * t.abs() =>
         {
-            "your t counts world units; it must count lengths of dir"
+            "your t counts world units; it must count lengths of direction"
         }
         (None, Expected::Hit { .. }) => {
             "a hit was lost: is the triangle tested from one side only, or a - o turned around?"
@@ -113,7 +113,7 @@ fn slide_determinant_explains(
     yours: Option<TriangleHit>,
     expected: &double::TriangleExpected,
 ) -> bool {
-    let [x, y, z] = [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.dir];
+    let [x, y, z] = [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.direction];
     let s = query.triangle.a - query.ray.origin;
     let slide = x.x * (y.y * z.z - z.y * y.z) + y.x * (z.y * s.z - s.y * z.z) + z.x * (s.y * y.z - y.y * s.z);
     let right = x.dot(y.cross(z));
@@ -142,8 +142,8 @@ pub(super) fn aimed(
             let (beta, gamma) = (beta as f32 / 8.0, gamma as f32 / 8.0);
             let target = triangle.a + beta * (triangle.b - triangle.a) + gamma * (triangle.c - triangle.a);
             let to_target = target - origin;
-            let dir = if to_target == Vec3::ZERO { Vec3::X } else { to_target.normalize() };
-            TriangleQuery { ray: Ray::new(origin, length as f32 / 4.0 * dir), triangle }
+            let direction = if to_target == Vec3::ZERO { Vec3::X } else { to_target.normalize() };
+            TriangleQuery { ray: Ray::new(origin, length as f32 / 4.0 * direction), triangle }
         },
     )
 }

@@ -17,7 +17,7 @@ use raykata::shape::Sphere;
 pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
     let spheres = prop::collection::vec((point(6), 1..=8i32), 0..30);
     (spheres, point(10), unit(), 1..=4usize, 0..=4i32, 0..=9i32).prop_map(
-        |(spheres, origin, dir, leaf_size, t_min, t_max)| {
+        |(spheres, origin, direction, leaf_size, t_min, t_max)| {
             let spheres: Vec<Sphere> =
                 spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
             // Every third scene has each sphere twice: two hits at one t.
@@ -34,13 +34,13 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
             let spheres: Vec<Sphere> =
                 if t_min % 2 == 0 { spheres.into_iter().rev().collect() } else { spheres };
             // Half of the rays look at the middle of things.
-            let dir = if leaf_size % 2 == 0 && origin != Vec3::ZERO {
-                (-origin.normalize() + 0.2 * dir).normalize()
+            let direction = if leaf_size % 2 == 0 && origin != Vec3::ZERO {
+                (-origin.normalize() + 0.2 * direction).normalize()
             } else {
-                dir
+                direction
             };
             let t_max = if t_max == 0 { f32::INFINITY } else { 3.0 * t_max as f32 };
-            tree::search_query(&bvh, &spheres, &Ray::new(origin, dir).with_range(t_min as f32 / 2.0, t_max))
+            tree::search_query(&bvh, &spheres, &Ray::new(origin, direction).with_range(t_min as f32 / 2.0, t_max))
         },
     )
 }

@@ -45,10 +45,10 @@ pub(super) fn slab_diagnosis(
     otherwise: &'static str,
 ) -> &'static str {
     let inside = query.bounds.contains(query.ray.origin);
-    let zero = query.ray.dir.to_array().contains(&0.0);
+    let zero = query.ray.direction.to_array().contains(&0.0);
     let within_a_face = (0..3).any(|axis| {
         let planes = [query.bounds.min[axis], query.bounds.max[axis]];
-        query.ray.dir[axis] == 0.0 && planes.contains(&query.ray.origin[axis])
+        query.ray.direction[axis] == 0.0 && planes.contains(&query.ray.origin[axis])
     });
     match yours {
         Some((enter, leave)) if enter.is_nan() || leave.is_nan() => {
@@ -65,7 +65,7 @@ pub(super) fn slab_diagnosis(
         None if inside && !zero && otherwise.is_empty() => {
             "the ray starts inside: its entry is behind it (test the exit, not t_b⁻ ≥ 0)"
         }
-        None if query.ray.dir.min_element() < 0.0 && !zero && otherwise.is_empty() => {
+        None if query.ray.direction.min_element() < 0.0 && !zero && otherwise.is_empty() => {
             "for a negative direction the near plane is the max one: swap"
         }
         _ => otherwise,
@@ -86,11 +86,11 @@ fn misses_by_one_axis(query: &SlabQuery) -> bool {
 }
 
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    let inputs = (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, dir, bounds, at)| {
+    let inputs = (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, direction, bounds, at)| {
         // Half of the rays are aimed at the box.
         let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
-        let dir = if at.x > 0.0 && target != origin { target - origin } else { dir };
-        SlabQuery { ray: Ray::new(origin, dir), bounds }
+        let direction = if at.x > 0.0 && target != origin { target - origin } else { direction };
+        SlabQuery { ray: Ray::new(origin, direction), bounds }
     });
     // First what every formula gets right that minds signs and axes: random rays shrink to rays along an axis.
     let drawn = [
@@ -100,7 +100,7 @@ pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
         (vec3(2.0, -2.0, -2.0), vec3(0.25, 1.0, 1.0)),
         (vec3(3.0, 2.5, 2.0), vec3(-1.0, -0.875, -0.75)),
     ]
-    .map(|(origin, dir)| SlabQuery { ray: Ray::new(origin, dir), bounds: UNIT_BOX });
+    .map(|(origin, direction)| SlabQuery { ray: Ray::new(origin, direction), bounds: UNIT_BOX });
     judge_slabs(trial, &drawn, "").into_iter().collect::<Outcome>()?;
     trial.forall(6000, inputs, |queries| judge_slabs(trial, queries, ""))
 }
@@ -108,9 +108,9 @@ pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
 pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> Outcome {
     let middle = SlabQuery { ray: Ray::new(Vec3::splat(0.5), vec3(1.0, 0.5, -0.25)), bounds: UNIT_BOX };
     judge_slabs(trial, &[middle], "").into_iter().collect::<Outcome>()?;
-    let inputs = (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, dir)| {
+    let inputs = (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, direction)| {
         let at = vec3(x as f32, y as f32, z as f32) / 8.0;
-        SlabQuery { ray: Ray::new(bounds.min + at * (bounds.max - bounds.min), dir), bounds }
+        SlabQuery { ray: Ray::new(bounds.min + at * (bounds.max - bounds.min), direction), bounds }
     });
     trial.forall(2000, inputs, |queries| {
         judge_slabs(trial, queries, "the ray starts inside, or on a face: a closed box is entered at t_min")
@@ -143,24 +143,24 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
     for axis in 0..3 {
         for (first, second) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0)] {
             for way in [1.0, -1.0] {
-                let mut dir = Vec3::ZERO;
-                dir[axis] = way;
-                dir[(axis + 1) % 3] = first;
-                dir[(axis + 2) % 3] = second;
+                let mut direction = Vec3::ZERO;
+                direction[axis] = way;
+                direction[(axis + 1) % 3] = first;
+                direction[(axis + 2) % 3] = second;
                 let mut origin = Vec3::splat(0.5);
                 origin[axis] = 0.5 - 2.0 * way;
-                cases.push((Ray::new(origin, dir), UNIT_BOX, true));
+                cases.push((Ray::new(origin, direction), UNIT_BOX, true));
                 for beside in [-0.5, 1.5] {
                     let mut origin = origin;
                     origin[(axis + 1) % 3] = beside;
-                    cases.push((Ray::new(origin, dir), UNIT_BOX, false));
+                    cases.push((Ray::new(origin, direction), UNIT_BOX, false));
                 }
             }
         }
     }
     // First without -0.0: what fails there does not fail for its sign.
     let negative_zero =
-        |case: &(Ray, Aabb, bool)| case.0.dir.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative());
+        |case: &(Ray, Aabb, bool)| case.0.direction.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative());
     let (negative, positive): (Vec<_>, Vec<_>) = cases.into_iter().partition(negative_zero);
     judge_slabs_exactly(
         trial,
@@ -188,11 +188,11 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
         for plane in [0.0, 1.0] {
             for zero in [0.0, -0.0] {
                 let mut origin = Vec3::splat(-2.0);
-                let mut dir = Vec3::splat(1.0);
+                let mut direction = Vec3::splat(1.0);
                 origin[axis] = plane;
-                dir[axis] = zero;
-                cases.push((Ray::new(origin, dir), UNIT_BOX, true));
-                cases.push((Ray::new(origin, -dir), UNIT_BOX, false));
+                direction[axis] = zero;
+                cases.push((Ray::new(origin, direction), UNIT_BOX, true));
+                cases.push((Ray::new(origin, -direction), UNIT_BOX, false));
             }
         }
     }
@@ -210,11 +210,11 @@ pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
             flat.min[axis] = height;
             flat.max[axis] = height;
             let mut origin = Vec3::splat(0.5);
-            let mut dir = Vec3::ZERO;
+            let mut direction = Vec3::ZERO;
             origin[axis] = height + 2.0;
-            dir[axis] = -1.0;
-            cases.push((Ray::new(origin, dir), flat, true));
-            cases.push((Ray::new(origin, -dir), flat, false));
+            direction[axis] = -1.0;
+            cases.push((Ray::new(origin, direction), flat, true));
+            cases.push((Ray::new(origin, -direction), flat, false));
         }
     }
     let point = Aabb::new(Vec3::splat(0.5), Vec3::splat(0.5));
@@ -252,8 +252,8 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
     // A10: all numbers are eighths, so o + 1 d is the corner exactly, and the closed box is hit: no tolerance.
     let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
-        let dir = vec3(pick(0), pick(1), pick(2)) - origin;
-        SlabQuery { ray: Ray::new(origin, if dir == Vec3::ZERO { Vec3::X } else { dir }), bounds }
+        let direction = vec3(pick(0), pick(1), pick(2)) - origin;
+        SlabQuery { ray: Ray::new(origin, if direction == Vec3::ZERO { Vec3::X } else { direction }), bounds }
     });
     trial.forall(3000, inputs, |queries| {
         compare(queries, trial.kit.slab(queries), |query, yours| match yours {
@@ -270,7 +270,7 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
 
 pub(super) fn slab_of_nothing_is_missed(trial: &Trial<'_>) -> Outcome {
     let dirs = [Vec3::X, Vec3::NEG_X, Vec3::ONE, -Vec3::ONE, vec3(0.0, -0.0, 1.0)];
-    let cases = dirs.map(|dir| (Ray::new(vec3(0.5, 0.5, 0.5), dir), Aabb::EMPTY, false));
+    let cases = dirs.map(|direction| (Ray::new(vec3(0.5, 0.5, 0.5), direction), Aabb::EMPTY, false));
     judge_slabs_exactly(
         trial,
         &cases,

@@ -59,14 +59,14 @@ pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {
     let points: Vec<Option<Vec3>> = rays
         .iter()
         .map(|ray| {
-            let along = -ray.origin.dot(ray.dir);
-            let aside = ray.origin + along * ray.dir;
+            let along = -ray.origin.dot(ray.direction);
+            let aside = ray.origin + along * ray.direction;
             let inside = 1.0 - aside.length_squared();
-            (inside > 0.0).then(|| (aside - inside.sqrt() * ray.dir).normalize())
+            (inside > 0.0).then(|| (aside - inside.sqrt() * ray.direction).normalize())
         })
         .collect();
     let queries: Vec<ShadeQuery> =
-        rays.iter().zip(&points).map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.dir)).collect();
+        rays.iter().zip(&points).map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.direction)).collect();
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
     // The points are given, so only light on the horizon may round either way: a few of 4800 pixels.

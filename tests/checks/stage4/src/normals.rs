@@ -8,29 +8,29 @@ use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
 
-pub(super) fn paste_normal_query((geometric, interpolated, dir): &(Vec3, Option<Vec3>, Vec3)) -> String {
+pub(super) fn paste_normal_query((geometric, interpolated, direction): &(Vec3, Option<Vec3>, Vec3)) -> String {
     let interpolated = interpolated.map_or("None".into(), |n| format!("Some({})", n.paste()));
-    format!("shading_normal({}, {interpolated}, {})", geometric.paste(), dir.paste())
+    format!("shading_normal({}, {interpolated}, {})", geometric.paste(), direction.paste())
 }
 
 pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
     // Smooth normals lean up to a third of the way from the geometric one, and may be of any length and either sign.
     let inputs = (unit(), unit(), unit(), any::<bool>(), any::<bool>(), 1..=8i32).prop_map(
-        |(geometric, lean, dir, smooth, back, length)| {
+        |(geometric, lean, direction, smooth, back, length)| {
             let bent = (geometric + 0.3 * lean) * length as f32 / 4.0;
-            (geometric, smooth.then_some(if back { -bent } else { bent }), dir)
+            (geometric, smooth.then_some(if back { -bent } else { bent }), direction)
         },
     );
     trial.forall(2000, inputs, |queries| {
         compare(queries, trial.kit.shading_normal(queries), |query, yours| {
-            let (geometric, interpolated, dir) = *query;
-            let facing = if geometric.dot(dir) > 0.0 { -geometric } else { geometric };
+            let (geometric, interpolated, direction) = *query;
+            let facing = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
             let expected = match interpolated.map(Vec3::normalize) {
                 Some(smooth) if smooth.dot(facing) < 0.0 => -smooth,
                 Some(smooth) => smooth,
                 None => facing,
             };
-            let grazing = geometric.dot(dir).abs() < 1e-6;
+            let grazing = geometric.dot(direction).abs() < 1e-6;
             let same = |n: Vec3| (yours - n).length() < 1e-5;
             if same(expected) || (grazing && same(-expected)) {
                 return Ok(());

@@ -53,12 +53,12 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
     trial.forall(1000, lit(-1.0..2.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let light = &query.light;
-            let length = ray.dir.length();
-            if (ray.dir / length - light.direction).length() > 1e-4 {
+            let length = ray.direction.length();
+            if (ray.direction / length - light.direction).length() > 1e-4 {
                 return Some((
-                    format!("direction {}", ray.dir),
+                    format!("direction {}", ray.direction),
                     format!("direction {}", light.direction),
-                    if (ray.dir / length + light.direction).length() < 1e-4 {
+                    if (ray.direction / length + light.direction).length() < 1e-4 {
                         "the ray goes away from the light"
                     } else {
                         ""
@@ -106,7 +106,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
 /// How far above the point, along the normal, the ray begins to count: `(height, bound on the point's error)`.
 pub(super) fn start_height(query: &ShadowQuery, ray: &raykata::ray::Ray) -> (f64, f64) {
     let normal = query.surface.geometric_normal.as_dvec3();
-    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.dir.as_dvec3();
+    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
     ((start - query.surface.point.as_dvec3()).dot(normal), query.surface.error.as_dvec3().dot(normal.abs()))
 }
 
@@ -167,7 +167,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
             None => Ok(()),
             Some(ray) => Err(Broken::told(
                 query.call("shadow_ray"),
-                format!("a ray along {}", ray.dir),
+                format!("a ray along {}", ray.direction),
                 "None",
                 "the definition",
             )

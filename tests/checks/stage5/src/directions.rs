@@ -11,24 +11,24 @@ use raykata::kit::RefractQuery;
 
 /// A direction and a normal on the side that it comes from.
 pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
-    (unit(), unit()).prop_map(|(dir, normal)| (dir, if normal.dot(dir) > 0.0 { -normal } else { normal }))
+    (unit(), unit()).prop_map(|(direction, normal)| (direction, if normal.dot(direction) > 0.0 { -normal } else { normal }))
 }
 
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
     let judge = |queries: &[(Vec3, Vec3)]| {
-        compare(queries, trial.kit.reflect(queries), |(dir, normal), yours| {
-            let (d, n) = (dir.as_dvec3(), normal.as_dvec3());
+        compare(queries, trial.kit.reflect(queries), |(direction, normal), yours| {
+            let (d, n) = (direction.as_dvec3(), normal.as_dvec3());
             let expected = (d - 2.0 * d.dot(n) * n).normalize().as_vec3();
             let same = |v: Vec3| (yours - v).length() < 1e-6; // a few roundings of numbers up to 2
             let diagnosis = match () {
-                () if same(*dir) => "the ray goes straight on",
-                () if same(-*dir) => "the ray goes back the way it came",
+                () if same(*direction) => "the ray goes straight on",
+                () if same(-*direction) => "the ray goes back the way it came",
                 () if same(-expected) => "the mirrored ray points into the surface",
                 () if same((d + 2.0 * d.dot(n) * n).normalize().as_vec3()) => {
                     "plus, where minus belongs: d - 2 n (d·n)"
                 }
                 () if (yours.normalize_or_zero()
-                    - (*dir - dir.dot(*normal) * *normal).normalize_or_zero())
+                    - (*direction - direction.dot(*normal) * *normal).normalize_or_zero())
                 .length()
                     < 1e-5 =>
                 {
@@ -36,7 +36,7 @@ pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
                 }
                 () => "",
             };
-            let input = call("reflect", &[dir, normal]);
+            let input = call("reflect", &[direction, normal]);
             if same(expected) {
                 return Ok(());
             }
@@ -51,12 +51,12 @@ pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
 pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Outcome {
     // R7: a thousand bounces between two mirrors that are not quite along an axis.
     let normals = [vec3(0.6, 0.8, 0.0), vec3(-0.48, -0.64, 0.6)];
-    let mut dir = vec3(0.3, -0.7, 0.2).normalize();
+    let mut direction = vec3(0.3, -0.7, 0.2).normalize();
     for bounce in 0..1000 {
         let normal = normals[bounce % 2];
-        dir = trial.kit.reflect(&[(dir, if normal.dot(dir) > 0.0 { -normal } else { normal })])[0];
+        direction = trial.kit.reflect(&[(direction, if normal.dot(direction) > 0.0 { -normal } else { normal })])[0];
     }
-    let off = (dir.as_dvec3().length() - 1.0).abs();
+    let off = (direction.as_dvec3().length() - 1.0).abs();
     if off < 1e-6 {
         return Ok(());
     }
@@ -71,7 +71,7 @@ pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> O
 
 /// Snell's law in double precision; `None` beyond the critical angle, and how far the answer is from that.
 pub(super) fn snell(query: &RefractQuery) -> (Option<DVec3>, f64) {
-    let (d, n) = (query.dir.as_dvec3(), query.normal.as_dvec3().normalize());
+    let (d, n) = (query.direction.as_dvec3(), query.normal.as_dvec3().normalize());
     let ratio = f64::from(query.n1) / f64::from(query.n2);
     let along = ratio * (d - d.dot(n) * n);
     let cos_squared = 1.0 - along.length_squared();
@@ -80,7 +80,7 @@ pub(super) fn snell(query: &RefractQuery) -> (Option<DVec3>, f64) {
 
 /// The direction behind the surface if the sine there were this one of `(sin θ1, n1 / n2)`.
 fn turned(query: &RefractQuery, sine: impl Fn(f64, f64) -> f64) -> Option<DVec3> {
-    let (d, n) = (query.dir.as_dvec3(), query.normal.as_dvec3().normalize());
+    let (d, n) = (query.direction.as_dvec3(), query.normal.as_dvec3().normalize());
     let ratio = f64::from(query.n1) / f64::from(query.n2);
     let along = d - d.dot(n) * n;
     let sine_1 = along.length();
@@ -90,7 +90,7 @@ fn turned(query: &RefractQuery, sine: impl Fn(f64, f64) -> f64) -> Option<DVec3>
 }
 
 fn paste(query: &RefractQuery) -> String {
-    call("refract", &[&query.dir, &query.normal, &query.n1, &query.n2])
+    call("refract", &[&query.direction, &query.normal, &query.n1, &query.n2])
 }
 
 pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> Vec<Outcome> {
@@ -147,13 +147,13 @@ pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> 
 
 pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> Outcome {
     let indices = || (8..=24i32).prop_map(|eighths| eighths as f32 / 8.0);
-    let inputs = (arrival(), indices(), indices()).prop_map(|((dir, normal), n1, n2)| RefractQuery {
-        dir,
+    let inputs = (arrival(), indices(), indices()).prop_map(|((direction, normal), n1, n2)| RefractQuery {
+        direction,
         normal,
         n1,
         n2,
     });
-    let drawn = RefractQuery { dir: vec3(0.6, -0.8, 0.0), normal: Vec3::Y, n1: 1.0, n2: 1.25 };
+    let drawn = RefractQuery { direction: vec3(0.6, -0.8, 0.0), normal: Vec3::Y, n1: 1.0, n2: 1.25 };
     judge_refractions(trial, &[drawn]).into_iter().collect::<Outcome>()?;
     trial.forall(4000, inputs, |queries| judge_refractions(trial, queries))
 }
@@ -162,10 +162,10 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> Outcome 
     // R1: along the normal sin θ1 is 0; and equal indices bend nothing.
     let slanted = vec3(0.6, -0.8, 0.0);
     let cases = [(Vec3::NEG_Y, 1.0, 1.5), (Vec3::NEG_Y, 1.5, 1.0), (slanted, 1.0, 1.0), (slanted, 1.7, 1.7)];
-    let queries = cases.map(|(dir, n1, n2)| RefractQuery { dir, normal: Vec3::Y, n1, n2 });
+    let queries = cases.map(|(direction, n1, n2)| RefractQuery { direction, normal: Vec3::Y, n1, n2 });
     for (query, yours) in queries.iter().zip(trial.kit.refract(&queries)) {
-        if !yours.is_some_and(|yours| (yours - query.dir).length() < 1e-6) {
-            let broken = Broken::new(paste(query), yours, Some(query.dir), "straight on");
+        if !yours.is_some_and(|yours| (yours - query.direction).length() < 1e-6) {
+            let broken = Broken::new(paste(query), yours, Some(query.direction), "straight on");
             return Err(broken.looks_like(Some("0 / 0: do not divide by sin θ1")));
         }
     }
@@ -175,8 +175,8 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> Outcome 
 pub(super) fn refract_beyond_the_critical_angle_is_nothing(trial: &Trial<'_>) -> Outcome {
     // R2: 60° inside of glass. Then the critical angle itself, one step of the sine to either side: no NaN there.
     let at_sine = |sine: f32| {
-        let dir = vec3(sine, -(1.0 - f64::from(sine).powi(2)).sqrt() as f32, 0.0);
-        RefractQuery { dir, normal: Vec3::Y, n1: 1.5, n2: 1.0 }
+        let direction = vec3(sine, -(1.0 - f64::from(sine).powi(2)).sqrt() as f32, 0.0);
+        RefractQuery { direction, normal: Vec3::Y, n1: 1.5, n2: 1.0 }
     };
     let critical = 1.0f32 / 1.5;
     let queries = [0.866_025_4, 0.75, critical.next_up(), critical, critical.next_down(), 0.6].map(at_sine);
@@ -187,10 +187,10 @@ pub(super) fn refract_survives_rounded_directions(trial: &Trial<'_>) -> Outcome 
     // R3: one unit vector in five has a length a little above 1, and the root of 1 - cos² is NaN near the normal.
     let inputs = (unit(), -40..=40i32, -40..=40i32, any::<bool>()).prop_map(|(normal, x, y, glass)| {
         let (u, v) = normal.any_orthonormal_pair();
-        let dir = (-normal + 1e-5 * (x as f32 * u + y as f32 * v)).normalize();
-        let dir = dir * (1.0 + f32::EPSILON); // a rounding too long
+        let direction = (-normal + 1e-5 * (x as f32 * u + y as f32 * v)).normalize();
+        let direction = direction * (1.0 + f32::EPSILON); // a rounding too long
         let (n1, n2) = if glass { (1.0, 1.5) } else { (1.5, 1.0) };
-        RefractQuery { dir, normal, n1, n2 }
+        RefractQuery { direction, normal, n1, n2 }
     });
     trial.forall(2000, inputs, |queries| judge_refractions(trial, queries))
 }

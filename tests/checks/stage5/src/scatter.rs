@@ -19,7 +19,7 @@ pub(super) fn paste(query: &ScatterQuery) -> String {
     let material = &query.material;
     format!(
         "scatter({}, {}, {}, &Material {{ mirror: {}, transmission: {}, index_of_refraction: {}, fresnel: Fresnel::{:?}, ..Material::default() }},\n{}, {}, &{:?})",
-        query.dir.paste(),
+        query.direction.paste(),
         query.normal.paste(),
         query.entering,
         material.mirror.paste(),
@@ -48,7 +48,7 @@ pub(super) fn find(children: &[SecondaryRay], bounce: Bounce) -> Option<&Seconda
 fn share(query: &ScatterQuery) -> (f32, f32, f64) {
     let index = query.material.index_of_refraction;
     let (n1, n2) = if query.entering { (1.0, index) } else { (index, 1.0) };
-    let fresnel = FresnelQuery { cos_theta: -query.dir.dot(query.normal), n1, n2 };
+    let fresnel = FresnelQuery { cos_theta: -query.direction.dot(query.normal), n1, n2 };
     let share = match query.material.fresnel {
         Fresnel::None => 0.0,
         Fresnel::Schlick => schlick(&fresnel),
@@ -60,8 +60,8 @@ fn share(query: &ScatterQuery) -> (f32, f32, f64) {
 pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
     (arrival(), any::<bool>(), point(1), point(1), 8..=16i32, fresnel, point(1)).prop_map(
-        |((dir, normal), entering, mirror, transmission, index, fresnel, weight)| ScatterQuery {
-            dir,
+        |((direction, normal), entering, mirror, transmission, index, fresnel, weight)| ScatterQuery {
+            direction,
             normal,
             entering,
             material: Material {
@@ -86,7 +86,7 @@ pub(super) fn scatter_weigh_what_the_surface_says(trial: &Trial<'_>) -> Outcome 
 /// A surface that mirrors and lets through, glass that mirrors its share alone, and one channel in each child.
 pub(super) fn drawn() -> [ScatterQuery; 3] {
     let query = |mirror: Vec3, transmission: Vec3, fresnel: Fresnel| ScatterQuery {
-        dir: vec3(0.96, -0.28, 0.0),
+        direction: vec3(0.96, -0.28, 0.0),
         normal: Vec3::Y,
         entering: true,
         material: Material { mirror, transmission, index_of_refraction: 1.5, fresnel, ..Material::default() },
@@ -108,7 +108,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
             [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
         let expected = [weight * (mirror + share * transmission), weight * (1.0 - share) * transmission];
         // Refraction that does not happen, or only just, is another check's business.
-        let sine = (1.0 - f64::from(query.dir.dot(query.normal)).powi(2)).max(0.0).sqrt();
+        let sine = (1.0 - f64::from(query.direction.dot(query.normal)).powi(2)).max(0.0).sqrt();
         if f64::from(n1 / n2) * sine > 0.999 {
             return Ok(());
         }
@@ -159,9 +159,9 @@ const ENTERING: &str = "entering the glass, n1 is the air and n2 the glass";
 /// R4: a ray through a pane of glass leaves it in the direction in which it came.
 pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome {
     let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
-    for dir in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
+    for direction in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
         let enter = ScatterQuery {
-            dir,
+            direction,
             normal: Vec3::Y,
             entering: true,
             material: glass.clone(),
@@ -170,7 +170,7 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
             limits: FAR,
         };
         let inside = trial.kit.scatter(std::slice::from_ref(&enter)).remove(0);
-        let snell = RefractQuery { dir, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
+        let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
         super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
         let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
             let broken = Broken::told(paste(&enter), told(&inside), "a refracted ray", "glass");
@@ -182,11 +182,11 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
                 Broken::new(paste(&enter), inside.direction, bent, "Snell's law in double precision");
             return Err(broken.looks_like(Some(ENTERING)));
         }
-        let leave = ScatterQuery { dir: inside.direction, entering: false, ..enter };
+        let leave = ScatterQuery { direction: inside.direction, entering: false, ..enter };
         let outside = trial.kit.scatter(std::slice::from_ref(&leave)).remove(0);
         let direction = find(&outside, Bounce::Transmission).map(|child| child.direction);
-        if !direction.is_some_and(|direction| (direction - dir).length() < 1e-5) {
-            let broken = Broken::new(paste(&leave), direction, Some(dir), "out as it came in");
+        if !direction.is_some_and(|direction| (direction - direction).length() < 1e-5) {
+            let broken = Broken::new(paste(&leave), direction, Some(direction), "out as it came in");
             return Err(broken.looks_like(Some(match direction {
                 Some(direction) if direction.dot(leave.normal) > 0.0 => {
                     "back into the glass: the normal is on the ray's side already, so it must not be turned"
@@ -202,7 +202,7 @@ pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> 
     // R5: 60° inside of glass. Nothing goes through, and no NaN creeps in by 0 · NaN.
     for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
         let query = ScatterQuery {
-            dir: vec3(0.866_025_4, -0.5, 0.0),
+            direction: vec3(0.866_025_4, -0.5, 0.0),
             normal: Vec3::Y,
             entering: false,
             material: Material {

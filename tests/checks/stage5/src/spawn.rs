@@ -60,10 +60,10 @@ fn judge(query: &Leaving, ray: Ray) -> Outcome {
     let broken = |yours: String, expected: String, diagnosis: &'static str| {
         Err(Broken::told(told(query), yours, expected, "closed form").looks_like(known(diagnosis)))
     };
-    let dir = ray.dir.as_dvec3();
-    if !((dir.normalize() - child.direction.as_dvec3()).length() < 1e-5) {
+    let direction = ray.direction.as_dvec3();
+    if !((direction.normalize() - child.direction.as_dvec3()).length() < 1e-5) {
         return broken(
-            format!("direction {}", ray.dir),
+            format!("direction {}", ray.direction),
             format!("direction {}", child.direction),
             "the direction is that of the child",
         );
@@ -72,7 +72,7 @@ fn judge(query: &Leaving, ray: Ray) -> Outcome {
         return broken(format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the ray has no end");
     }
     let side = side(surface.geometric_normal, child.bounce).as_dvec3();
-    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * dir;
+    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * direction;
     let moved: DVec3 = start - surface.point.as_dvec3();
     let height = moved.dot(side);
     let bound = surface.error.as_dvec3().dot(side.abs());

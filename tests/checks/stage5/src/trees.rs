@@ -13,7 +13,7 @@ const TOO_MANY: usize = 20_000;
 /// Rays of the tree in a closed room in which every ray meets the same surface at the same slant.
 fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ScatterQuery) {
     let first = ScatterQuery {
-        dir: vec3(0.6, -0.8, 0.0),
+        direction: vec3(0.6, -0.8, 0.0),
         normal: Vec3::Y,
         entering: true,
         material: material.clone(),
@@ -133,7 +133,7 @@ fn follow(
     trial: &Trial<'_>,
     glass: &Material,
     point: Vec3,
-    dir: Vec3,
+    direction: Vec3,
     entering: bool,
     weight: Vec3,
     depth: u32,
@@ -146,7 +146,7 @@ fn follow(
         text.push_str("…\n");
         return;
     }
-    let query = ScatterQuery { dir, normal, entering, material: glass.clone(), weight, depth, limits };
+    let query = ScatterQuery { direction, normal, entering, material: glass.clone(), weight, depth, limits };
     let mut children = trial.kit.scatter(&[query]).remove(0);
     children.sort_by_key(|child| child.bounce == Bounce::Transmission);
     for child in children {

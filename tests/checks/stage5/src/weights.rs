@@ -12,11 +12,11 @@ use raykata::material::{Fresnel, Material};
 /// X8: it is the child's own weight that counts, not that of its parent, and each child's by itself.
 pub(super) fn scatter_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
     let [slanted, ..] = drawn();
-    let (dir, normal) = (slanted.dir, slanted.normal);
+    let (direction, normal) = (slanted.direction, slanted.normal);
     // Eighths, so that weights are exact and often just what is asked for; an index of 1, so that nothing is bent or
     // mirrored back.
     let queries = (queries(), 0..=64i32).prop_map(move |(query, least)| ScatterQuery {
-        dir,
+        direction,
         normal,
         material: Material { index_of_refraction: 1.0, fresnel: Fresnel::None, ..query.material },
         limits: Limits { min_contribution: least as f32 / 64.0, ..FAR },

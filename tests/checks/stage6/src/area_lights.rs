@@ -102,15 +102,15 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
     let (x, y) = axis.any_orthonormal_pair();
     let mut shares = Vec::new();
     for (query, direction) in queries.iter().zip(trial.kit.sample_sphere(&queries)) {
-        let dir = direction.as_dvec3();
+        let direction = direction.as_dvec3();
         // 1 - cos θ from the sine, which keeps the digits of small angles.
-        let sine_squared = dir.cross(axis).length_squared();
-        let cosine = dir.dot(axis);
+        let sine_squared = direction.cross(axis).length_squared();
+        let cosine = direction.dot(axis);
         let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
         let share = below_one / widest;
         // The direction is rounded: 1e-7 of an angle of √(2 · widest).
         let slack = 4e-7 / widest.sqrt();
-        let unit = (dir.length() - 1.0).abs() < 1e-5;
+        let unit = (direction.length() - 1.0).abs() < 1e-5;
         if !(unit && share <= 1.0 + slack) {
             let input = format!(
                 "sample_sphere(&Sphere {{ center: {}, radius: {} }}, {}, {})",
@@ -121,13 +121,13 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
             );
             let broken = Broken::new(input, direction, "a unit direction to the sphere", "the definition");
             let diagnosis = match () {
-                () if dir.is_nan() => "NaN: 1 - sin² is below 0 from inside the sphere",
+                () if direction.is_nan() => "NaN: 1 - sin² is below 0 from inside the sphere",
                 () if !unit => "not of unit length",
                 () => "this way misses the sphere",
             };
             return Err(broken.looks_like(Some(diagnosis)));
         }
-        shares.push((share, dir.dot(y).atan2(dir.dot(x)) / std::f64::consts::TAU + 0.5));
+        shares.push((share, direction.dot(y).atan2(direction.dot(x)) / std::f64::consts::TAU + 0.5));
     }
     Ok(shares)
 }
@@ -193,7 +193,7 @@ pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
     let directions = trial.kit.sample_sphere(&queries);
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
         let seen: Vec<f64> =
-            directions.iter().map(|dir| f64::from(u8::from(dir.as_dvec3().dot(normal) > 0.0))).collect();
+            directions.iter().map(|direction| f64::from(u8::from(direction.as_dvec3().dot(normal) > 0.0))).collect();
         has_mean(
             "sample_sphere past a wall that hides just half of the sphere",
             &seen,

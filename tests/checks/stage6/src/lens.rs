@@ -114,10 +114,10 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let near =
-                (yours.dir - query.pinhole.dir).length() < 1e-5 && yours.origin == query.pinhole.origin;
+                (yours.direction - query.pinhole.direction).length() < 1e-5 && yours.origin == query.pinhole.origin;
             let diagnosis = match () {
                 () if near => "almost: computed anew, the direction is a rounding off; return the pinhole's",
-                () if yours.dir.is_nan() => "NaN",
+                () if yours.direction.is_nan() => "NaN",
                 () => "",
             };
             Err(Broken::new(paste(query), yours, query.pinhole, "bit for bit the ray through the middle")
@@ -130,8 +130,8 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
 fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
     let towards = query.camera.towards.as_dvec3();
     let start = ray.origin.as_dvec3() - query.camera.position.as_dvec3();
-    let dir = ray.dir.as_dvec3();
-    start + (f64::from(query.lens.focal_distance) - start.dot(towards)) / dir.dot(towards) * dir
+    let direction = ray.direction.as_dvec3();
+    start + (f64::from(query.lens.focal_distance) - start.dot(towards)) / direction.dot(towards) * direction
 }
 
 pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
@@ -144,22 +144,22 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let distance = f64::from(query.lens.focal_distance);
-            let [dir, towards] = [query.pinhole.dir, query.camera.towards].map(Vec3::as_dvec3);
+            let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
             let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
-            let aims = |way: DVec3| (yours.dir.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
+            let aims = |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
             let diagnosis = match () {
                 () if yours.is_nan_anywhere() => "NaN",
-                () if aims(distance * dir - start) => {
+                () if aims(distance * direction - start) => {
                     "focal_distance along the ray is a sphere: divide it by the cosine with camera.towards"
                 }
-                () if aims(distance * dir.dot(towards) * dir - start) => {
+                () if aims(distance * direction.dot(towards) * direction - start) => {
                     "multiplied by the cosine with camera.towards: along the ray it is farther, so divide"
                 }
                 () if aims(distance * towards - start) => {
                     "every ray aims at the middle of the plane of focus: aim where its pinhole ray meets it"
                 }
                 () if aims(expected + start) => "turned away from the focus: take the offset off",
-                () if aims(dir) => {
+                () if aims(direction) => {
                     "parallel to the ray through the middle: aim at where that ray meets the plane of focus"
                 }
                 () => "",
@@ -194,7 +194,7 @@ trait NanAnywhere {
 
 impl NanAnywhere for Ray {
     fn is_nan_anywhere(&self) -> bool {
-        self.origin.is_nan() || self.dir.is_nan()
+        self.origin.is_nan() || self.direction.is_nan()
     }
 }
 
@@ -206,7 +206,7 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
             let expected = camera.position + place.x * camera.right + place.y * camera.up;
             // Two roundings of coordinates up to 4.
             let near = |v: Vec3| (yours.origin - v).length() < 2e-6;
-            let unit = (yours.dir.length() - 1.0).abs() < 1e-5;
+            let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
             if near(expected) && unit {
                 return Ok(());
             }
@@ -243,10 +243,10 @@ pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcom
             let focus = in_focus(query, &query.pinhole);
             let expected = (focus - offset).normalize();
             // A few roundings of the direction.
-            if (yours.dir.as_dvec3() - expected).length() < 2e-6 {
+            if (yours.direction.as_dvec3() - expected).length() < 2e-6 {
                 return Ok(());
             }
-            let broken = Broken::new(paste(query), yours.dir, expected.as_vec3(), "double precision");
+            let broken = Broken::new(paste(query), yours.direction, expected.as_vec3(), "double precision");
             Err(broken.looks_like(Some(
                 "digits were lost in camera.position: take the difference of two places seen from the camera",
             )))

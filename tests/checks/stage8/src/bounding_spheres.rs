@@ -95,12 +95,12 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
             }
             (Some(late), Some(early), Some(t)) => {
                 let exact = first(sphere.radius).unwrap_or(late);
-                let length = ray.dir.length();
+                let length = ray.direction.length();
                 let other_units = near(t / length, exact) || near(t, exact * length);
                 if t > exact {
                     let diagnosis = match () {
                         () if near(t, exact) => "late by roundings: a hit at this very t would be skipped",
-                        () if other_units => "t counts lengths of dir",
+                        () if other_units => "t counts lengths of direction",
                         () => {
                             "the way out, or something else that is too late: the way in is the nearer root"
                         }
@@ -113,7 +113,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
                 }
                 let diagnosis = match () {
                     () if t < ray.t_min => "before the range of the ray",
-                    () if other_units => "t counts lengths of dir",
+                    () if other_units => "t counts lengths of direction",
                     () => "much too early: the ray is told to look where there is nothing yet",
                 };
                 broken(format!("Some({exact:?})"), diagnosis)
@@ -128,16 +128,16 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
 }
 
 fn entries(aimed: bool) -> impl Strategy<Value = BoundingSphereQuery> + Clone {
-    (point(8), direction(), sphere(), 0..4u32).prop_map(move |(origin, dir, sphere, range)| {
+    (point(8), direction(), sphere(), 0..4u32).prop_map(move |(origin, direction, sphere, range)| {
         let to_center = sphere.center - origin;
-        let dir = if aimed && to_center != Vec3::ZERO {
-            to_center + 0.5 * sphere.radius * dir.normalize()
+        let direction = if aimed && to_center != Vec3::ZERO {
+            to_center + 0.5 * sphere.radius * direction.normalize()
         } else {
-            dir
+            direction
         };
         let (t_min, t_max) =
             [(0.0, f32::INFINITY), (0.5, f32::INFINITY), (0.0, 0.75), (0.0, 16.0)][range as usize];
-        BoundingSphereQuery { ray: Ray::new(origin, dir).with_range(t_min, t_max), sphere }
+        BoundingSphereQuery { ray: Ray::new(origin, direction).with_range(t_min, t_max), sphere }
     })
 }
 

@@ -37,7 +37,7 @@ pub(super) fn judge_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Out
 }
 
 pub(super) fn of<S: Clone>(solid: &S) -> impl Fn(Vec3, Vec3) -> SolidQuery<S> {
-    move |origin, dir| SolidQuery { ray: Ray::new(origin, dir), solid: solid.clone() }
+    move |origin, direction| SolidQuery { ray: Ray::new(origin, direction), solid: solid.clone() }
 }
 
 /// Rays from inside at the same point of the surface, which must all meet it.
@@ -52,8 +52,8 @@ pub(super) fn judge_from_inside<S: Solid>(
         .map(|_| {
             let origin = solid.inside(random.in_cube());
             // Not 1 - o, whose sum with o is 1 again: at t = 1 many a point is exact that is rounded elsewhere.
-            let dir = (1.0 + random.unit()) * (aims(&mut random) - origin);
-            SolidQuery { ray: Ray::new(origin, dir), solid: solid.clone() }
+            let direction = (1.0 + random.unit()) * (aims(&mut random) - origin);
+            SolidQuery { ray: Ray::new(origin, direction), solid: solid.clone() }
         })
         .collect();
     // The aim is rounded: the surface may be a little nearer or farther, more so at a flat angle.
@@ -96,9 +96,9 @@ pub(super) fn judge_ties_at_the_rim<S: Solid>(
             [(3.0, 4.0), (4.0, -3.0), (-5.0, 0.0), (-3.0, 4.0), (0.0, 5.0)][(short(2) + 2.0) as usize];
         let rim = vec3(x, ends[(0.5 + 0.5 * short(1)) as usize], z);
         let origin = vec3(short(8), 8.0 + short(6), short(8)) / 8.0;
-        // 1/123, 1/117 and 1/105 are rounded up by nearly half a step: t times a coordinate of dir is often beyond the rim.
-        let dir = [123.0, 117.0, 105.0][(short(1) + 1.0) as usize] * (rim - origin);
-        SolidQuery { ray: Ray::new(origin, dir), solid: solid.clone() }
+        // 1/123, 1/117 and 1/105 are rounded up by nearly half a step: t times a coordinate of direction is often beyond the rim.
+        let direction = [123.0, 117.0, 105.0][(short(1) + 1.0) as usize] * (rim - origin);
+        SolidQuery { ray: Ray::new(origin, direction), solid: solid.clone() }
     };
     let queries: Vec<SolidQuery<S>> = (0..3000).map(|_| query()).collect();
     judge_leaving(trial, &queries, 0.008..0.0096, diagnosis)

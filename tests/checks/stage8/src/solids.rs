@@ -43,15 +43,15 @@ fn rays<S: Solid>(range: bool) -> impl Strategy<Value = SolidQuery<S>> + Clone {
         &[(0.0, f32::INFINITY)]
     };
     let inputs = (S::any(), point(8), point(1), direction(), 0..4u32, 0..ranges.len());
-    inputs.prop_map(move |(solid, origin, at, dir, kind, range)| {
+    inputs.prop_map(move |(solid, origin, at, direction, kind, range)| {
         let (t_min, t_max) = ranges[range];
-        let (origin, dir) = match kind {
-            0 => (origin, dir),
-            1 if !S::FLAT => (solid.inside(at), dir),
+        let (origin, direction) = match kind {
+            0 => (origin, direction),
+            1 if !S::FLAT => (solid.inside(at), direction),
             _ => (origin, solid.inside(at) - origin),
         };
-        let dir = if dir == Vec3::ZERO { Vec3::X } else { dir };
-        SolidQuery { ray: Ray::new(origin, dir).with_range(t_min, t_max), solid }
+        let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
+        SolidQuery { ray: Ray::new(origin, direction).with_range(t_min, t_max), solid }
     })
 }
 
@@ -61,8 +61,8 @@ fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
     // Shells of a flat shape lie in its plane and say nothing about a ray that does, too. A height above the plane is off by
     // 1e-5, and by that over the slope where the ray comes through: no more than a shell.
     let slope = own_normal(query).map_or(1.0, |normal| {
-        let dir = ray.dir.as_dvec3();
-        (dir.dot(normal).abs() / (dir.length() * normal.length())) as f32
+        let direction = ray.direction.as_dvec3();
+        (direction.dot(normal).abs() / (direction.length() * normal.length())) as f32
     });
     if slope < 1e-5 / SHELL {
         return None;
@@ -72,14 +72,14 @@ fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
         (None, None, None) => Some(None),
         (Some(p), Some(q), Some(r)) => {
             let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-            // A method in single precision is off by a hundred roundings, 1e-5 of the way; twice that, in lengths of dir.
-            let slack = 2e-5 * (1.0 + ray.origin.length()) / (slope * ray.dir.length());
+            // A method in single precision is off by a hundred roundings, 1e-5 of the way; twice that, in lengths of direction.
+            let slack = 2e-5 * (1.0 + ray.origin.length()) / (slope * ray.direction.length());
             if low - slack <= ray.t_min || ray.t_max <= high + slack {
                 return None;
             }
             // A range that begins or ends between the shells gives different ends of the solid. Shells lie 1e-3 apart at
             // most, slanting rays go farther; but the thinnest solid is 1/8 high, so that its ends are beyond a twentieth.
-            (high - low < 0.05 / ray.dir.length()).then_some(Some((low - slack, high + slack)))
+            (high - low < 0.05 / ray.direction.length()).then_some(Some((low - slack, high + slack)))
         }
         _ => None,
     }
@@ -116,7 +116,7 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
     let inside = solid.meet(&ray.with_range(f32::NEG_INFINITY, 0.0)).is_some_and(|back| back.t.is_some())
         && solid.meet(&ray.with_range(0.0, f32::INFINITY)).is_some_and(|front| front.t.is_some());
     let last = || {
-        let back = Ray { dir: -ray.dir, ..endless };
+        let back = Ray { direction: -ray.direction, ..endless };
         solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -t)
     };
     match (yours.map(|hit| hit.t), exact) {
@@ -134,8 +134,8 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
         (None, Some(_)) => "a part of the surface is missing: an end, or a side",
         (Some(_), None) if S::FLAT => "a point of its plane, but beside it",
         (Some(_), None) => "a point beside the solid: beyond an end, or outside of the round",
-        (Some(t), Some(right)) if near(t * ray.dir.length(), right) || near(t / ray.dir.length(), right) => {
-            "t must count lengths of dir"
+        (Some(t), Some(right)) if near(t * ray.direction.length(), right) || near(t / ray.direction.length(), right) => {
+            "t must count lengths of direction"
         }
         (Some(t), Some(_)) if last().is_some_and(|last| near(t, last)) => {
             "the far side: the nearest point of the surface in the range of the ray is the hit, be it on a side or on an end"
@@ -163,7 +163,7 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
         compare(queries, S::ask(trial.kit, queries), |query, yours| {
             let (Some(hit), Some(Some(_))) = (yours, expected(query)) else { return Ok(()) };
             let normal = hit.normal.as_dvec3();
-            let at = query.ray.origin.as_dvec3() + f64::from(hit.t) * query.ray.dir.as_dvec3();
+            let at = query.ray.origin.as_dvec3() + f64::from(hit.t) * query.ray.direction.as_dvec3();
             let beyond = |normal: DVec3| query.solid.reach(normal) - normal.dot(at);
             // The point is off by 1e-5, and the normal by as much of a radius, which is 0.5 or more: over a solid 16 across
             // 3e-4, and some times that is let pass. A hundredth of a radius, 5e-3, would be a wrong normal.
@@ -210,11 +210,11 @@ fn own_normal<S: Solid>(query: &SolidQuery<S>) -> Option<DVec3> {
 
 fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, rays::<S>(true), |queries| judge(trial, queries))?;
-    // A direction 1024 times as long makes t as much smaller: t counts lengths of dir, and no limit is a fixed number.
+    // A direction 1024 times as long makes t as much smaller: t counts lengths of direction, and no limit is a fixed number.
     trial.forall(500, rays::<S>(false), |queries| {
         let answers = S::ask(trial.kit, queries);
         let longer = |query: &SolidQuery<S>| SolidQuery {
-            ray: Ray { dir: 1024.0 * query.ray.dir, ..query.ray },
+            ray: Ray { direction: 1024.0 * query.ray.direction, ..query.ray },
             solid: query.solid.clone(),
         };
         let scaled: Vec<SolidQuery<S>> = queries.iter().map(longer).collect();
@@ -224,7 +224,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let t = answer.map(|hit| hit.t / 1024.0);
-            // Scaling by a power of two is exact, so t should be, too; but a method may make dir a unit vector, which rounds.
+            // Scaling by a power of two is exact, so t should be, too; but a method may make direction a unit vector, which rounds.
             // 1e-5 is eighty such roundings, of t or, near the origin, of coordinates.
             let same = match (t, scaled) {
                 (Some(t), Some(hit)) => (hit.t - t).abs() <= 1e-5 * t.max(0.01),
@@ -233,7 +233,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
             };
             let told = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
             let diagnosis = scaled.is_none().then_some(
-                "a fixed epsilon drops it: t is small because dir is long, not because the hit is near",
+                "a fixed epsilon drops it: t is small because direction is long, not because the hit is near",
             );
             if same {
                 return Ok(());
@@ -242,7 +242,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 input(query),
                 told(scaled.map(|hit| hit.t)),
                 told(t),
-                "1/1024 of the t for dir / 1024",
+                "1/1024 of the t for direction / 1024",
             )
             .looks_like(diagnosis))
         })
@@ -266,8 +266,8 @@ fn nonsense<S: Solid>(trial: &Trial<'_>) -> Outcome {
     for solid in solids {
         let ray = ray(&solid);
         let broken = [
-            Ray { dir: Vec3::NAN, ..ray },
-            Ray { dir: Vec3::ZERO, ..ray },
+            Ray { direction: Vec3::NAN, ..ray },
+            Ray { direction: Vec3::ZERO, ..ray },
             Ray { origin: Vec3::NAN, ..ray },
             Ray { origin: Vec3::INFINITY, ..ray },
         ];

@@ -28,12 +28,12 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Out
     let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)), to_object };
     judge_points(trial, &[turned]).into_iter().collect::<Outcome>()?;
     let inputs = (point(4), direction(), transform())
-        .prop_map(|(origin, dir, to_object)| ObjectRayQuery { ray: Ray::new(origin, dir), to_object });
+        .prop_map(|(origin, direction, to_object)| ObjectRayQuery { ray: Ray::new(origin, direction), to_object });
     trial.forall(2000, inputs, |queries| judge_points(trial, queries))?;
     // An object that stands far away: what is left of the origin after the subtraction must have its digits.
-    let far = (rough_point(4.0), direction()).prop_map(|(offset, dir)| {
+    let far = (rough_point(4.0), direction()).prop_map(|(offset, direction)| {
         let place = Vec3::new(148_376.0, 1_234.0, -223_423.0);
-        ObjectRayQuery { ray: Ray::new(place + offset, dir), to_object: Affine3A::from_translation(-place) }
+        ObjectRayQuery { ray: Ray::new(place + offset, direction), to_object: Affine3A::from_translation(-place) }
     });
     trial.forall(500, far, |queries| judge_points(trial, queries))
 }
@@ -42,8 +42,8 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.ray_to_object(queries), |query, yours| {
         let ObjectRayQuery { ray, to_object } = query;
         let exact = to_object.as_daffine3();
-        let (origin, dir) =
-            (exact.transform_point3(ray.origin.as_dvec3()), exact.transform_vector3(ray.dir.as_dvec3()));
+        let (origin, direction) =
+            (exact.transform_point3(ray.origin.as_dvec3()), exact.transform_vector3(ray.direction.as_dvec3()));
         let sizes = |v: Vec3, and: DVec3| {
             let columns = [exact.matrix3.x_axis, exact.matrix3.y_axis, exact.matrix3.z_axis].map(DVec3::abs);
             let v = v.as_dvec3().abs();
@@ -54,11 +54,11 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
             ((yours.as_dvec3() - right).abs()).cmple(6.0 * checks::double::U * size).all()
         };
         let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
-        let right_dir = close(yours.dir, dir, sizes(ray.dir, DVec3::ZERO)) || is_along(yours.dir, dir); // its length is another check's
+        let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO)) || is_along(yours.direction, direction); // its length is another check's
         if right_origin && right_dir {
             return Ok(());
         }
-        let with = |matrix: DMat3| is_along(yours.dir, matrix * ray.dir.as_dvec3());
+        let with = |matrix: DMat3| is_along(yours.direction, matrix * ray.direction.as_dvec3());
         let diagnosis = match () {
             () if !right_dir && with(exact.matrix3.transpose()) => {
                 "the direction went through the transpose of to_object, which is the inverse transpose of the way to the world, as the slide has it: that is for normals only"
@@ -69,7 +69,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
             () if !right_dir && with(exact.matrix3.inverse()) => {
                 "the direction went the other way, to the world"
             }
-            () if !right_dir && is_along(yours.dir, dir + exact.translation) => {
+            () if !right_dir && is_along(yours.direction, direction + exact.translation) => {
                 "a direction is not moved: only points are"
             }
             () if !right_origin
@@ -83,11 +83,11 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
             () => "",
         };
         let input = call("ray_to_object", &[ray, to_object]);
-        let told = |origin: Vec3, dir: Vec3| format!("origin {origin}, dir {dir}");
+        let told = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
         Err(Broken::told(
             input,
-            told(yours.origin, yours.dir),
-            told(origin.as_vec3(), dir.as_vec3()),
+            told(yours.origin, yours.direction),
+            told(origin.as_vec3(), direction.as_vec3()),
             "double precision",
         )
         .looks_like(known(diagnosis)))
@@ -115,19 +115,19 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
     }
     let judge = |query: &ObjectRayQuery, yours: Ray| {
         let ObjectRayQuery { ray, to_object } = query;
-        let exact = to_object.as_daffine3().transform_vector3(ray.dir.as_dvec3()).length();
+        let exact = to_object.as_daffine3().transform_vector3(ray.direction.as_dvec3()).length();
         // A length is off by a rounding of each of its terms.
-        let same_length = (f64::from(yours.dir.length()) / exact - 1.0).abs() < 1e-6;
+        let same_length = (f64::from(yours.direction.length()) / exact - 1.0).abs() < 1e-6;
         let same_range = (yours.t_min, yours.t_max, yours.time) == (ray.t_min, ray.t_max, ray.time);
         if same_length && same_range {
             return Ok(());
         }
-        let unit = (yours.dir.length() - 1.0).abs() < 1e-6;
+        let unit = (yours.direction.length() - 1.0).abs() < 1e-6;
         let diagnosis = match () {
             () if !same_length && unit => {
                 "the direction was made a unit vector: t counts other lengths than in the world, and cannot be compared"
             }
-            () if !same_length && (yours.dir.length() / ray.dir.length() - 1.0).abs() < 1e-6 => {
+            () if !same_length && (yours.direction.length() / ray.direction.length() - 1.0).abs() < 1e-6 => {
                 "the direction was given the length that it has in the world: then the same t is another point"
             }
             () if !same_length => "the direction has another length than the object's space gives it",
@@ -139,7 +139,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
         };
         Err(Broken::told(
             call("ray_to_object", &[ray, to_object]),
-            told(f64::from(yours.dir.length()), &yours),
+            told(f64::from(yours.direction.length()), &yours),
             told(exact, ray),
             "the definition",
         )

@@ -87,24 +87,24 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
         [(&[0u32, 1, 2][..], &[][..]), (&[][..], &[0u32, 1, 2][..]), (&[1][..], &[0, 2][..])]
     {
         let tree = two_leaves(diagonal(), behind, before);
-        for dir in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
+        for direction in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
             ask(
                 trial,
                 &tree,
                 &spheres,
-                &Ray::new(Vec3::ZERO, dir),
+                &Ray::new(Vec3::ZERO, direction),
                 "BSP tree of one plane x + y = 0, and a ray in it",
                 says,
             )?;
         }
-        for (origin, dir) in
+        for (origin, direction) in
             [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
         {
             ask(
                 trial,
                 &tree,
                 &stack,
-                &Ray::new(origin, dir),
+                &Ray::new(origin, direction),
                 "BSP tree of one plane x + y = 0, with triangles in it",
                 says,
             )?;
@@ -113,14 +113,14 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
     // From a point of the plane to either side.
     let sides = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5), sphere(-3.0, -3.0, 0.0, 0.5)]);
     let tree = two_leaves(diagonal(), &[1], &[0]);
-    for dir in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
+    for direction in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
         for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
-            let dir = dir - origin / 3.0;
+            let direction = direction - origin / 3.0;
             ask(
                 trial,
                 &tree,
                 &sides,
-                &Ray::new(origin, dir),
+                &Ray::new(origin, direction),
                 "BSP tree of one plane x + y = 0, and a ray that starts on it",
                 says,
             )?;

@@ -107,7 +107,7 @@ fn packets() -> impl Strategy<Value = (Vec<Sphere>, Vec<Ray>)> + Clone {
     let sphere = (checks::generate::point(6), 1..=8i32)
         .prop_map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 });
     let beam = (rays(), prop::collection::vec(unit(), 1..20)).prop_map(|(ray, spread)| {
-        spread.iter().map(|off| Ray { dir: ray.dir + 0.1 * *off, ..ray }).collect::<Vec<Ray>>()
+        spread.iter().map(|off| Ray { direction: ray.direction + 0.1 * *off, ..ray }).collect::<Vec<Ray>>()
     });
     let any_way = prop::collection::vec(rays(), 0..12);
     (prop::collection::vec(sphere, 0..30), prop_oneof![3 => beam, 1 => any_way], any::<bool>()).prop_map(
@@ -155,8 +155,8 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
     // A row of spheres, of which the first is hit, from either end: no two boxes overlap, so there is one order.
     let row: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
-    for (x, dir) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
-        let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), dir); 8]);
+    for (x, direction) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
+        let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), direction); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         judge_opened("8 equal rays along a row of", &yours, opened_alone(&singles[0]))?;
     }

@@ -215,7 +215,7 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
 fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     let t =
-        |axis: usize, i: u32| (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.dir[axis]);
+        |axis: usize, i: u32| (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis]);
     let begin = t(0, 0).max(t(1, 0));
     let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
     let mut cell = UVec3::ZERO;
@@ -246,8 +246,8 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ou
     let steps = [-1.0, 0.0, -0.0, 1.0];
     let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
     let rays: Vec<Ray> = dirs
-        .filter(|dir| !dir.to_array().iter().all(|x| zeros.contains(x)))
-        .flat_map(|dir| starts.map(|start| Ray::new(start, dir)))
+        .filter(|direction| !direction.to_array().iter().all(|x| zeros.contains(x)))
+        .flat_map(|direction| starts.map(|start| Ray::new(start, direction)))
         .collect();
     for (name, things, resolution) in [
         ("27 spheres", lattice, uvec3(4, 4, 4)),

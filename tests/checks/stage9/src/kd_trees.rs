@@ -218,12 +218,12 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
         let beside =
             Scene::new(vec![sphere(-3.0, 0.5, 0.0, 0.5), sphere(-5.0, -0.5, 0.5, 1.0), sphere(5.0, 0.5, 0.0, 0.5)]);
         let sides = two_leaves(bounds, 1.0, &[0, 1], &[2]);
-        for dir in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
+        for direction in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
             ask(
                 trial,
                 &sides,
                 &beside,
-                &Ray::new(Vec3::X, dir),
+                &Ray::new(Vec3::X, direction),
                 "kd-tree of two leaves, and a ray from the plane between them",
                 says,
             )?;

@@ -136,10 +136,10 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
     let steps = [-1.0, 0.0, -0.0, 1.0];
     let dirs = steps.iter().flat_map(|&x| steps.iter().flat_map(move |&y| steps.map(|z| vec3(x, y, z))));
     let rays: Vec<Ray> = dirs
-        .filter(|dir| dir.length_squared() > 0.0)
-        .flat_map(|dir| {
-            let through = |at: f32| Ray::new(Vec3::splat(at) - 12.0 * dir, dir);
-            [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), dir)]
+        .filter(|direction| direction.length_squared() > 0.0)
+        .flat_map(|direction| {
+            let through = |at: f32| Ray::new(Vec3::splat(at) - 12.0 * direction, direction);
+            [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), direction)]
         })
         .collect();
     let answers = match mishap::catch(|| searcher.ask(trial.kit, &scene, &rays)) {

@@ -47,7 +47,7 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
             Some((t, t_end)) if t < range.0 - room(range.0) || t_end > range.1 + room(range.1) => {
                 "the range of the ray is left out"
             }
-            _ if query.ray.dir.to_array().contains(&0.0) => {
+            _ if query.ray.direction.to_array().contains(&0.0) => {
                 "a ray along a face is in the cell all the way or not at all: ask where it starts; the cell is closed"
             }
             None if near == far => "the cell is closed: to touch it is to be in it",

@@ -80,12 +80,12 @@ fn bounds(thing: &Thing) -> Aabb {
 
 fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {
     let [a, b, c] = [tile.a, tile.b, tile.c].map(|p| p.as_dvec3() - ray.origin.as_dvec3());
-    let dir = ray.dir.as_dvec3();
-    // Volumes that dir spans with each side; closed, so an edge belongs to both neighbours.
-    let [u, v, w] = [dir.dot(c.cross(b)), dir.dot(a.cross(c)), dir.dot(b.cross(a))];
+    let direction = ray.direction.as_dvec3();
+    // Volumes that direction spans with each side; closed, so an edge belongs to both neighbours.
+    let [u, v, w] = [direction.dot(c.cross(b)), direction.dot(a.cross(c)), direction.dot(b.cross(a))];
     let inside = [u, v, w].iter().all(|x| *x >= 0.0) || [u, v, w].iter().all(|x| *x <= 0.0);
     let normal = (b - a).cross(c - a);
-    let t = a.dot(normal) / dir.dot(normal);
+    let t = a.dot(normal) / direction.dot(normal);
     (inside && u + v + w != 0.0 && t > 0.0).then_some(t)
 }
 
@@ -136,11 +136,11 @@ pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
         vec3(-0.0, 0.5, 0.5),
     ]);
     let any = point(4).prop_map(|v| if v == Vec3::ZERO { Vec3::X } else { v.normalize() });
-    let dir = prop_oneof![1 => plain, 1 => any];
+    let direction = prop_oneof![1 => plain, 1 => any];
     let origin = prop_oneof![2 => point(10), 1 => point(5).prop_map(Vec3::round)];
-    (origin, dir, 0..=6i32, 0..=9i32).prop_map(|(origin, dir, t_min, t_max)| {
+    (origin, direction, 0..=6i32, 0..=9i32).prop_map(|(origin, direction, t_min, t_max)| {
         let t_max = if t_max < 6 { f32::INFINITY } else { 2.0 * (t_max - 5) as f32 };
-        Ray::new(origin, dir).with_range((t_min - 4).max(0) as f32 / 2.0, t_max)
+        Ray::new(origin, direction).with_range((t_min - 4).max(0) as f32 / 2.0, t_max)
     })
 }
 

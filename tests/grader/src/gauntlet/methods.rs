@@ -56,7 +56,7 @@ macro_rules! precision {
 
             /// Origin, direction, corners.
             pub(crate) fn numbers(ray: &Ray, triangle: &Triangle) -> [$Vector; 5] {
-                [ray.origin, ray.dir, triangle.a, triangle.b, triangle.c].map($convert)
+                [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map($convert)
             }
 
             pub(crate) fn in_range(ray: &Ray, t: $Float) -> Option<f32> {

@@ -9,17 +9,17 @@ use raykata::shape::Triangle;
 
 /// Folklore: "parallel" is a determinant below a fixed number, whatever the size of the triangle.
 pub(super) fn moeller_trumbore_cut_off(ray: &Ray, triangle: &Triangle) -> Option<f32> {
-    let det = (triangle.b - triangle.a).dot(ray.dir.cross(triangle.c - triangle.a));
+    let det = (triangle.b - triangle.a).dot(ray.direction.cross(triangle.c - triangle.a));
     if det.abs() < 1e-6 { None } else { moeller_trumbore(ray, triangle) }
 }
 
 /// Lecture 002 prints the terms of another numerator in the determinant (trap T1).
 pub(super) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
-    let [o, dir, corner, second, third] = numbers(ray, triangle);
+    let [o, direction, corner, second, third] = numbers(ray, triangle);
     let (first, other, rhs) = (second - corner, third - corner, o - corner);
     let [a, e, i] = first.to_array();
     let [b, f, j] = other.to_array();
-    let [c, g, k] = (-dir).to_array();
+    let [c, g, k] = (-direction).to_array();
     let [d, h, l] = rhs.to_array();
     let det = a * (f * k - g * j) + b * (g * l - h * k) + c * (h * j - f * l);
     let beta = (d * (f * k - g * j) + b * (g * l - h * k) + c * (h * j - f * l)) / det;

@@ -137,15 +137,15 @@ fn make(random: &mut Random, style: Style, aim: u64) -> Case {
         5 => a.lerp(b, l).lerp(c, random.unit()),
         _ => q,
     };
-    let mut dir = clamp(if aim == 0 { q - o } else { target - o });
-    if !dir.is_finite() {
-        dir = q;
+    let mut direction = clamp(if aim == 0 { q - o } else { target - o });
+    if !direction.is_finite() {
+        direction = q;
     }
     if aim == 6 || aim == 7 {
-        dir = random.vector(style);
+        direction = random.vector(style);
         for axis in 0..3 {
             if random.below(2) == 0 {
-                dir[axis] = if random.below(2) == 0 { 0.0 } else { -0.0 };
+                direction[axis] = if random.below(2) == 0 { 0.0 } else { -0.0 };
             }
         }
     }
@@ -154,10 +154,10 @@ fn make(random: &mut Random, style: Style, aim: u64) -> Case {
     match random.below(10) {
         0 => o.x = a.x.min(b.x),
         1 => o = a,
-        2 => dir = -dir,
+        2 => direction = -direction,
         _ => {}
     }
-    let mut ray = Ray::new(o, dir);
+    let mut ray = Ray::new(o, direction);
     match random.below(8) {
         0 => ray = ray.with_range(random.number(style), random.number(style).abs()),
         1 => ray = ray.with_range(f32::NEG_INFINITY, 1.0),

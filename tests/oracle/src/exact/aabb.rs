@@ -14,16 +14,16 @@ use raykata::shape::Cuboid;
 #[inline(always)]
 pub(super) fn span<R: Ring>(ray: &Ray, cuboid: &Cuboid, frame: &Frame) -> Option<Span<R>> {
     let (min, max, o) = (cuboid.min, cuboid.max, ray.origin);
-    if !min.cmple(max).all() || ray.dir == Vec3::ZERO {
+    if !min.cmple(max).all() || ray.direction == Vec3::ZERO {
         return Some(Span::Empty);
     }
     let (mut entries, mut exits) = ([None; 3], [None; 3]);
     let origin = frame.point::<R>(o);
     let low = minus(frame.point(min), origin);
     let high = minus(frame.point(max), origin);
-    let d = frame.dir::<R>(ray.dir);
+    let d = frame.direction::<R>(ray.direction);
     for axis in 0..3 {
-        let slope = ray.dir[axis];
+        let slope = ray.direction[axis];
         if slope == 0.0 {
             if o[axis] < min[axis] || o[axis] > max[axis] {
                 return Some(Span::Empty);
@@ -134,13 +134,13 @@ impl Question for Segment<'_> {
         let places = [self.cuboid.min, self.cuboid.max, self.ray.origin].map(|p| p.to_array());
         Frame {
             place: Scale::fine(places.as_flattened().iter().copied()),
-            dir: Scale::fine(self.ray.dir.to_array()),
+            direction: Scale::fine(self.ray.direction.to_array()),
             normal: Scale::NONE,
         }
     }
 
     fn bits(&self, frame: &Frame) -> u32 {
-        let root = RootBits { p: frame.place.bits() + 1, a: frame.dir.bits(), disc: 0 };
+        let root = RootBits { p: frame.place.bits() + 1, a: frame.direction.bits(), disc: 0 };
         let ends = [self.ray.t_min, self.ray.t_max].into_iter().filter(|end| end.is_finite());
         let rational = |(n, d): (u32, u32)| (root.p + d).max(root.a + n) + 1;
         ends.map(|end| rational(frame.fraction_bits(f64::from(end)))).fold(root.bits_to_compare(root), u32::max)
@@ -148,7 +148,7 @@ impl Question for Segment<'_> {
 
     #[inline(always)]
     fn ask<R: Ring>(&self, frame: &Frame) -> Option<Verdict> {
-        if self.ray.dir == Vec3::ZERO {
+        if self.ray.direction == Vec3::ZERO {
             // The segment is its origin, which is inside for each t of a segment that is not empty.
             let inside = Aabb::new(self.cuboid.min, self.cuboid.max).contains(self.ray.origin);
             return Some(if inside { Verdict::In } else { Verdict::Out });

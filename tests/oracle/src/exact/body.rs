@@ -74,28 +74,28 @@ impl Body {
         if let Body::Triangle(t) = self {
             let places = [t.a, t.b, t.c, ray.origin].map(|p| p.to_array());
             let place = Scale::fine(places.as_flattened().iter().copied());
-            return Frame { place, dir: Scale::fine(ray.dir.to_array()), normal: Scale::NONE };
+            return Frame { place, direction: Scale::fine(ray.direction.to_array()), normal: Scale::NONE };
         }
         joint_frame(ray, self, self, fine)
     }
 
     /// Bits of the largest root, and of all other integers made on the way to it.
     fn bits(&self, frame: &Frame) -> (RootBits, u32) {
-        let (place, dir, normal) = (frame.place.bits() + 1, frame.dir.bits(), frame.normal.bits());
+        let (place, direction, normal) = (frame.place.bits() + 1, frame.direction.bits(), frame.normal.bits());
         match self {
-            Body::Triangle(_) => triangle::bits(place, dir),
+            Body::Triangle(_) => triangle::bits(place, direction),
             Body::Plane(_) | Body::Disk(_) => {
-                let ratio = RootBits { p: place + normal + 2, a: dir + normal + 2, disc: 0 };
+                let ratio = RootBits { p: place + normal + 2, a: direction + normal + 2, disc: 0 };
                 // The rim: |a f + p d|² against r² a².
-                (ratio, 2 * (place + dir + normal + 3) + 3)
+                (ratio, 2 * (place + direction + normal + 3) + 3)
             }
-            Body::Sphere(_) => sphere::bits(place, dir),
+            Body::Sphere(_) => sphere::bits(place, direction),
             Body::Cuboid(_) => {
-                let ratio = RootBits { p: place, a: dir, disc: 0 };
+                let ratio = RootBits { p: place, a: direction, disc: 0 };
                 (ratio, ratio.bits_to_compare(ratio))
             }
-            Body::Cylinder(_) => quadric::cylinder_bits(place, dir),
-            Body::Cone(_) => quadric::cone_bits(place, dir),
+            Body::Cylinder(_) => quadric::cylinder_bits(place, direction),
+            Body::Cone(_) => quadric::cone_bits(place, direction),
         }
     }
 
@@ -138,16 +138,16 @@ fn joint_frame(ray: &Ray, one: &Body, other: &Body, fine: bool) -> Frame {
     }
     places[21..].copy_from_slice(&[r, r2]);
     let normals = [n.to_array(), n2.to_array()];
-    Frame { place: scale(&places), dir: scale(&ray.dir.to_array()), normal: scale(normals.as_flattened()) }
+    Frame { place: scale(&places), direction: scale(&ray.direction.to_array()), normal: scale(normals.as_flattened()) }
 }
 
 /// A plane, or of it what lies within `radius` of its point.
 fn flat<R: Ring>(ray: &Ray, plane: &Plane, radius: Option<f32>, frame: &Frame) -> Option<Option<Hit<R>>> {
     let f = minus(frame.point::<R>(ray.origin), frame.point(plane.point));
-    let d: Vector<R> = frame.dir(ray.dir);
+    let d: Vector<R> = frame.direction(ray.direction);
     let n = plane.normal.to_array().map(|x| R::input(x, frame.normal));
     let slope = dot(d, n);
-    if plane.normal == Vec3::ZERO || ray.dir == Vec3::ZERO || radius.is_some_and(|r| r <= 0.0) {
+    if plane.normal == Vec3::ZERO || ray.direction == Vec3::ZERO || radius.is_some_and(|r| r <= 0.0) {
         return Some(None);
     }
     if slope.sign()? == 0 {

@@ -207,5 +207,5 @@ fn is_finite(ray: &Ray, body: &Body) -> bool {
 
 #[inline]
 fn is_ray_finite(ray: &Ray) -> bool {
-    ray.origin.is_finite() && ray.dir.is_finite() && !ray.t_min.is_nan() && !ray.t_max.is_nan()
+    ray.origin.is_finite() && ray.direction.is_finite() && !ray.t_min.is_nan() && !ray.t_max.is_nan()
 }

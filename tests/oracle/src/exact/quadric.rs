@@ -41,12 +41,12 @@ fn joined<R>(slab: Slab<R>, entry: Option<Root<R>>, exit: Option<Root<R>>) -> Sp
 /// `a = |d × w|²`, `p = -(d × w)·(f × w)`, `c = |f × w|² - r² |w|²`, of degrees 4, 4 and 4, and
 /// `p² - a c = |w|² (r² |d × w|² - (w·(d × f))²)`.
 pub(super) fn cylinder<R: Ring>(ray: &Ray, cylinder: &Cylinder, frame: &Frame) -> Option<Span<R>> {
-    if cylinder.radius <= 0.0 || cylinder.base == cylinder.top || ray.dir == Vec3::ZERO {
+    if cylinder.radius <= 0.0 || cylinder.base == cylinder.top || ray.direction == Vec3::ZERO {
         return Some(Span::Empty);
     }
     let base = frame.point::<R>(cylinder.base);
     let (f, w) = (minus(frame.point(ray.origin), base), minus(frame.point(cylinder.top), base));
-    let d = frame.dir::<R>(ray.dir);
+    let d = frame.direction::<R>(ray.direction);
     let r = R::input(cylinder.radius, frame.place);
     let (square, full) = (r * r, dot(w, w));
     let dw = cross(d, w);
@@ -71,10 +71,10 @@ pub(super) fn cylinder<R: Ring>(ray: &Ray, cylinder: &Cylinder, frame: &Frame) -
 }
 
 /// Bits of the roots for coordinates of these bits, and of their comparison with the ends.
-pub(super) fn cylinder_bits(place: u32, dir: u32) -> (RootBits, u32) {
-    let (p, a) = (dir + 3 * place + 4, 2 * dir + 2 * place + 4);
-    let side = RootBits { p, a, disc: 2 * dir + 6 * place + 10 };
-    let end = RootBits { p: 2 * place + 3, a: dir + place + 2, disc: 0 };
+pub(super) fn cylinder_bits(place: u32, direction: u32) -> (RootBits, u32) {
+    let (p, a) = (direction + 3 * place + 4, 2 * direction + 2 * place + 4);
+    let side = RootBits { p, a, disc: 2 * direction + 6 * place + 10 };
+    let end = RootBits { p: 2 * place + 3, a: direction + place + 2, disc: 0 };
     (side, side.bits_to_compare(end).max(end.bits_to_compare(end)).max(4 * place + 6))
 }
 
@@ -83,12 +83,12 @@ pub(super) fn cylinder_bits(place: u32, dir: u32) -> (RootBits, u32) {
 /// `A = |w|² |d × w|² - r² s²`, `P = r² s g - |w|² (d × w)·(q × w)`, `C = |w|² |q × w|² - r² g²`, each of degree 6, and
 /// `P² - A C = |w|⁴ (r² |w × n|² - |w|² (w·n)²)` with `n = d × q`.
 pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Span<R>> {
-    if cone.radius <= 0.0 || cone.base == cone.apex || ray.dir == Vec3::ZERO {
+    if cone.radius <= 0.0 || cone.base == cone.apex || ray.direction == Vec3::ZERO {
         return Some(Span::Empty);
     }
     let apex = frame.point::<R>(cone.apex);
     let (q, w) = (minus(frame.point(ray.origin), apex), minus(frame.point(cone.base), apex));
-    let d = frame.dir::<R>(ray.dir);
+    let d = frame.direction::<R>(ray.direction);
     let r = R::input(cone.radius, frame.place);
     let (square, full) = (r * r, dot(w, w));
     let slope = dot(d, w);
@@ -129,9 +129,9 @@ pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Spa
 }
 
 /// Bits of the roots for coordinates of these bits, and of their comparison with the ends.
-pub(super) fn cone_bits(place: u32, dir: u32) -> (RootBits, u32) {
-    let (p, a) = (dir + 5 * place + 8, 2 * dir + 4 * place + 7);
-    let side = RootBits { p, a, disc: 2 * dir + 10 * place + 14 };
-    let end = RootBits { p: 2 * place + 3, a: dir + place + 2, disc: 0 };
+pub(super) fn cone_bits(place: u32, direction: u32) -> (RootBits, u32) {
+    let (p, a) = (direction + 5 * place + 8, 2 * direction + 4 * place + 7);
+    let side = RootBits { p, a, disc: 2 * direction + 10 * place + 14 };
+    let end = RootBits { p: 2 * place + 3, a: direction + place + 2, disc: 0 };
     (side, side.bits_to_compare(end).max(end.bits_to_compare(end)).max(6 * place + 7))
 }

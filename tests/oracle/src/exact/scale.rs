@@ -82,18 +82,18 @@ pub(super) struct Frame {
     /// Points and lengths.
     pub place: Scale,
     /// The direction of the ray.
-    pub dir: Scale,
+    pub direction: Scale,
     /// A normal, if there is one.
     pub normal: Scale,
 }
 
 impl Frame {
     /// The frame in which nothing is scaled, for filters of a degree too low for underflow.
-    pub const UNSCALED: Frame = Frame { place: Scale::ONE, dir: Scale::ONE, normal: Scale::ONE };
+    pub const UNSCALED: Frame = Frame { place: Scale::ONE, direction: Scale::ONE, normal: Scale::ONE };
 
     /// `t` in units of this frame counts `2^unit`.
     pub fn unit<R: Ring>(&self) -> i32 {
-        if R::EXACT { self.place.low - self.dir.low } else { self.place.high - self.dir.high }
+        if R::EXACT { self.place.low - self.direction.low } else { self.place.high - self.direction.high }
     }
 
     /// A point as integers.
@@ -104,8 +104,8 @@ impl Frame {
 
     /// The direction as integers.
     #[inline(always)]
-    pub fn dir<R: Ring>(&self, d: Vec3) -> Vector<R> {
-        d.to_array().map(|x| R::input(x, self.dir))
+    pub fn direction<R: Ring>(&self, d: Vec3) -> Vector<R> {
+        d.to_array().map(|x| R::input(x, self.direction))
     }
 
     /// How many bits the two integers of [`Ring::fraction`] have for this `t`.

@@ -11,11 +11,11 @@ use raykata::shape::Sphere;
 /// Both roots as `a t² - 2 p t + c = 0` with `a = d·d`, `p = -f·d`, `c = f·f - r²`, `f = o - c`; Lagrange's identity
 /// turns `p² - a c` into `r² a - |f × d|²`, which cancels less in the filter.
 pub(super) fn span<R: Ring>(ray: &Ray, sphere: &Sphere, frame: &Frame) -> Option<Span<R>> {
-    if sphere.radius <= 0.0 || ray.dir == glam::Vec3::ZERO {
+    if sphere.radius <= 0.0 || ray.direction == glam::Vec3::ZERO {
         return Some(Span::Empty);
     }
     let f = minus(frame.point::<R>(ray.origin), frame.point(sphere.center));
-    let d = frame.dir::<R>(ray.dir);
+    let d = frame.direction::<R>(ray.direction);
     let r = R::input(sphere.radius, frame.place);
     let (a, square, across) = (dot(d, d), r * r, cross(f, d));
     let disc = square * a - dot(across, across);
@@ -28,8 +28,8 @@ pub(super) fn span<R: Ring>(ray: &Ray, sphere: &Sphere, frame: &Frame) -> Option
 }
 
 /// Bits of the roots for coordinates of these bits.
-pub(super) fn bits(place: u32, dir: u32) -> (RootBits, u32) {
-    let root = RootBits { p: place + dir + 2, a: 2 * dir + 2, disc: 2 * (place + dir) + 5 };
+pub(super) fn bits(place: u32, direction: u32) -> (RootBits, u32) {
+    let root = RootBits { p: place + direction + 2, a: 2 * direction + 2, disc: 2 * (place + direction) + 5 };
     (root, root.disc.max(2 * place + 3))
 }
 

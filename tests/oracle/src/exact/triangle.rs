@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 fn forms<R: Ring>(ray: &Ray, triangle: &Triangle, frame: &Frame) -> ([R; 3], R) {
     let o = frame.point::<R>(ray.origin);
     let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|p| minus(frame.point(p), o));
-    let d = frame.dir::<R>(ray.dir);
+    let d = frame.direction::<R>(ray.direction);
     let bc = cross(b, c);
     ([dot(d, bc), dot(d, cross(c, a)), dot(d, cross(a, b))], dot(a, bc))
 }
@@ -41,8 +41,8 @@ pub(super) fn first<R: Ring>(ray: &Ray, triangle: &Triangle, frame: &Frame) -> O
 }
 
 /// Bits of the root for coordinates of these bits.
-pub(super) fn bits(place: u32, dir: u32) -> (RootBits, u32) {
-    let root = RootBits { p: 3 * place + 3, a: 2 * place + dir + 5, disc: 0 };
+pub(super) fn bits(place: u32, direction: u32) -> (RootBits, u32) {
+    let root = RootBits { p: 3 * place + 3, a: 2 * place + direction + 5, disc: 0 };
     (root, root.p.max(root.a))
 }
 
@@ -75,7 +75,7 @@ impl Question for Weights<'_> {
     }
 
     fn bits(&self, frame: &Frame) -> u32 {
-        bits(frame.place.bits() + 1, frame.dir.bits()).1
+        bits(frame.place.bits() + 1, frame.direction.bits()).1
     }
 
     fn ask<R: Ring>(&self, frame: &Frame) -> Option<Self::Answer> {

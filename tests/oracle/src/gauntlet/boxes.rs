@@ -23,10 +23,10 @@ pub fn at_a_corner(random: &mut Random) -> Option<SlabQuery> {
         let axis = random.below(3) as usize;
         origin[axis] = corner[axis];
     }
-    let mut dir = corner - origin;
+    let mut direction = corner - origin;
     if random.below(2) == 0 {
         // -0.0 is a zero as well.
-        dir = Vec3::select(dir.cmpeq(Vec3::ZERO), Vec3::splat(-0.0), dir);
+        direction = Vec3::select(direction.cmpeq(Vec3::ZERO), Vec3::splat(-0.0), direction);
     }
-    (dir != Vec3::ZERO).then(|| SlabQuery { ray: Ray::new(origin, dir), bounds })
+    (direction != Vec3::ZERO).then(|| SlabQuery { ray: Ray::new(origin, direction), bounds })
 }

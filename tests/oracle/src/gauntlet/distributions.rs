@@ -125,8 +125,8 @@ fn grazing(random: &mut Random) -> (Ray, Triangle) {
 
 fn scaled(random: &mut Random, size: f32) -> (Ray, Triangle) {
     let (ray, Triangle { a, b, c }) = edge(random);
-    let dir = size * ray.dir;
-    (Ray::new(size * ray.origin, dir), Triangle { a: size * a, b: size * b, c: size * c })
+    let direction = size * ray.direction;
+    (Ray::new(size * ray.origin, direction), Triangle { a: size * a, b: size * b, c: size * c })
 }
 
 fn small(random: &mut Random) -> (Ray, Triangle) {
@@ -145,9 +145,9 @@ fn ties(random: &mut Random) -> (Ray, Triangle) {
         let [a, step, c, origin] = [(); 4].map(|()| whole(random));
         // The edge has a whole point in its middle, and the ray goes there.
         let triangle = Triangle { a, b: a + 2.0 * step, c };
-        let dir = a + step - origin;
-        if step.cross(c - a).dot(dir) != 0.0 {
-            return (Ray::new(origin, dir), triangle);
+        let direction = a + step - origin;
+        if step.cross(c - a).dot(direction) != 0.0 {
+            return (Ray::new(origin, direction), triangle);
         }
     }
 }

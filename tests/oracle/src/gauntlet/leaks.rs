@@ -31,8 +31,8 @@ pub fn aimed(mesh: &Closed, aim: Aim, random: &mut Random) -> (Ray, u32) {
         Aim::Vertex => from,
     };
     let way = target - origin;
-    let dir = if random.below(2) == 0 { way } else { way.normalize_or(way) };
-    (Ray::new(origin, dir), vertex)
+    let direction = if random.below(2) == 0 { way } else { way.normalize_or(way) };
+    (Ray::new(origin, direction), vertex)
 }
 
 /// Whether the ray hits no triangle of the mesh. The fan around `vertex` is tried first: that is where the ray goes.

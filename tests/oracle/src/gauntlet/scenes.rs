@@ -134,7 +134,7 @@ impl HardScene {
             from[axis] = origin[axis];
             return Ray::new(from, target - from);
         }
-        let dir = target - origin;
-        Ray::new(origin, if dir == Vec3::ZERO || !dir.is_finite() { anywhere } else { dir })
+        let direction = target - origin;
+        Ray::new(origin, if direction == Vec3::ZERO || !direction.is_finite() { anywhere } else { direction })
     }
 }

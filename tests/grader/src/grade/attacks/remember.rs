@@ -68,7 +68,7 @@ impl Words for Vec3 {
 
 impl Words for &Ray {
     fn words(&self) -> Vec<u32> {
-        [self.origin.words(), self.dir.words(), vec![self.t_min.to_bits(), self.t_max.to_bits()]].concat()
+        [self.origin.words(), self.direction.words(), vec![self.t_min.to_bits(), self.t_max.to_bits()]].concat()
     }
 }
 "#;
@@ -81,7 +81,7 @@ fn body(function: &Function, table: &str) -> Result<String> {
         }
         "plane" => ("[ray.words(), point.words(), normal.words()]", "found", 2),
         "sphere_normal" => ("[center.words(), point.words()]", "vector", 3),
-        "face_forward" => ("[normal.words(), dir.words()]", "vector", 3),
+        "face_forward" => ("[normal.words(), direction.words()]", "vector", 3),
         other => bail!("nobody knows how to learn `{other}` by heart"),
     };
     let answer = match answer {
@@ -166,8 +166,8 @@ impl Transport for Listener {
                 pairs(asked, given, words, |normal| normal.to_array().map(f32::to_bits).to_vec())
             }
             ("face_forward", Request::FaceForward(asked), Answer::FaceForward(given)) => {
-                let words = |(normal, dir): &(glam::Vec3, glam::Vec3)| {
-                    vec![normal.to_array().to_vec(), dir.to_array().to_vec()]
+                let words = |(normal, direction): &(glam::Vec3, glam::Vec3)| {
+                    vec![normal.to_array().to_vec(), direction.to_array().to_vec()]
                 };
                 pairs(asked, given, words, |normal| normal.to_array().map(f32::to_bits).to_vec())
             }
@@ -189,7 +189,7 @@ fn pairs<Q, A>(
 }
 
 fn ray(ray: &raykata::ray::Ray) -> Vec<f32> {
-    [&ray.origin.to_array()[..], &ray.dir.to_array(), &[ray.t_min, ray.t_max]].concat()
+    [&ray.origin.to_array()[..], &ray.direction.to_array(), &[ray.t_min, ray.t_max]].concat()
 }
 
 /// Whether there is an answer, and which.
@@ -205,7 +205,7 @@ mod tests {
     fn the_answers_of_the_reference_are_written_down() {
         let known = known("face_forward").unwrap();
         assert!(known.len() > 500, "{}", known.len());
-        let stub = "use glam::Vec3;\npub fn face_forward(normal: Vec3, dir: Vec3) -> Vec3 { todo!() }\n";
+        let stub = "use glam::Vec3;\npub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 { todo!() }\n";
         let text = by_heart(stub, &["face_forward".into()]).unwrap();
         assert!(text.contains("static KNOWN") && !text.contains("todo!"));
         assert!(by_heart(stub, &["plan".into()]).unwrap_err().to_string().contains("`plan`"));

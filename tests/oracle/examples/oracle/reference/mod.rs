@@ -49,7 +49,7 @@ fn counted(ray: &Ray, time: Time, touches: bool) -> Answer {
 
 /// Möller and Trumbore 1997.
 pub fn triangle(ray: &Ray, triangle: &Triangle) -> Answer {
-    let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.dir].map(vector);
+    let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.direction].map(vector);
     let (e1, e2, s) = (minus(&b, &a), minus(&c, &a), minus(&o, &a));
     let (h, q) = (cross(&d, &e2), cross(&s, &e1));
     let det = dot(&e1, &h);
@@ -67,7 +67,7 @@ pub fn triangle(ray: &Ray, triangle: &Triangle) -> Answer {
 
 /// The plane through a point.
 pub fn plane(ray: &Ray, plane: &Plane) -> Answer {
-    let [p, n, o, d] = [plane.point, plane.normal, ray.origin, ray.dir].map(vector);
+    let [p, n, o, d] = [plane.point, plane.normal, ray.origin, ray.direction].map(vector);
     let slope = dot(&d, &n);
     if slope.sign() == 0 { MISS } else { counted(ray, Time::ratio(dot(&minus(&p, &o), &n), slope), false) }
 }
@@ -77,8 +77,8 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Answer {
     let (_, Some(Time::Ratio(n, d))) = plane(ray, &Plane { point: disk.center, normal: disk.normal }) else {
         return MISS;
     };
-    let [c, o, dir] = [disk.center, ray.origin, ray.dir].map(vector);
-    let (away, along) = (scaled(&d, &minus(&o, &c)), scaled(&n, &dir));
+    let [c, o, direction] = [disk.center, ray.origin, ray.direction].map(vector);
+    let (away, along) = (scaled(&d, &minus(&o, &c)), scaled(&n, &direction));
     let offset = [0, 1, 2].map(|i| &away[i] + &along[i]);
     let reach = &d * &number(disk.radius);
     match (&dot(&offset, &offset) - &(&reach * &reach)).sign() {
@@ -112,7 +112,7 @@ fn roots(a: Dyadic, b: Dyadic, c: Dyadic) -> Option<[Time; 2]> {
 
 /// The sphere, `b² - a c` as it stands.
 pub fn sphere(ray: &Ray, sphere: &Sphere) -> Answer {
-    let [center, o, d] = [sphere.center, ray.origin, ray.dir].map(vector);
+    let [center, o, d] = [sphere.center, ray.origin, ray.direction].map(vector);
     let f = minus(&o, &center);
     let r = number(sphere.radius);
     if sphere.radius <= 0.0 || dot(&d, &d).sign() == 0 {
@@ -128,7 +128,7 @@ pub fn sphere(ray: &Ray, sphere: &Sphere) -> Answer {
 fn slabs(ray: &Ray, min: Vec3, max: Vec3) -> Option<(Vec<Time>, Vec<Time>)> {
     let (mut entries, mut exits) = (Vec::new(), Vec::new());
     for axis in 0..3 {
-        let [low, high, o, d] = [min[axis], max[axis], ray.origin[axis], ray.dir[axis]];
+        let [low, high, o, d] = [min[axis], max[axis], ray.origin[axis], ray.direction[axis]];
         if low > high || (d == 0.0 && (o < low || o > high)) {
             return None;
         }
@@ -184,7 +184,7 @@ fn between_planes(
 
 /// The cylinder: the parts of origin and direction at right angles to the axis, times `w·w`, against the radius.
 pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Answer {
-    let [base, top, o, d] = [cylinder.base, cylinder.top, ray.origin, ray.dir].map(vector);
+    let [base, top, o, d] = [cylinder.base, cylinder.top, ray.origin, ray.direction].map(vector);
     let (w, f, r) = (minus(&top, &base), minus(&o, &base), number(cylinder.radius));
     let full = dot(&w, &w);
     if cylinder.radius <= 0.0 || full.sign() == 0 || dot(&d, &d).sign() == 0 {
@@ -207,7 +207,7 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Answer {
 
 /// The cone: `w·w (|w|² |x|² - (x·w)²) <= r² (x·w)²`.
 pub fn cone(ray: &Ray, cone: &Cone) -> Answer {
-    let [base, apex, o, d] = [cone.base, cone.apex, ray.origin, ray.dir].map(vector);
+    let [base, apex, o, d] = [cone.base, cone.apex, ray.origin, ray.direction].map(vector);
     let (w, q, r) = (minus(&base, &apex), minus(&o, &apex), number(cone.radius));
     let full = dot(&w, &w);
     if cone.radius <= 0.0 || full.sign() == 0 || dot(&d, &d).sign() == 0 {

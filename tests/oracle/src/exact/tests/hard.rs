@@ -89,7 +89,7 @@ fn no_special_value_panics() {
         let ray = Ray::new(vector(0), vector(1)).with_range(value(2), value(3));
         let (a, b, c, radius) = (vector(2), vector(3), Vec3::ONE, value(1));
         let finite = |v: &[Vec3]| v.iter().all(|v| v.is_finite());
-        let ray_counts = finite(&[ray.origin, ray.dir]) && !ray.t_min.is_nan() && !ray.t_max.is_nan();
+        let ray_counts = finite(&[ray.origin, ray.direction]) && !ray.t_min.is_nan() && !ray.t_max.is_nan();
         for body in [
             Body::Triangle(Triangle { a, b, c }),
             Body::Plane(Plane { point: a, normal: b }),

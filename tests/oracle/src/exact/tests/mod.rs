@@ -78,7 +78,7 @@ fn orders_of_surds_agree_with_big_integers() {
         let (case, other) = (cases::any(5, number), cases::any(6, number));
         let ray = &case.ray;
         let mut twin = case.sphere;
-        twin.center += 2.0 * ray.dir.any_orthogonal_vector().normalize_or_zero().round();
+        twin.center += 2.0 * ray.direction.any_orthogonal_vector().normalize_or_zero().round();
         let asked = [
             (Body::Sphere(case.sphere), reference::sphere(ray, &case.sphere)),
             (Body::Sphere(twin), reference::sphere(ray, &twin)),
