@@ -4,7 +4,7 @@
 use crate::count::{Counts, Event, Tally};
 use crate::effects::{Effect, Effects};
 use crate::film::Film;
-use crate::kit::{Function, Mishap, WeightedColor, mishap, note_unwound, take_unwound};
+use crate::kit::{Function, KitError, WeightedColor, kit_error, note_unwound, take_unwound};
 use crate::random::{Points, Purpose, Stratum};
 use crate::scene::Sampler;
 use glam::Vec3;
@@ -131,7 +131,7 @@ impl CameraSample {
 ///
 /// # Panics
 ///
-/// A panic of `radiance` or `filter` is passed on to the caller, as a [`Mishap`] with the place where it
+/// A panic of `radiance` or `filter` is passed on to the caller, as a [`KitError`] with the place where it
 /// happened.
 pub fn render<T: Tally>(
     settings: &FrameSettings,
@@ -148,8 +148,8 @@ pub fn render<T: Tally>(
             return Ok(None);
         }
         // Caught where it happens: a panic that crosses threads forgets its file and line.
-        let tile = mishap::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
-            .map_err(|mishap| (mishap, take_unwound()))
+        let tile = kit_error::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
+            .map_err(|error| (error, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
         let pixels = tile.pixels.len() as u64;
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
@@ -171,9 +171,9 @@ pub fn render<T: Tally>(
     };
 
     let tiles: Vec<Option<Tile>> =
-        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(mishap, function)| {
+        tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(error, function)| {
             note_unwound(function);
-            mishap::unwind(mishap)
+            kit_error::unwind(error)
         });
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
@@ -189,7 +189,7 @@ pub fn render<T: Tally>(
 }
 
 /// Why a tile has no pixels, and the function of the student that was running.
-type Broken = (Mishap, Option<Function>);
+type Broken = (KitError, Option<Function>);
 
 struct Tile {
     x: u32,

@@ -6,7 +6,7 @@
 //! elsewhere requests come through standard input and replies leave through standard output.
 
 use crate::frame::Watch;
-use crate::kit::{Answer, Mishap, Request, StudentKit, mishap};
+use crate::kit::{Answer, KitError, Request, StudentKit, kit_error};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::io::{self, Read, Write};
 use std::sync::Mutex;
@@ -38,7 +38,7 @@ pub enum Reply {
     /// The answer to the request.
     Answer(Box<Answer>),
     /// The reason why there is no answer.
-    Mishap(Mishap),
+    KitError(KitError),
 }
 
 /// Writes one message to the pipe: four bytes of length, little-endian, then the message itself. Flushes the
@@ -98,7 +98,7 @@ pub fn serve(functions: impl StudentKit) {
 }
 
 /// Answers requests with any function in place of a kit, until the pipe closes. A panic of `answer` is caught
-/// and sent as [`Reply::Mishap`].
+/// and sent as [`Reply::KitError`].
 pub fn serve_with(answer: &Answering<'_>) {
     let work = || {
         let (reader, writer) = pipes()?;
@@ -133,9 +133,9 @@ fn answer_all(answer: &Answering<'_>, mut reader: impl Read, writer: impl Write 
     };
     loop {
         let request: Request = receive(&mut reader)?;
-        let reply = match mishap::catch(|| answer(&request, &Relay(&say))) {
+        let reply = match kit_error::catch(|| answer(&request, &Relay(&say))) {
             Ok(answer) => Reply::Answer(Box::new(answer)),
-            Err(mishap) => Reply::Mishap(mishap),
+            Err(error) => Reply::KitError(error),
         };
         say(&reply)?;
     }
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_message_survives_the_pipe_and_a_torn_one_is_an_error() {
-        let message = Reply::Mishap(Mishap::Crashed { how: "a test".into() });
+        let message = Reply::KitError(KitError::Crashed { how: "a test".into() });
         let mut bytes = Vec::new();
         send(&mut bytes, &message).expect("written");
         assert_eq!(receive::<Reply>(&mut &bytes[..]).expect("read"), message);

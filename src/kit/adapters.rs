@@ -100,7 +100,7 @@ impl<F: StudentKit> Frames for Linked<F> {
 
 fn frames<F: StudentKit>() -> &'static dyn Frames {
     F::renderer().unwrap_or_else(|| {
-        mishap::unwind(Mishap::Nonsense {
+        kit_error::unwind(KitError::Malformed {
             what: "a frame was asked of a kit that was built without frames".into(),
         })
     })

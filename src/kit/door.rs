@@ -17,14 +17,14 @@ use glam::{Affine3A, UVec3, Vec2, Vec3};
 
 /// Carries a request to the process that contains the student's code, and brings back the answer.
 ///
-/// A call without an answer (student code that panics, loops or crashes) unwinds with a [`Mishap`], as a
-/// panic of linked student code does; [`mishap::catch`] catches both.
+/// A call without an answer (student code that panics, loops or crashes) unwinds with a [`KitError`], as a
+/// panic of linked student code does; [`kit_error::catch`] catches both.
 pub trait Transport: Sync {
     /// Sends `request` and waits for its answer. `watch` receives the progress of a frame, and can cancel it.
     ///
     /// # Panics
     ///
-    /// Unwinds with a [`Mishap`] if there is no answer.
+    /// Unwinds with a [`KitError`] if there is no answer.
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer;
 }
 
@@ -68,7 +68,7 @@ impl<T> Kit for T where
 ///
 /// # Panics
 ///
-/// Every function unwinds with a [`Mishap`] if student code panics, if its process ends, or if the kit was
+/// Every function unwinds with a [`KitError`] if student code panics, if its process ends, or if the kit was
 /// built without frames.
 pub trait Frames {
     /// Renders `job`; returns `None` if `watch` cancelled it.
@@ -146,7 +146,7 @@ macro_rules! door {
             $(fn $name(&self, queries: &[$Query]) -> Vec<$Answer> {
                 match self.0.call(Request::$Message(queries.to_vec()), &crate::frame::Unwatched) {
                     Answer::$Message(answers) if answers.len() == queries.len() => answers,
-                    answer => mishap::wrong_answer(&answer),
+                    answer => kit_error::wrong_answer(&answer),
                 }
             })*
         })*
@@ -179,24 +179,24 @@ impl<T: Transport> Frames for Door<T> {
         match self.0.call(Request::Render(Box::new(job.clone())), watch) {
             // The other side says how large its picture is; what is done with it relies on that.
             Answer::Render(Some(rendering)) if !job.fits(&rendering.film) => {
-                mishap::wrong_answer(&rendering.film)
+                kit_error::wrong_answer(&rendering.film)
             }
             Answer::Render(rendering) => rendering.map(|rendering| *rendering),
-            answer => mishap::wrong_answer(&answer),
+            answer => kit_error::wrong_answer(&answer),
         }
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
         match self.0.call(Request::Trace(Box::new(job.clone()), x, y), &crate::frame::Unwatched) {
             Answer::Trace(rays) => rays,
-            answer => mishap::wrong_answer(&answer),
+            answer => kit_error::wrong_answer(&answer),
         }
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {
         match self.0.call(Request::Outlines(Box::new(job.clone()), depth), &crate::frame::Unwatched) {
             Answer::Outlines(edges) => edges,
-            answer => mishap::wrong_answer(&answer),
+            answer => kit_error::wrong_answer(&answer),
         }
     }
 
@@ -204,7 +204,7 @@ impl<T: Transport> Frames for Door<T> {
         let request = Request::FirstHits(Box::new(job.clone()), rays.to_vec());
         match self.0.call(request, &crate::frame::Unwatched) {
             Answer::FirstHits(hits) if hits.len() == rays.len() => hits,
-            answer => mishap::wrong_answer(&answer),
+            answer => kit_error::wrong_answer(&answer),
         }
     }
 }

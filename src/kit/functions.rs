@@ -4,7 +4,7 @@
 use super::adapters::{divide, look, search};
 use super::example::Example;
 use super::types::*;
-use super::{Mishap, mishap};
+use super::{KitError, kit_error};
 use std::cell::Cell as Local;
 use std::fmt;
 
@@ -104,7 +104,7 @@ macro_rules! functions {
                     let _ = $adapter;
                 },)*)*
             };
-            let written = !matches!(mishap::catch(call), Err(Mishap::NotWritten { .. }));
+            let written = !matches!(kit_error::catch(call), Err(KitError::NotWritten { .. }));
             take_unwound();
             written
         }

@@ -11,7 +11,7 @@ mod economy;
 mod example;
 mod functions;
 mod list;
-pub mod mishap;
+pub mod kit_error;
 mod partitions;
 mod recursion;
 mod scene_graph;
@@ -39,7 +39,7 @@ pub use economy::{
 pub use functions::Running;
 pub(crate) use functions::note_unwound;
 pub use functions::{Function, StudentFunctions, is_written, take_unwound};
-pub use mishap::Mishap;
+pub use kit_error::KitError;
 pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,

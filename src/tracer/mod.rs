@@ -31,7 +31,7 @@ use crate::count::{Counts, Event, Tally, Uncounted};
 use crate::film::Film;
 use crate::frame::{CameraSample, Unwatched, Watch};
 use crate::kit::{
-    Frames, Mishap, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor, mishap,
+    Frames, KitError, RenderJob, Rendering, StudentFunctions, TracedRay, View, WeightedColor, kit_error,
     take_unwound,
 };
 use crate::ray::Ray;
@@ -93,15 +93,15 @@ fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R)
     let mut notes = Vec::new();
     loop {
         take_unwound();
-        let mishap = match mishap::catch(|| work(&written)) {
+        let error = match kit_error::catch(|| work(&written)) {
             Ok(result) => return (result, notes),
-            Err(mishap) => mishap,
+            Err(error) => error,
         };
-        match (&mishap, take_unwound()) {
-            (Mishap::NotWritten { task, place }, Some(function)) if written.leave_out(function) => {
+        match (&error, take_unwound()) {
+            (KitError::NotWritten { task, place }, Some(function)) if written.leave_out(function) => {
                 notes.push(format!("{function} is left out, because it is not finished: {place}: {task}"));
             }
-            _ => mishap::unwind(mishap),
+            _ => kit_error::unwind(error),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::knobs::{Knobs, Threads};
 use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use raykata::film::{Film, encode_srgb};
-use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
+use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::scene::{Accelerator, Encoding};
 use std::path::{Path, PathBuf};
 
@@ -106,7 +106,7 @@ pub fn run(options: &Options) -> Result<()> {
         count: !options.no_counts,
     };
     let bar = FrameBar::new("");
-    let rendering = mishap::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
+    let rendering = kit_error::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
     bar.finish();
 
     let write = match format {
@@ -125,7 +125,7 @@ pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn K
         Encoding::Srgb => film.write_png(out, encode_srgb)?,
         Encoding::Gamma2 => {
             let components: Vec<f32> = film.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
-            let bytes = mishap::catch(|| kit.encode_gamma(&components))?;
+            let bytes = kit_error::catch(|| kit.encode_gamma(&components))?;
             film.write_png_bytes(out, &bytes)?;
         }
     }

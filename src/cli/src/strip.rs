@@ -9,7 +9,7 @@ use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{RenderJob, View, mishap};
+use raykata::kit::{RenderJob, View, kit_error};
 use raykata::scene::{Quality, Sampler, Scene};
 use std::path::{Path, PathBuf};
 
@@ -89,7 +89,7 @@ pub fn run(options: &Options) -> Result<()> {
     println!("{:>15}  {:>14}  {:>14}  {:>9}", "picture", "reflected rays", "refracted rays", "seconds");
     for (column, (what, scene)) in pictures.into_iter().enumerate() {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
-        let rendering = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+        let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         let (counts, seconds) = (rendering.counts, rendering.render_seconds);
         println!(
             "{what:>15}  {:>14}  {:>14}  {seconds:>9.3}",

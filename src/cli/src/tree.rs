@@ -4,7 +4,7 @@ use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::{Choice, Need, Source, root};
 use crate::report::{load_scene, say};
 use anyhow::{Result, bail};
-use raykata::kit::{RayKind, RenderJob, TracedRay, View, mishap};
+use raykata::kit::{RayKind, RenderJob, TracedRay, View, kit_error};
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -81,7 +81,7 @@ pub fn run(options: &Options) -> Result<()> {
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: false };
-    let rays = mishap::catch(|| source.fresh().trace(&job, x, y))?;
+    let rays = kit_error::catch(|| source.fresh().trace(&job, x, y))?;
     say(format_args!("{}", show(&rays, options.format)?));
     Ok(())
 }

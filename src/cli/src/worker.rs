@@ -1,4 +1,4 @@
-//! The other side of a worker: starts the process, asks, and turns whatever happens into an answer or a [`Mishap`].
+//! The other side of a worker: starts the process, asks, and turns whatever happens into an answer or a [`KitError`].
 //!
 //! A process that panics, loops, overflows its stack or ends costs the call that it was asked, and nothing else: the
 //! next call starts a new one.
@@ -9,7 +9,7 @@ mod watchdog;
 pub use autopsy::last_words;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Mishap, Request, Transport, mishap};
+use raykata::kit::{Answer, KitError, Request, Transport, kit_error};
 use raykata::worker::{self, LONGEST_MESSAGE, Reply};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -97,21 +97,21 @@ impl Worker {
         }
     }
 
-    fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, Mishap> {
+    fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
         let mut slot = lock(&self.process);
         let start = || Process::start(&self.program, self.launcher.clone());
         let mut process = match slot.take().map_or_else(start, Ok) {
             Ok(process) => process,
-            Err(error) => return Err(Mishap::Crashed { how: format!("it cannot be started: {error}") }),
+            Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
         };
         match process.ask(request, watch, patience) {
-            Ok(Some(Reply::Mishap(mishap))) => {
+            Ok(Some(Reply::KitError(error))) => {
                 *slot = Some(process);
-                Err(shortened(mishap))
+                Err(shortened(error))
             }
             // That is for frames that are no longer wanted: from here it could be out of step.
             Ok(Some(Reply::Answer(answer))) if matches!(*answer, Answer::Render(None)) => {
-                Err(Mishap::Nonsense { what: "no picture".into() })
+                Err(KitError::Malformed { what: "no picture".into() })
             }
             Ok(Some(Reply::Answer(answer))) => {
                 *slot = Some(process);
@@ -131,12 +131,12 @@ impl Transport for Worker {
         let patience =
             if matches!(request, Request::Render(_)) { self.frame_patience } else { self.call_patience };
         let mut answer = self.ask(&request, watch, patience);
-        let late = |answer: &Result<Answer, Mishap>| matches!(answer, Err(Mishap::TimedOut { .. }));
+        let late = |answer: &Result<Answer, KitError>| matches!(answer, Err(KitError::TimedOut { .. }));
         if late(&answer) && self.asks_again.load(Ordering::Relaxed) {
             answer = self.ask(&request, watch, FRAME_PATIENCE);
             self.asks_again.store(!late(&answer), Ordering::Relaxed);
         }
-        answer.unwrap_or_else(|mishap| mishap::unwind(mishap))
+        answer.unwrap_or_else(|error| kit_error::unwind(error))
     }
 }
 
@@ -204,7 +204,7 @@ impl Process {
     }
 
     /// Why the process no longer answers, or what is wrong with what it says.
-    fn post_mortem(mut self, error: &io::Error, patience: Duration) -> Mishap {
+    fn post_mortem(mut self, error: &io::Error, patience: Duration) -> KitError {
         let timed_out = self.watchdog.has_barked();
         // That is how a message is refused; the pipe fails in other ways.
         let nonsense = !timed_out && error.kind() == io::ErrorKind::Other;
@@ -217,10 +217,10 @@ impl Process {
         let stderr =
             std::mem::replace(&mut self.stderr, std::thread::spawn(String::new)).join().unwrap_or_default();
         if timed_out {
-            return Mishap::TimedOut { seconds: patience.as_secs() };
+            return KitError::TimedOut { seconds: patience.as_secs() };
         }
         if nonsense {
-            return Mishap::Nonsense { what: error.to_string() };
+            return KitError::Malformed { what: error.to_string() };
         }
         cause_of_death(status, &stderr, self.launcher.as_deref(), patience)
     }

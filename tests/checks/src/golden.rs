@@ -1,7 +1,7 @@
 //! Golden texts: trees, tables and counts that any correct solution prints alike, kept by insta in `tests/golden`.
 
 use crate::broken::{Broken, Outcome};
-use raykata::kit::mishap;
+use raykata::kit::kit_error;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static SEALED: AtomicBool = AtomicBool::new(false);
@@ -28,7 +28,7 @@ pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
     let golden = golden.splitn(3, "---\n").nth(2).unwrap_or("(there is no golden text)");
     let same = match is_sealed() {
         true => golden.trim_end() == text.trim_end(),
-        false => mishap::catch(|| settings.bind(|| insta::assert_snapshot!(name, text))).is_ok(),
+        false => kit_error::catch(|| settings.bind(|| insta::assert_snapshot!(name, text))).is_ok(),
     };
     if same {
         return Ok(());

@@ -6,7 +6,7 @@ use crate::drawn::{Drawn, Values};
 use crate::rubric;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use raykata::kit::{Kit, Mishap, mishap};
+use raykata::kit::{Kit, KitError, kit_error};
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::Location;
@@ -88,16 +88,16 @@ impl<'a> Trial<'a> {
             Some(drawn) => drawn.get(key, &draw),
             None => draw(),
         };
-        let broken = match mishap::catch(|| law.judge(&*values)) {
+        let broken = match kit_error::catch(|| law.judge(&*values)) {
             Ok(outcomes) => {
                 outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
             }
             // Some input of the batch made the code panic: ask one at a time which.
-            Err(Mishap::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
+            Err(KitError::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
                 let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
                 Some((i, judge_one(&judge, &input)?))
             }),
-            Err(mishap) => mishap::unwind(mishap),
+            Err(error) => kit_error::unwind(error),
         };
         let Some((index, broken)) = broken else { return Ok(()) };
         // What an input can shrink to is only needed here, so it is drawn again.
@@ -214,13 +214,13 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T
 
 /// What is wrong with the answer to one input, a panic included.
 fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Option<Broken> {
-    match mishap::catch(judge) {
+    match kit_error::catch(judge) {
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
-        Err(Mishap::Panicked { message, place }) => {
+        Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
             Some(Broken::told(input(), panic, "an answer", "the definition"))
         }
-        Err(mishap) => mishap::unwind(mishap),
+        Err(error) => kit_error::unwind(error),
     }
 }
 
@@ -253,7 +253,7 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
 }
 
 /// Whether the law holds, or why nobody can say.
-pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, Mishap> {
+pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, KitError> {
     examine_with(check, kit, seed, None)
 }
 
@@ -263,7 +263,7 @@ pub fn examine_with(
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
     drawn: Option<Arc<Drawn>>,
-) -> Result<Outcome, Mishap> {
+) -> Result<Outcome, KitError> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
     // The thread is left behind if it hangs: it ends with the process.
@@ -272,23 +272,23 @@ pub fn examine_with(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let trial = Trial { drawn, ..Trial::new(&*kit, check.name, seed) };
-            let _ = send.send(mishap::catch(|| (check.law)(&trial)));
+            let _ = send.send(kit_error::catch(|| (check.law)(&trial)));
         });
     if let Err(error) = spawned {
-        return Err(Mishap::Crashed { how: format!("the check could not be started: {error}") });
+        return Err(KitError::Crashed { how: format!("the check could not be started: {error}") });
     }
-    outcome.recv_timeout(PATIENCE).unwrap_or(Err(Mishap::TimedOut { seconds: PATIENCE.as_secs() }))
+    outcome.recv_timeout(PATIENCE).unwrap_or(Err(KitError::TimedOut { seconds: PATIENCE.as_secs() }))
 }
 
 /// The same in the words that a student reads.
-pub fn verdict(check: &Check, examined: Result<Outcome, Mishap>) -> Verdict {
+pub fn verdict(check: &Check, examined: Result<Outcome, KitError>) -> Verdict {
     let entry = rubric::entry(check.stage, check.name);
     match examined {
         Ok(Ok(())) => Verdict::Passed,
         Ok(Err(broken)) => Verdict::Failed(broken.message(check.name, &entry)),
-        Err(Mishap::NotWritten { task, place }) => Verdict::NotWritten { task, place },
-        Err(mishap) => Verdict::Failed(format!(
-            "{}  {mishap}\n{}",
+        Err(KitError::NotWritten { task, place }) => Verdict::NotWritten { task, place },
+        Err(error) => Verdict::Failed(format!(
+            "{}  {error}\n{}",
             entry.header(),
             broken::next_commands(check.stage, check.name)
         )),
@@ -312,14 +312,14 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use raykata::kit::Mishap;
+    use raykata::kit::KitError;
 
-    /// A trial whose kit is never asked: every call to it would be a mishap of its own.
+    /// A trial whose kit is never asked: every call to it would be a error of its own.
     fn with_trial<T>(check: impl FnOnce(&Trial<'_>) -> T) -> T {
         struct Silent;
         impl raykata::kit::Transport for Silent {
             fn call(&self, _: raykata::kit::Request, _: &dyn raykata::frame::Watch) -> raykata::kit::Answer {
-                mishap::unwind(Mishap::Crashed { how: "nobody is there".into() })
+                kit_error::unwind(KitError::Crashed { how: "nobody is there".into() })
             }
         }
         check(&Trial::new(&raykata::kit::Door(Silent), "a_check", 1))
@@ -356,7 +356,7 @@ mod tests {
     #[allow(clippy::todo, reason = "a gap is what this is about")]
     fn a_gap_stays_a_gap() {
         let law = |_: &[i32]| -> Vec<Outcome> { todo!("write it") };
-        let gap = mishap::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));
-        assert!(matches!(gap, Err(Mishap::NotWritten { .. })), "{gap:?}");
+        let gap = kit_error::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));
+        assert!(matches!(gap, Err(KitError::NotWritten { .. })), "{gap:?}");
     }
 }

@@ -111,7 +111,7 @@ pub fn lacks(
         let (words, scene) = match &one.pixels {
             _ if one == whole => continue,
             Ok(_) => (one.notes.join("; "), format!("{} ({})", one.scene, one.hash())),
-            Err(mishap) => (without_lines(mishap).replace("\n ", ":"), one.scene.clone()),
+            Err(error) => (without_lines(error).replace("\n ", ":"), one.scene.clone()),
         };
         match said.iter_mut().find(|(known, _)| *known == words) {
             Some((_, scenes)) => scenes.push(scene),

@@ -5,7 +5,7 @@ use anyhow::{Context, Result, anyhow};
 use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, mishap};
+use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, kit_error};
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod, load};
 use sha2::{Digest, Sha256};
 use std::fmt;
@@ -111,7 +111,7 @@ fn primitives_of(scene: &Scene, reference: &dyn Kit) -> Result<u64> {
     let mut scene = scene.clone();
     (scene.film.width, scene.film.height) = (1, 1);
     let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-    let frame = mishap::catch(|| reference.render(&job, &Unwatched))?;
+    let frame = kit_error::catch(|| reference.render(&job, &Unwatched))?;
     Ok(frame.context("nobody cancels")?.primitives)
 }
 
@@ -169,8 +169,8 @@ fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
 fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads: 1, count: true };
     let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
-    let normals = mishap::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
-    let frame = mishap::catch(|| kit.render(&job, &Unwatched));
+    let normals = kit_error::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
+    let frame = kit_error::catch(|| kit.render(&job, &Unwatched));
     let seen = frame.as_ref().ok().and_then(Option::as_ref);
     let made_of = seen.map(|frame| (frame.primitives, frame.structure.map(|size| (size.nodes, size.levels))));
     let notes = seen.map_or_else(Vec::new, |frame| frame.notes.clone());
@@ -178,10 +178,10 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let pixels = match frame {
         Ok(Some(frame)) => Ok(bits(&frame)),
         Ok(None) => Err("cancelled".into()),
-        Err(mishap) => Err(mishap.to_string()),
+        Err(error) => Err(error.to_string()),
     };
     let rays = [(SIZE.0 / 2, SIZE.1 / 2), (5, 12)];
-    let rays = rays.iter().flat_map(|&(x, y)| mishap::catch(|| kit.trace(&job, x, y)).unwrap_or_default());
+    let rays = rays.iter().flat_map(|&(x, y)| kit_error::catch(|| kit.trace(&job, x, y)).unwrap_or_default());
     Shown { scene: name.into(), pixels, normals, made_of, notes, counts, rays: rays.collect() }
 }
 

@@ -5,7 +5,7 @@ use anyhow::Result;
 use glam::Vec3;
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
 use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
-use raykata::kit::{Kit, TriangleHit, TriangleQuery, mishap};
+use raykata::kit::{Kit, TriangleHit, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use raykata_cli::cost::Summary;
@@ -46,9 +46,9 @@ pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
             ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
         };
         // A function that is not written yet is left out, with a word about it.
-        match mishap::catch(|| answer(&[example])) {
+        match kit_error::catch(|| answer(&[example])) {
             Ok(_) => rows.push(Row { name: name.into(), answer: Box::new(answer), method: None }),
-            Err(mishap) => println!("{name} is left out: {mishap}"),
+            Err(error) => println!("{name} is left out: {error}"),
         }
     }
     rows

@@ -5,7 +5,7 @@ mod asking;
 
 use asking::{ask, how_it_crashed, query};
 use raykata::frame::{Unwatched, Watch};
-use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, StudentKit, View, mishap};
+use raykata::kit::{Door, Frames, KitError, RenderJob, Shapes, StudentKit, View, kit_error};
 use raykata_cli::worker::Worker;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -22,7 +22,7 @@ fn an_honest_answer_crosses_the_pipe() {
 
 #[test]
 fn a_panic_keeps_its_place() {
-    let Err(Mishap::Panicked { message, place }) = ask(&door(), -1.0) else { panic!("no panic") };
+    let Err(KitError::Panicked { message, place }) = ask(&door(), -1.0) else { panic!("no panic") };
     assert_eq!(message, "on purpose");
     assert!(place.contains("misbehaving/src/main.rs:"), "{place}");
 }
@@ -41,7 +41,7 @@ fn each_way_to_die_is_told_and_the_next_call_is_answered() {
 fn an_endless_loop_ends() {
     let door = door();
     let started = Instant::now();
-    assert_eq!(ask(&door, -5.0), Err(Mishap::TimedOut { seconds: 2 }));
+    assert_eq!(ask(&door, -5.0), Err(KitError::TimedOut { seconds: 2 }));
     // Not how fast it is, but that it ends at all: without the watchdog this test hangs.
     assert!(started.elapsed() < Duration::from_secs(60));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
@@ -55,12 +55,12 @@ fn what_is_late_on_a_busy_machine_is_no_endless_loop() {
     // The range of the ray tells runs side by side apart.
     let mut late = query(-9.0);
     late.ray.t_max = std::process::id() as f32;
-    let ask_late = |door: &Door<Worker>| mishap::catch(|| door.sphere_algebraic(&[late]));
+    let ask_late = |door: &Door<Worker>| kit_error::catch(|| door.sphere_algebraic(&[late]));
 
     let hasty = Door(Worker::hasty(program(), patience));
     assert_eq!(ask(&hasty, 10.0), Ok(vec![Some(10.0)]));
     assert!(ask_late(&hasty).is_ok());
-    assert_eq!(ask_late(&Door(Worker::new(program(), patience))), Err(Mishap::TimedOut { seconds: 2 }));
+    assert_eq!(ask_late(&Door(Worker::new(program(), patience))), Err(KitError::TimedOut { seconds: 2 }));
     // The process that was ended has left its mark; this takes it away.
     assert!(ask_late(&hasty).is_ok());
 }
@@ -74,7 +74,7 @@ fn what_student_code_prints_does_not_reach_the_pipe() {
 fn an_answer_of_the_wrong_kind_or_length_is_refused() {
     let door = door();
     for radius in [-7.0, -8.0] {
-        assert!(matches!(ask(&door, radius), Err(Mishap::Nonsense { .. })));
+        assert!(matches!(ask(&door, radius), Err(KitError::Malformed { .. })));
     }
 }
 

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use raykata::camera::Camera;
 use raykata::film::{Film, encode_srgb};
 use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, View, mishap};
+use raykata::kit::{Kit, RenderJob, View, kit_error};
 use raykata::scene::Scene;
 use raykata::world::camera_for;
 use std::path::Path;
@@ -24,11 +24,11 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         (scene.film.width, scene.film.height) = (row.film.width, row.film.height);
         let file = |what: &str| out.join(format!("{what}-{}.png", file_name(&row.name)));
         let job = RenderJob { scene, view: View::Work, seed: 0, threads: 0, count: true };
-        let edges = mishap::catch(|| kit.outlines(&job, depth))?;
+        let edges = kit_error::catch(|| kit.outlines(&job, depth))?;
         if !edges.is_empty() {
             save(&with_edges(&row.film, &camera_for(&job.scene), &edges), &file("cells"))?;
         }
-        let work = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+        let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         works.push((file("tests"), work.film));
     }
     // The brightest pixel of all pictures is white, so that they can be compared.

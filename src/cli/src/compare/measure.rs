@@ -7,7 +7,7 @@ use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
-use raykata::kit::{Kit, RenderJob, Rendering, StructureSize, View, mishap};
+use raykata::kit::{Kit, RenderJob, Rendering, StructureSize, View, kit_error};
 use raykata::scene::{Accelerator, Scene, Split};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -166,6 +166,6 @@ impl Bench<'_> {
         scene.film.width = (scene.film.width / slice).max(1);
         scene.film.height = (scene.film.height / slice).max(1);
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: self.threads, count };
-        mishap::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
+        kit_error::catch(|| self.kit.render(&job, &Unwatched))?.context("the frame was cancelled")
     }
 }

@@ -5,7 +5,7 @@ use super::measure::{Bench, Measured};
 use crate::judge::Judge;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
-use raykata::kit::{RenderJob, View, mishap};
+use raykata::kit::{RenderJob, View, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measu
         let point = &mut measured.points[index];
         let scene = point.setting.apply(scene);
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: bench.threads, count: false };
-        let hits = mishap::catch(|| bench.kit.first_hits(&job, &rays))?;
+        let hits = kit_error::catch(|| bench.kit.first_hits(&job, &rays))?;
         judge.send(&hits)?;
         point.hits = Some(judge.receive().context("the judge has no verdict on first hits")?);
     }

@@ -10,7 +10,7 @@ use anyhow::Result;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Watch;
-use raykata::kit::{Kit, RenderJob, Rendering, View, mishap};
+use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
 use raykata::scene::Scene;
 use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -151,7 +151,7 @@ impl Bench<'_> {
         until: Option<Instant>,
         bar: Option<&FrameBar>,
     ) -> Result<Option<Rendering>> {
-        Ok(mishap::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
+        Ok(kit_error::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
     }
 
     /// Measures one setting without regard to others: errors, one time, and counts, if it is to count, which takes time.

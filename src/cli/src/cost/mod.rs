@@ -34,7 +34,7 @@ use ladder::{Knob, Ladder};
 use measure::{Bench, Measured, front};
 pub use options::{Options, SPEC};
 use raykata::effects::Effects;
-use raykata::kit::{Kit, Mishap, mishap};
+use raykata::kit::{Kit, KitError, kit_error};
 use raykata::scene::{Quality, Scene};
 use reference::Reference;
 use serde::Serialize;
@@ -198,13 +198,13 @@ fn ladders(
     scene: &Scene,
     turned: &[Knob],
 ) -> Result<(Vec<Ladder>, NotOffered)> {
-    let effects = match mishap::catch(|| kit.effects(std::slice::from_ref(scene))) {
+    let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
         Ok(mut effects) => effects.remove(0),
-        Err(Mishap::NotWritten { place, .. }) => {
+        Err(KitError::NotWritten { place, .. }) => {
             println!("what a scene calls for is not written yet ({place}), so every knob is offered");
             Effects::everything(scene)
         }
-        Err(mishap) => return Err(mishap.into()),
+        Err(error) => return Err(error.into()),
     };
     let mut pixel = scene.clone();
     (pixel.film.width, pixel.film.height, pixel.quality.samples_per_pixel) = (1, 1, 1);

@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
 use raykata::frame::Unwatched;
-use raykata::kit::{BoundQuery, Kit, RenderJob, View, mishap};
+use raykata::kit::{BoundQuery, Kit, RenderJob, View, kit_error};
 use raykata::scene::Scene;
 use std::path::PathBuf;
 
@@ -80,7 +80,7 @@ pub fn run(options: &Options) -> Result<()> {
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = &*source.fresh();
-    let effects = mishap::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
+    let effects = kit_error::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
     let explained = Explained { scene: &scene, kit, effects };
     let (film, samples) = (scene.film, scene.quality.samples_per_pixel);
     println!(
@@ -127,7 +127,7 @@ fn asked(explained: &Explained<'_>) {
 /// A picture, measured.
 fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
-    let rendering = mishap::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+    let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
     Ok((rendering.counts, rendering.render_seconds))
 }
 
@@ -205,7 +205,7 @@ fn signed(with: u64, without: u64) -> String {
 fn bounds(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, effects } = explained;
     let query = BoundQuery { scene: (*scene).clone(), effects: effects.clone() };
-    let most = mishap::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
+    let most = kit_error::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
     let (counted, _) = render(*kit, (*scene).clone())?;
     println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
     let lines = [

@@ -1,7 +1,7 @@
 //! What became of a worker that no longer answers.
 
 use super::{Death, Launcher, lock};
-use raykata::kit::Mishap;
+use raykata::kit::KitError;
 use std::io::{self, Read};
 use std::process::{Child, ExitStatus};
 use std::sync::Mutex;
@@ -30,15 +30,15 @@ pub(super) fn cause_of_death(
     stderr: &str,
     launcher: Option<&dyn Launcher>,
     patience: Duration,
-) -> Mishap {
-    let crashed = |how: &str| Mishap::Crashed { how: how.into() };
+) -> KitError {
+    let crashed = |how: &str| KitError::Crashed { how: how.into() };
     if stderr.contains("has overflowed its stack") {
         return crashed("the stack overflowed: a recursion that never ends?");
     }
     let Some(status) = status else { return crashed("for an unknown reason") };
     match launcher.and_then(|launcher| launcher.death(status, stderr)) {
-        Some(Death::TimedOut) => return Mishap::TimedOut { seconds: patience.as_secs() },
-        Some(Death::Crashed(how)) => return Mishap::Crashed { how },
+        Some(Death::TimedOut) => return KitError::TimedOut { seconds: patience.as_secs() },
+        Some(Death::Crashed(how)) => return KitError::Crashed { how },
         None => {}
     }
     match last_words(stderr) {
@@ -54,19 +54,19 @@ pub fn last_words(stderr: &str) -> Option<String> {
 }
 
 /// With no more words than anybody reads.
-pub(super) fn shortened(mishap: Mishap) -> Mishap {
+pub(super) fn shortened(error: KitError) -> KitError {
     let short = |words: String| match words.char_indices().nth(KEPT_WORDS) {
         Some((end, _)) => format!("{} …", &words[..end]),
         None => words,
     };
-    match mishap {
-        Mishap::NotWritten { task, place } => Mishap::NotWritten { task: short(task), place: short(place) },
-        Mishap::Panicked { message, place } => {
-            Mishap::Panicked { message: short(message), place: short(place) }
+    match error {
+        KitError::NotWritten { task, place } => KitError::NotWritten { task: short(task), place: short(place) },
+        KitError::Panicked { message, place } => {
+            KitError::Panicked { message: short(message), place: short(place) }
         }
-        Mishap::Crashed { how } => Mishap::Crashed { how: short(how) },
-        Mishap::Nonsense { what } => Mishap::Nonsense { what: short(what) },
-        Mishap::TimedOut { seconds } => Mishap::TimedOut { seconds },
+        KitError::Crashed { how } => KitError::Crashed { how: short(how) },
+        KitError::Malformed { what } => KitError::Malformed { what: short(what) },
+        KitError::TimedOut { seconds } => KitError::TimedOut { seconds },
     }
 }
 

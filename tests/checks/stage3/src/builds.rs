@@ -9,7 +9,7 @@ use checks::{Trial, golden, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::{BuildQuery, Mishap, mishap};
+use raykata::kit::{BuildQuery, KitError, kit_error};
 use raykata::scene::Split;
 
 pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Outcome> {
@@ -57,9 +57,9 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
     for split in Split::ALL {
         for leaf_size in [1, 4] {
             let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size };
-            match mishap::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
+            match kit_error::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
                 Ok(outcomes) => outcomes.into_iter().collect::<Outcome>()?,
-                Err(Mishap::Panicked { message, place }) => {
+                Err(KitError::Panicked { message, place }) => {
                     let diagnosis = match bounds.len() <= leaf_size {
                         true => "so few primitives are a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
                         false => "a split put everything on one side: fall back on one that divides",
@@ -68,7 +68,7 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
                     let broken = Broken::told(query.call("build"), panic, "a tree", "what makes a hierarchy");
                     return Err(broken.looks_like(Some(diagnosis)));
                 }
-                Err(mishap) => mishap::unwind(mishap),
+                Err(error) => kit_error::unwind(error),
             }
         }
     }

@@ -6,7 +6,7 @@ use checks::broken::{Broken, Outcome};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::kit::{Mishap, mishap};
+use raykata::kit::{KitError, kit_error};
 use raykata::scene::Split;
 
 pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> Outcome {
@@ -92,15 +92,15 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ou
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();
     let points = vec![Aabb::new(Vec3::ONE, Vec3::ONE); 5];
     let sets = [line, points, vec![UNIT_BOX; 6]];
-    match mishap::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _| None)) {
+    match kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _| None)) {
         Ok(outcomes) => outcomes.into_iter().collect(),
-        Err(Mishap::Panicked { message, place }) => {
+        Err(KitError::Panicked { message, place }) => {
             let input = "SurfaceArea of six boxes along a line, five in one point, six equal ones";
             let panic = format!("a panic at {place}: {message}");
             Err(Broken::told(input, panic, "an answer", "the definition").looks_like(Some(
                 "0/0 makes every cost NaN, and no cut is the best: compare costs without dividing by A(P)",
             )))
         }
-        Err(mishap) => mishap::unwind(mishap),
+        Err(error) => kit_error::unwind(error),
     }
 }

@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::camera::Shutter;
-use raykata::kit::{Mishap, TimeQuery, mishap};
+use raykata::kit::{KitError, TimeQuery, kit_error};
 
 /// The table of the slide.
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
@@ -21,16 +21,16 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
     for (left, top) in [(0, 0), (4, 8), (1, 3), (1022, 765)] {
         let cells: Vec<(u32, u32)> = (0..16).map(|index| (left + index % 4, top + index / 4)).collect();
         let repeat = "blocks repeat: take x and y modulo 4";
-        let slots = match mishap::catch(|| trial.kit.temporal_slot(&cells)) {
+        let slots = match kit_error::catch(|| trial.kit.temporal_slot(&cells)) {
             Ok(slots) => slots,
-            Err(Mishap::Panicked { message, place }) => {
+            Err(KitError::Panicked { message, place }) => {
                 let input =
                     format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
                 let yours = format!("a panic at {place}: {message}");
                 let broken = Broken::told(input, yours, "each of 1..=16 once", "the definition");
                 return Err(broken.looks_like((left > 0).then_some(repeat)));
             }
-            Err(mishap) => mishap::unwind(mishap),
+            Err(error) => kit_error::unwind(error),
         };
         let mut sorted = slots.clone();
         sorted.sort_unstable();

@@ -5,7 +5,7 @@ use checks::broken::{Broken, Outcome};
 use checks::judge::{compare, known};
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
-use raykata::kit::{Mishap, TexelQuery, TextureQuery, mishap};
+use raykata::kit::{KitError, TexelQuery, TextureQuery, kit_error};
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 
@@ -326,9 +326,9 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
         let single = strange.iter().flat_map(|&share| [(share, 0.5), (0.5, share)]);
         for (u, v) in single.chain(strange.iter().flat_map(|&u| strange.map(|v| (u, v)))) {
             let input = format!("texture_color of 3 by 2 pixels, Wrap::{wrap:?}, at {:?}", vec2(u, v));
-            let yours = match mishap::catch(|| trial.kit.texture_color(&[query(u, v)])[0]) {
+            let yours = match kit_error::catch(|| trial.kit.texture_color(&[query(u, v)])[0]) {
                 Ok(color) => color,
-                Err(Mishap::Panicked { message, place }) => {
+                Err(KitError::Panicked { message, place }) => {
                     let yours = format!("a panic at {place}: {message}");
                     let broken = Broken::told(input, yours, "a colour", "the definition");
                     let overflow = message.contains("overflow");
@@ -337,7 +337,7 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
                             "the column beside the last number there is: add with saturating_add",
                         )));
                 }
-                Err(mishap) => mishap::unwind(mishap),
+                Err(error) => kit_error::unwind(error),
             };
             if !(yours.min_element() >= -1e-6 && yours.max_element() <= 1.0 + 1e-6) {
                 let broken =

@@ -6,7 +6,7 @@ use checks::broken::{Broken, Outcome};
 use checks::judge::known;
 use glam::Vec3;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
-use raykata::kit::{BoundQuery, Mishap, RayCounts, mishap};
+use raykata::kit::{BoundQuery, KitError, RayCounts, kit_error};
 use raykata::material::{Fresnel, Material};
 use raykata::scene::{FilmSettings, Quality, Scene};
 
@@ -44,12 +44,12 @@ fn judge(
     diagnose: impl Fn(&RayCounts) -> &'static str,
 ) -> Outcome {
     let input = format!("most_rays of {what}");
-    match mishap::catch(|| trial.kit.most_rays(&[query]).remove(0)) {
+    match kit_error::catch(|| trial.kit.most_rays(&[query]).remove(0)) {
         Ok(yours) if yours == expected => Ok(()),
         Ok(yours) => {
             Err(Broken::new(input, yours, expected, "counted by hand").looks_like(known(diagnose(&yours))))
         }
-        Err(Mishap::Panicked { message, place }) => {
+        Err(KitError::Panicked { message, place }) => {
             let overflow = message.contains("overflow");
             let broken = Broken::told(
                 input,
@@ -60,7 +60,7 @@ fn judge(
             Err(broken
                 .looks_like(overflow.then_some("a number that does not fit: count in u64, and saturate")))
         }
-        Err(mishap) => mishap::unwind(mishap),
+        Err(error) => kit_error::unwind(error),
     }
 }
 

@@ -6,7 +6,7 @@ use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::kit::mishap::{self, Mishap};
+use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::Cell;
 
 /// Boxes on a coarse grid, so that many touch; some flat, some not numbers.
@@ -66,11 +66,11 @@ pub(super) fn ended<T>(
     says: &'static str,
     build: impl FnOnce() -> T,
 ) -> Result<T, Broken> {
-    mishap::catch(build).map_err(|mishap| match mishap {
-        Mishap::Panicked { message, .. } => {
+    kit_error::catch(build).map_err(|error| match error {
+        KitError::Panicked { message, .. } => {
             Broken::told(input, message, "a tree", source).looks_like(Some(says))
         }
-        mishap => mishap::unwind(mishap),
+        error => kit_error::unwind(error),
     })
 }
 

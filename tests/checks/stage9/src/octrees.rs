@@ -11,7 +11,7 @@ use checks::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::Strategy;
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, mishap};
+use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
 use raykata::partition::{Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -142,13 +142,13 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
             [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), direction)]
         })
         .collect();
-    let answers = match mishap::catch(|| searcher.ask(trial.kit, &scene, &rays)) {
+    let answers = match kit_error::catch(|| searcher.ask(trial.kit, &scene, &rays)) {
         Ok(answers) => answers,
-        Err(mishap::Mishap::Panicked { message, .. }) => {
+        Err(kit_error::KitError::Panicked { message, .. }) => {
             let input = format!("{} over 26 spheres, rays along axes and diagonals", searcher.name());
             return Err(Broken::told(input, message, "an answer", "brute force").looks_like(Some(says)));
         }
-        Err(mishap) => mishap::unwind(mishap),
+        Err(error) => kit_error::unwind(error),
     };
     for (ray, yours) in rays.iter().zip(&answers) {
         judge(&format!("{} over 26 spheres", searcher.name()), ray, &scene.hits(ray), yours)

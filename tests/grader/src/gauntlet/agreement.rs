@@ -10,7 +10,7 @@ use oracle::exact::{Body, meet, triangle};
 use oracle::gauntlet::scenes::{HardScene, hard_scenes};
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{BuildQuery, Door, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, mishap};
+use raykata::kit::{BuildQuery, Door, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, kit_error};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
@@ -115,7 +115,7 @@ pub fn all(reference: &Source, seed: u64, rays: u64) -> Result<Vec<Agreement>> {
     let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
     let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
     let of_scenes = queue::run(&kits, &hard_scenes(), |kit, scene| {
-        Ok(mishap::catch(|| of_scene(kit, scene, seed, rays))?)
+        Ok(kit_error::catch(|| of_scene(kit, scene, seed, rays))?)
     })?;
     Ok(of_scenes.into_iter().flatten().collect())
 }

@@ -13,7 +13,7 @@ use oracle::gauntlet::boxes::at_a_corner;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
-use raykata::kit::{Kit, SlabQuery, TriangleQuery, mishap};
+use raykata::kit::{Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
 use serde::{Deserialize, Serialize};
@@ -166,7 +166,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
     let bar = bar_of_steps(work.len());
     let state = Mutex::new((state, Instant::now()));
     queue::run(&kits, &work, |kit, &(trial, piece)| {
-        let failures = mishap::catch(|| trial.failures(&**kit, &meshes, seed, piece))??;
+        let failures = kit_error::catch(|| trial.failures(&**kit, &meshes, seed, piece))??;
         bar.inc(1);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
         let (state, kept) = &mut *guard;

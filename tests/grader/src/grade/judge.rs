@@ -14,7 +14,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric;
 use checks::{Broken, Check, Drawn, Verdict};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Door, Kit, Mishap, Request, Transport, mishap};
+use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport, kit_error};
 use sha2::{Digest, Sha256};
 use std::collections::{BTreeMap, HashSet};
 use std::mem::{Discriminant, discriminant};
@@ -208,18 +208,18 @@ fn hidden_message(check: &Check) -> String {
     )
 }
 
-fn outcome(examined: &Result<checks::Outcome, Mishap>) -> Outcome {
+fn outcome(examined: &Result<checks::Outcome, KitError>) -> Outcome {
     match examined {
         Ok(Ok(())) => Outcome::Passed,
-        Ok(Err(_)) | Err(Mishap::Panicked { .. } | Mishap::Nonsense { .. }) => Outcome::Wrong,
-        Err(Mishap::NotWritten { .. }) => Outcome::NotWritten,
-        Err(Mishap::TimedOut { .. }) => Outcome::TooLong,
-        Err(Mishap::Crashed { .. }) => Outcome::Crashed,
+        Ok(Err(_)) | Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => Outcome::Wrong,
+        Err(KitError::NotWritten { .. }) => Outcome::NotWritten,
+        Err(KitError::TimedOut { .. }) => Outcome::TooLong,
+        Err(KitError::Crashed { .. }) => Outcome::Crashed,
     }
 }
 
 /// What was compared, where pictures were.
-fn picture(examined: &Result<checks::Outcome, Mishap>) -> Option<Picture> {
+fn picture(examined: &Result<checks::Outcome, KitError>) -> Option<Picture> {
     let Ok(Err(Broken { picture: Some(png), .. })) = examined else { return None };
     let caption = "reference | yours | four times the difference".into();
     Some(Picture { caption, png: BASE64.encode(&png.0) })
@@ -275,12 +275,12 @@ struct Asked {
 impl Transport for Asked {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         if self.over.load(Ordering::Relaxed) {
-            mishap::unwind(Mishap::Crashed { how: "the verdict was there before".into() });
+            kit_error::unwind(KitError::Crashed { how: "the verdict was there before".into() });
         }
         let answer = self.worker.call(request, watch);
         match sanity::fault(&answer) {
             None => answer,
-            Some(what) => mishap::unwind(Mishap::Nonsense { what }),
+            Some(what) => kit_error::unwind(KitError::Malformed { what }),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What the judge makes of jailed workers that do everything wrong: one mishap for the call, never a wait without end.
+//! What the judge makes of jailed workers that do everything wrong: one error for the call, never a wait without end.
 
 #[path = "../../../misbehaving/tests/asking/mod.rs"]
 mod asking;
@@ -8,7 +8,7 @@ use grader::jail::{Jail, Purpose};
 use grader::kits::{self, Need, Program, Source, Which};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
-use raykata::kit::{Door, Frames, Mishap, RenderJob, Shapes, SphereQuery, View, mishap};
+use raykata::kit::{Door, Frames, KitError, RenderJob, Shapes, SphereQuery, View, kit_error};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
@@ -65,7 +65,7 @@ fn each_death_is_told_in_words_and_the_next_call_is_answered() {
 #[test]
 fn files_and_processes_are_out_of_reach() {
     for radius in [-12.0, -13.0] {
-        let Err(Mishap::Panicked { message, .. }) = ask(&door(), radius) else { panic!("no panic") };
+        let Err(KitError::Panicked { message, .. }) = ask(&door(), radius) else { panic!("no panic") };
         assert_eq!(message, "Err(PermissionDenied)");
     }
 }
@@ -74,18 +74,18 @@ fn files_and_processes_are_out_of_reach() {
 fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
     let door = door();
     for radius in [-5.0, -11.0] {
-        assert_eq!(ask(&door, radius), Err(Mishap::TimedOut { seconds: 1 }));
+        assert_eq!(ask(&door, radius), Err(KitError::TimedOut { seconds: 1 }));
     }
     // It sleeps for three seconds, as if others had the processor: twice that is granted.
     assert!(ask(&jailed(misbehaving(), 2), -14.0).is_ok());
 }
 
 #[test]
-fn what_is_no_answer_is_a_mishap() {
+fn what_is_no_answer_is_an_error() {
     let door = door();
     for radius in [-7.0, -8.0, -20.0, -21.0, -22.0, -23.0] {
         let outcome = ask(&door, radius);
-        assert!(matches!(outcome, Err(Mishap::Nonsense { .. })), "{radius}: {outcome:?}");
+        assert!(matches!(outcome, Err(KitError::Malformed { .. })), "{radius}: {outcome:?}");
         assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     }
 }
@@ -95,13 +95,13 @@ fn a_worker_that_does_not_read_does_not_stop_the_judge() {
     // More than any socket holds, so that writing it has to wait.
     let many: Vec<SphereQuery> = std::iter::repeat_n(query(10.0), 200_000).collect();
     // Says nothing on the pipe and reads nothing.
-    let outcome = mishap::catch(|| jailed("/usr/bin/yes", 1).sphere_algebraic(&many));
-    assert_eq!(outcome, Err(Mishap::TimedOut { seconds: 1 }));
+    let outcome = kit_error::catch(|| jailed("/usr/bin/yes", 1).sphere_algebraic(&many));
+    assert_eq!(outcome, Err(KitError::TimedOut { seconds: 1 }));
     // Answers this and all that follows without reading it.
     let door = door();
     assert_eq!(ask(&door, -24.0), Ok(vec![Some(1.0)]));
-    let outcome = mishap::catch(|| door.sphere_algebraic(&many));
-    assert_eq!(outcome, Err(Mishap::TimedOut { seconds: 1 }));
+    let outcome = kit_error::catch(|| door.sphere_algebraic(&many));
+    assert_eq!(outcome, Err(KitError::TimedOut { seconds: 1 }));
 }
 
 #[test]

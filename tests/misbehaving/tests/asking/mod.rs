@@ -1,12 +1,12 @@
 //! Questions to the misbehaving worker: the radius says what it is to do.
 
 use glam::Vec3;
-use raykata::kit::{Door, Mishap, Shapes, SphereQuery, mishap};
+use raykata::kit::{Door, KitError, Shapes, SphereQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 use raykata_cli::worker::Worker;
 
-pub type Asked = Result<Vec<Option<f32>>, Mishap>;
+pub type Asked = Result<Vec<Option<f32>>, KitError>;
 
 pub fn query(radius: f32) -> SphereQuery {
     SphereQuery {
@@ -16,12 +16,12 @@ pub fn query(radius: f32) -> SphereQuery {
 }
 
 pub fn ask(door: &Door<Worker>, radius: f32) -> Asked {
-    mishap::catch(|| door.sphere_algebraic(&[query(radius)]))
+    kit_error::catch(|| door.sphere_algebraic(&[query(radius)]))
 }
 
 pub fn how_it_crashed(asked: Asked) -> String {
     match asked {
-        Err(Mishap::Crashed { how }) => how,
+        Err(KitError::Crashed { how }) => how,
         other => panic!("not a crash: {other:?}"),
     }
 }

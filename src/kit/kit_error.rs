@@ -8,7 +8,7 @@ use std::sync::Once;
 
 /// The reason why there is no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Mishap {
+pub enum KitError {
     /// The code reached a `todo!`.
     NotWritten {
         /// The text of the `todo!`: what is to be written.
@@ -34,44 +34,44 @@ pub enum Mishap {
         seconds: u64,
     },
     /// The answer does not fit the request: it is of another kind, or has another length.
-    Nonsense {
+    Malformed {
         /// The beginning of the answer, or a sentence that says what is wrong.
         what: String,
     },
 }
 
-impl fmt::Display for Mishap {
+impl fmt::Display for KitError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Mishap::NotWritten { task, place } => write!(f, "not written yet: {place}\n  {task}"),
-            Mishap::Panicked { message, place } => write!(f, "your code panicked at {place}\n  {message}"),
-            Mishap::Crashed { how } => write!(f, "your code ended its process: {how}"),
-            Mishap::TimedOut { seconds } => {
+            KitError::NotWritten { task, place } => write!(f, "not written yet: {place}\n  {task}"),
+            KitError::Panicked { message, place } => write!(f, "your code panicked at {place}\n  {message}"),
+            KitError::Crashed { how } => write!(f, "your code ended its process: {how}"),
+            KitError::TimedOut { seconds } => {
                 write!(f, "no answer after {seconds} s: a loop or a recursion that never ends?")
             }
-            Mishap::Nonsense { what } => write!(f, "the answer does not fit the question: {what}"),
+            KitError::Malformed { what } => write!(f, "the answer does not fit the question: {what}"),
         }
     }
 }
 
-impl std::error::Error for Mishap {}
+impl std::error::Error for KitError {}
 
-/// Unwinds with a mishap, which [`catch`] returns: what a transport does if there is no answer.
+/// Unwinds with a error, which [`catch`] returns: what a transport does if there is no answer.
 ///
 /// # Panics
 ///
 /// Always.
-pub fn unwind(mishap: Mishap) -> ! {
-    panic::resume_unwind(Box::new(mishap))
+pub fn unwind(error: KitError) -> ! {
+    panic::resume_unwind(Box::new(error))
 }
 
-/// Unwinds with [`Mishap::Nonsense`] and the first 200 characters of the answer; a hostile answer may be very
+/// Unwinds with [`KitError::Malformed`] and the first 200 characters of the answer; a hostile answer may be very
 /// long.
 pub(super) fn wrong_answer(answer: &dyn fmt::Debug) -> ! {
     let mut beginning = Beginning { words: String::new(), room: 200 };
     // It fails when there is no more room.
     let _ = fmt::write(&mut beginning, format_args!("{answer:?}"));
-    unwind(Mishap::Nonsense { what: beginning.words })
+    unwind(KitError::Malformed { what: beginning.words })
 }
 
 struct Beginning {
@@ -98,20 +98,20 @@ thread_local! {
 ///
 /// # Errors
 ///
-/// If `work` panics: the [`Mishap`] with which it unwound, [`Mishap::NotWritten`] for a `todo!`, and
-/// [`Mishap::Panicked`] otherwise.
-pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, Mishap> {
+/// If `work` panics: the [`KitError`] with which it unwound, [`KitError::NotWritten`] for a `todo!`, and
+/// [`KitError::Panicked`] otherwise.
+pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, KitError> {
     install_hook();
     let outer = CAUGHT.replace(Some(None));
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     let caught = CAUGHT.replace(outer).flatten();
-    result.map_err(|payload| match payload.downcast::<Mishap>() {
-        Ok(mishap) => *mishap,
+    result.map_err(|payload| match payload.downcast::<KitError>() {
+        Ok(error) => *error,
         Err(payload) => {
             let (message, place) = caught.unwrap_or_else(|| (words_of(&*payload), "another thread".into()));
             match message.strip_prefix("not yet implemented") {
-                Some(task) => Mishap::NotWritten { task: task.trim_start_matches(": ").to_owned(), place },
-                None => Mishap::Panicked { message, place },
+                Some(task) => KitError::NotWritten { task: task.trim_start_matches(": ").to_owned(), place },
+                None => KitError::Panicked { message, place },
             }
         }
     })
@@ -159,15 +159,15 @@ mod tests {
     #[allow(clippy::todo, reason = "a gap is what this is about")]
     fn a_gap_reads_as_not_written_yet() {
         let gap = catch(|| -> i32 { todo!("add the numbers") });
-        let Err(Mishap::NotWritten { task, place }) = gap else { panic!("{gap:?}") };
+        let Err(KitError::NotWritten { task, place }) = gap else { panic!("{gap:?}") };
         assert_eq!(task, "add the numbers");
-        assert!(place.starts_with("src/kit/mishap.rs:"), "{place}");
+        assert!(place.starts_with("src/kit/error.rs:"), "{place}");
     }
 
     #[test]
     fn a_panic_keeps_its_words_and_its_place() {
         let broken = catch(|| Vec::<i32>::new()[3]);
-        let Err(Mishap::Panicked { message, .. }) = broken else { panic!("{broken:?}") };
+        let Err(KitError::Panicked { message, .. }) = broken else { panic!("{broken:?}") };
         assert_eq!(message, "index out of bounds: the len is 0 but the index is 3");
     }
 
@@ -177,7 +177,7 @@ mod tests {
             assert!(catch(|| panic!("inner")).is_err());
             panic!("outer")
         });
-        let Err(Mishap::Panicked { message, .. }) = outer else { panic!("no panic") };
+        let Err(KitError::Panicked { message, .. }) = outer else { panic!("no panic") };
         assert_eq!(message, "outer");
     }
 }
