@@ -39,7 +39,7 @@ pub trait Kit:
     + Shading
     + Recursion
     + Distribution
-    + Economy
+    + EffectsAnalysis
     + SceneGraph
     + Partitions
     + Stability
@@ -54,7 +54,7 @@ impl<T> Kit for T where
         + Shading
         + Recursion
         + Distribution
-        + Economy
+        + EffectsAnalysis
         + SceneGraph
         + Partitions
         + Stability

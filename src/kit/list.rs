@@ -369,7 +369,7 @@ macro_rules! student_functions {
 
             /// Stage 7: the effects analysis, which computes only what a scene needs. Each function gives one
             /// answer per query, in the same order, and panics if the student's function does.
-            7 trait Economy {
+            7 trait EffectsAnalysis {
                 /// What a light needs: the number of samples, and whether it is an area light and casts
                 /// shadows. A light that emits nothing needs nothing.
                 LightEffects fn light_effects(light: &Light, quality: &Quality) -> LightEffects

@@ -7,7 +7,7 @@
 mod adapters;
 mod distribution;
 pub mod door;
-mod economy;
+mod effects_analysis;
 mod example;
 mod functions;
 mod list;
@@ -29,10 +29,10 @@ pub use distribution::{
     SphereSampleQuery, FILTER_RADIUS, PhongLobeQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
-    Answer, Distribution, Door, Economy, Frames, Hierarchies, Kit, Partitions, Recursion, Request,
+    Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, Partitions, Recursion, Request,
     SceneGraph, Shading, Shapes, Stability, Transport, Triangles,
 };
-pub use economy::{
+pub use effects_analysis::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
 };
 #[doc(hidden)]
