@@ -85,7 +85,7 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
     // </solution>
 }
 
-/// Ray against an endless plane through `point`: `n·(o + t d - p₀) = 0`.
+/// Ray against an infinite plane through `point`: `n·(o + t d - p₀) = 0`.
 ///
 /// Where the formula lies: a ray along the plane divides by `n·d = 0`. The result is infinite or NaN and must not be
 /// taken for a hit. The form `t = -(D + n·o) / n·d` is the same on paper but cancels far from the origin.

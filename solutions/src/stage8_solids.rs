@@ -3,7 +3,7 @@
 //! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to sphere, must also check
 //! end caps; convex polygon: same as triangle).
 //!
-//! A convex solid is what several simpler sets have in common: a box is three slabs, a cylinder an endless cylinder and a
+//! A convex solid is what several simpler sets have in common: a box is three slabs, a cylinder an infinite cylinder and a
 //! slab. A line is in each of them for one interval of `t`, so it is in the solid where all intervals overlap, and there is
 //! no cap to be forgotten. The first end of the overlap in the range of the ray is the hit.
 
@@ -103,7 +103,7 @@ pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
 /// Ray against a cylinder with both ends closed.
 ///
 /// With the axis `A` from base to top and the moment `L = (o - base) × d`, the line passes the axis at the distance
-/// `|A·L| / |d × A|`, so the discriminant of the endless cylinder is `|d × A|² r² - (A·L)²`.
+/// `|A·L| / |d × A|`, so the discriminant of the infinite cylinder is `|d × A|² r² - (A·L)²`.
 ///
 /// Where the formula lies: "similar to sphere": for a ray along the axis `a = |d × A|²` is 0, and 0/0 is NaN. And caps
 /// tested as disks on their own leak at the rim.
@@ -139,7 +139,7 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
         Span { enter, leave, enter_normal: outwards(enter), leave_normal: outwards(leave) }
     };
     between_caps.and(round)?.first_hit(ray)
-    // <stub> todo!("cut the interval between the caps and the interval in the endless cylinder")
+    // <stub> todo!("cut the interval between the caps and the interval in the infinite cylinder")
     // </solution>
 }
 

@@ -2,7 +2,7 @@
 
 use crate::kit::StudentFunctions;
 use crate::shape::{Plane, Sphere, Triangle};
-use crate::world::{EndlessPlane, Geometry, Primitive, World};
+use crate::world::{InfinitePlane, Geometry, Primitive, World};
 use glam::Vec3;
 
 /// The geometry of `primitive` at shutter time `time`, `0..=1`, interpolated linearly between its two ends;
@@ -39,7 +39,7 @@ fn triangle_at<F: StudentFunctions>(start: &Triangle, end: &Triangle, time: f32)
 
 /// The infinite plane at shutter time `time`, `0..=1`, and the axes of its texture there, both in world
 /// space.
-pub fn plane_at<F: StudentFunctions>(plane: &EndlessPlane, time: f32) -> (Plane, [Vec3; 2]) {
+pub fn plane_at<F: StudentFunctions>(plane: &InfinitePlane, time: f32) -> (Plane, [Vec3; 2]) {
     match &plane.motion {
         None => (plane.plane, plane.axes),
         Some([start, end]) => {

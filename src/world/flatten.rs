@@ -5,7 +5,7 @@ use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale};
 use super::{
-    EndlessPlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
+    InfinitePlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
     what_is_not_simulated,
 };
 use crate::effects::Effects;
@@ -212,7 +212,7 @@ impl Flattener<'_> {
         };
         let normal = (normal_matrix(&way.start) * plane.normal.normalize()).normalize();
         let point = way.start.transform_point3(plane.point);
-        self.world.planes.push(EndlessPlane {
+        self.world.planes.push(InfinitePlane {
             plane: Plane { point, normal },
             material,
             axes: [u, v].map(|axis| way.start.transform_vector3(axis)),

@@ -100,7 +100,7 @@ pub struct Instance {
 
 /// An infinite plane in world space. It has no bounding box, so acceleration structures do not hold it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct EndlessPlane {
+pub struct InfinitePlane {
     /// The plane, at time 0 if it moves; its normal is of unit length.
     pub plane: Plane,
     /// Index of its material in [`World::materials`].
@@ -119,7 +119,7 @@ pub struct World {
     /// All bounded primitives, in the order of the scene graph.
     pub primitives: Vec<Primitive>,
     /// All infinite planes, which are tested one by one.
-    pub planes: Vec<EndlessPlane>,
+    pub planes: Vec<InfinitePlane>,
     /// Shapes that rays are tested against in a space of their own (stage 8).
     pub solids: Vec<Solid>,
     /// Meshes with several instances, each kept once (stage 8).

@@ -200,13 +200,13 @@ pub fn triangle_point(triangle: &Triangle, beta: f64, gamma: f64) -> DVec3 {
     a + beta * (b - a) + gamma * (c - a)
 }
 
-/// Where an endless line along `ray` enters and leaves a box, which is closed; `(inf, -inf)` if it passes by.
+/// Where an infinite line along `ray` enters and leaves a box, which is closed; `(inf, -inf)` if it passes by.
 pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (near, far) = slabs_interval(ray, bounds);
     if near <= far { (near, far) } else { (f64::INFINITY, f64::NEG_INFINITY) }
 }
 
-/// The last `t` at which an endless line enters a slab of a box and the first at which it leaves one. Where the first is
+/// The last `t` at which an infinite line enters a slab of a box and the first at which it leaves one. Where the first is
 /// the larger one the line passes by, and their difference says by how much.
 pub fn slabs_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
