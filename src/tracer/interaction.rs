@@ -110,7 +110,7 @@ fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32)
     let outer = &world.primitives[outer as usize];
     let Geometry::Instance(index) = outer.geometry else { unreachable!("only instances have an inside") };
     let instance = &world.instances[index as usize];
-    let primitive = &world.parts[instance.part as usize].primitives[inner as usize];
+    let primitive = &world.shared_meshes[instance.shared_mesh as usize].primitives[inner as usize];
     let inherits = primitive.material == Primitive::INHERITED;
     (instance, primitive, if inherits { outer.material } else { primitive.material })
 }

@@ -31,27 +31,27 @@ impl<F: StudentFunctions> Intersector<F> {
         let graph = world.graph.take();
         // Shared meshes first: an instance is as large as its mesh. A list of primitives needs no boxes.
         let bounded = !matches!(plan.accelerator, None | Some(Accelerator::BruteForce));
-        let bounds = |primitives: &[Primitive], parts: &[Aabb]| -> Vec<Aabb> {
+        let bounds = |primitives: &[Primitive], mesh_bounds: &[Aabb]| -> Vec<Aabb> {
             let primitives = primitives.iter().filter(|_| bounded);
-            primitives.map(|primitive| bounds_of::<F>(&world, parts, primitive)).collect()
+            primitives.map(|primitive| bounds_of::<F>(&world, mesh_bounds, primitive)).collect()
         };
-        let of_parts: Vec<Vec<Aabb>> = world.parts.iter().map(|part| bounds(&part.primitives, &[])).collect();
+        let of_meshes: Vec<Vec<Aabb>> = world.shared_meshes.iter().map(|mesh| bounds(&mesh.primitives, &[])).collect();
         let around = |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| F::union(&all, one));
-        let around: Vec<Aabb> = of_parts.iter().map(around).collect();
+        let around: Vec<Aabb> = of_meshes.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
         let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
             Structure::build::<F>(bounds, graph, |index| hull(&primitives[index]), plan.accelerator, quality)
         };
         let structure = over(&of_scene, &world.primitives, graph);
-        let parts = world.parts.iter().zip(&of_parts);
-        let parts = parts.map(|(part, bounds)| over(bounds, &part.primitives, None)).collect();
-        let scene = Structured { world, structure, parts, tests: plan.tests, savings: quality.savings };
+        let meshes = world.shared_meshes.iter().zip(&of_meshes);
+        let mesh_structures = meshes.map(|(mesh, bounds)| over(bounds, &mesh.primitives, None)).collect();
+        let scene = Structured { world, structure, mesh_structures, tests: plan.tests, savings: quality.savings };
         Intersector { scene, accelerator: plan.accelerator, functions: PhantomData }
     }
 
     /// Bytes of memory that the structures of all shared meshes take.
     pub fn bytes_of_parts(&self) -> u64 {
-        self.scene.parts.iter().filter_map(Structure::size).map(|size| size.bytes).sum()
+        self.scene.mesh_structures.iter().filter_map(Structure::size).map(|size| size.bytes).sum()
     }
 
     /// The closest hit of `ray` within its range, or `None`. If the accelerator has a cache, `last` is the
@@ -147,14 +147,14 @@ fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
 }
 
 /// The box around all positions of the primitive between times 0 and 1.
-fn bounds_of<F: StudentFunctions>(world: &World, parts: &[Aabb], primitive: &Primitive) -> Aabb {
+fn bounds_of<F: StudentFunctions>(world: &World, mesh_bounds: &[Aabb], primitive: &Primitive) -> Aabb {
     let bounds = |geometry: &Geometry| match geometry {
         Geometry::Sphere(sphere) => F::sphere_bounds(sphere),
         Geometry::Triangle(triangle) => F::triangle_bounds(triangle),
         Geometry::Solid(index) => bounds_of_solid::<F>(&world.solids[*index as usize]),
         Geometry::Instance(index) => {
             let instance = &world.instances[*index as usize];
-            placed_bounds::<F>(&parts[instance.part as usize], &instance.placement)
+            placed_bounds::<F>(&mesh_bounds[instance.shared_mesh as usize], &instance.placement)
         }
     };
     let start = bounds(&primitive.geometry);

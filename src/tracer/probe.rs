@@ -22,7 +22,7 @@ pub struct Structured {
     /// The acceleration structure over the primitives of the world.
     pub structure: Structure,
     /// One acceleration structure per shared mesh, over its triangles.
-    pub parts: Vec<Structure>,
+    pub mesh_structures: Vec<Structure>,
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
     /// Which shortcuts a search of the scene graph takes.
@@ -131,8 +131,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     fn intersect_instance(&mut self, index: u32, ray: &Ray, instance: u32) -> Option<f32> {
         let instance = &self.world.instances[instance as usize];
         let ray = F::ray_to_object(ray, &instance.placement.to_object);
-        let part = instance.part as usize;
-        let (structure, primitives) = (&self.scene.parts[part], &self.world.parts[part].primitives);
+        let mesh = instance.shared_mesh as usize;
+        let (structure, primitives) = (&self.scene.mesh_structures[mesh], &self.world.shared_meshes[mesh].primitives);
         let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
         let mut probe =
             SceneProbe::<F, T>::over(self.scene, structure, primitives, &ray, self.tally, &mut notes);

@@ -5,7 +5,7 @@ use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale};
 use super::{
-    InfinitePlane, Geometry, Instance, Part, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
+    InfinitePlane, Geometry, Instance, SharedMesh, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
     what_is_not_simulated,
 };
 use crate::effects::Effects;
@@ -231,9 +231,9 @@ impl Flattener<'_> {
     /// copied.
     fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
         if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
-            let part = ready.part.unwrap_or_else(|| self.part(ready));
-            ready.part = Some(part);
-            self.world.instances.push(Instance { part, placement });
+            let shared_mesh = ready.shared_mesh.unwrap_or_else(|| self.shared_mesh(ready));
+            ready.shared_mesh = Some(shared_mesh);
+            self.world.instances.push(Instance { shared_mesh, placement });
             let geometry = Geometry::Instance(self.world.instances.len() as u32 - 1);
             return self.push(geometry, material);
         }
@@ -258,15 +258,15 @@ impl Flattener<'_> {
     }
 
     /// Keeps the triangles of a mesh in its own space; returns the index of the shared mesh.
-    fn part(&mut self, ready: &Ready) -> u32 {
+    fn shared_mesh(&mut self, ready: &Ready) -> u32 {
         let here = Way::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
             let material = ready.material_of(face).unwrap_or(Primitive::INHERITED);
             self.triangle(&ready.facet(face), &here, material)
         });
-        let part = Part { primitives: primitives.collect() };
-        self.world.parts.push(part);
-        self.world.parts.len() as u32 - 1
+        let shared_mesh = SharedMesh { primitives: primitives.collect() };
+        self.world.shared_meshes.push(shared_mesh);
+        self.world.shared_meshes.len() as u32 - 1
     }
 
     fn triangle(&mut self, facet: &Facet, way: &Way, material: u32) -> Primitive {

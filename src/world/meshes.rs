@@ -22,8 +22,8 @@ pub(super) struct Ready {
     pub materials: Vec<usize>,
     /// Whether the mesh is kept once and placed by instances.
     pub shared: bool,
-    /// Index into [`super::World::parts`], once a first instance has been made.
-    pub part: Option<u32>,
+    /// Index into [`super::World::shared_meshes`], once a first instance has been made.
+    pub shared_mesh: Option<u32>,
 }
 
 /// All shapes that are meshes of triangles: the meshes of the scene, and its Bézier patches.
@@ -48,7 +48,7 @@ impl Meshes {
                 mesh,
                 materials: source.materials.clone(),
                 shared: shared(places.of_meshes[index]),
-                part: None,
+                shared_mesh: None,
             }
         });
         let patch = |(index, node): (usize, &Node)| {
@@ -59,7 +59,7 @@ impl Meshes {
                 mesh: Arc::new(mesh),
                 materials: Vec::new(),
                 shared: shared(places.of_nodes[index]),
-                part: None,
+                shared_mesh: None,
             };
             Some((index, ready))
         };

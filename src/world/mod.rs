@@ -84,7 +84,7 @@ impl Primitive {
 
 /// A shared mesh: it is kept once, and several instances place it in the world.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Part {
+pub struct SharedMesh {
     /// The triangles of the mesh, in its own space.
     pub primitives: Vec<Primitive>,
 }
@@ -92,8 +92,8 @@ pub struct Part {
 /// One placement of a shared mesh in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instance {
-    /// Index of the shared mesh in [`World::parts`].
-    pub part: u32,
+    /// Index of the shared mesh in [`World::shared_meshes`].
+    pub shared_mesh: u32,
     /// The transforms from the space of the mesh to the world and back.
     pub placement: Placement,
 }
@@ -123,7 +123,7 @@ pub struct World {
     /// Shapes that rays are tested against in a space of their own (stage 8).
     pub solids: Vec<Solid>,
     /// Meshes with several instances, each kept once (stage 8).
-    pub parts: Vec<Part>,
+    pub shared_meshes: Vec<SharedMesh>,
     /// The placements of these meshes; each is also a primitive in [`World::primitives`].
     pub instances: Vec<Instance>,
     /// The scene graph over [`World::primitives`], if the accelerator of the scene is a volume around each of
