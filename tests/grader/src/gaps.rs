@@ -70,9 +70,9 @@ pub fn run(options: &Options) -> Result<bool> {
     let scenes = Scenes::read(&root, &*reference)?.of_gaps();
     let whole = scenes.shown_by(&*reference);
     let workshops = Workshop::open_all(&root, queue::cores(), Need::Frames)?;
-    let told = told(&workshops, &gaps, &scenes, &whole)?;
+    let text = text(&workshops, &gaps, &scenes, &whole)?;
     let text: String =
-        gaps.iter().zip(told).map(|(gap, told)| format!("{}\n{told}\n", gap.title())).collect();
+        gaps.iter().zip(text).map(|(gap, text)| format!("{}\n{text}\n", gap.title())).collect();
     let file = root.join(RECORD);
     if options.bless {
         std::fs::write(&file, &text).with_context(|| RECORD.to_owned())?;
@@ -90,7 +90,7 @@ pub fn run(options: &Options) -> Result<bool> {
 }
 
 /// What pictures lack without each of these functions.
-fn told(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
+fn text(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
     queue::run(workshops, gaps, |workshop, gap| lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole))
 }
 
@@ -140,11 +140,11 @@ pub fn that_show(
     whole: &[Shown],
 ) -> Result<Vec<(Gap, String)>> {
     let gaps = all(root)?;
-    let told = told(workshops, &gaps, scenes, whole)?;
-    let shows = |told: &str| !told.contains(NOTHING) && !told.contains("not written yet: solutions/");
-    let mut gaps: Vec<_> = gaps.into_iter().zip(told).filter(|(_, told)| shows(told)).collect();
+    let text = text(workshops, &gaps, scenes, whole)?;
+    let shows = |text: &str| !text.contains(NOTHING) && !text.contains("not written yet: solutions/");
+    let mut gaps: Vec<_> = gaps.into_iter().zip(text).filter(|(_, text)| shows(text)).collect();
     // Pictures without a hierarchy take longest.
-    gaps.sort_by_key(|(_, told)| told.contains("every ray tests every primitive"));
+    gaps.sort_by_key(|(_, text)| text.contains("every ray tests every primitive"));
     Ok(gaps)
 }
 

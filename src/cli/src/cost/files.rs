@@ -5,7 +5,7 @@ use super::ladder::Knob;
 use super::measure::Series;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
-use super::{Summary, Told};
+use super::{Summary, Report};
 use crate::html::csv_line;
 use anyhow::{Context, Result};
 use raykata::film::write_atomically;
@@ -13,17 +13,17 @@ use std::io::Write;
 use std::path::Path;
 
 /// Writes `cost.json`, `cost.csv` and the plots into a folder.
-pub fn write(out: &Path, told: &Told<'_>) -> Result<()> {
-    write_whole(&out.join("cost.json"), &serde_json::to_vec_pretty(told)?)?;
-    write_whole(&out.join("cost.csv"), table(told).as_bytes())?;
-    for (name, plot) in plots(told) {
+pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
+    write_whole(&out.join("cost.json"), &serde_json::to_vec_pretty(report)?)?;
+    write_whole(&out.join("cost.csv"), table(report).as_bytes())?;
+    for (name, plot) in plots(report) {
         write_whole(&out.join(name), plot.as_bytes())?;
     }
     Ok(())
 }
 
 /// All points, one per line.
-fn table(told: &Told<'_>) -> String {
+fn table(report: &Report<'_>) -> String {
     const HEADS: [&str; 15] = [
         "knob",
         "ladder",
@@ -42,9 +42,9 @@ fn table(told: &Told<'_>) -> String {
         "unbeaten",
     ];
     let mut table = csv_line(&HEADS.map(str::to_owned));
-    for series in &told.measured.series {
+    for series in &report.measured.series {
         for (value, index) in &series.rungs {
-            let point = &told.measured.points[*index];
+            let point = &report.measured.points[*index];
             let judged = |number: fn(&Verdicts) -> u64| {
                 point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
             };
@@ -63,7 +63,7 @@ fn table(told: &Told<'_>) -> String {
                 judged(|hits| hits.rays),
                 judged(|hits| hits.wrong),
                 judged(|hits| hits.leaks),
-                told.front.contains(index).to_string(),
+                report.front.contains(index).to_string(),
             ]);
         }
     }
@@ -76,24 +76,24 @@ fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// File names and pictures: all knobs, and the samplers if they were compared.
-pub fn plots(told: &Told<'_>) -> Vec<(&'static str, String)> {
-    let series = &told.measured.series;
+pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
+    let series = &report.measured.series;
     let knobs: Vec<&Series> =
         series.iter().filter(|one| one.knob != Knob::Sampler && !one.knob.is_geometric()).collect();
     let samplers: Vec<&Series> = series.iter().filter(|one| one.knob == Knob::Sampler).collect();
     let mut plots = Vec::new();
     if !knobs.is_empty() {
-        let title = format!("{}: error over time, one knob turned at a time", told.scene);
-        plots.push(("cost.svg", draw(told, &title, &knobs, Vec::new())));
+        let title = format!("{}: error over time, one knob turned at a time", report.scene);
+        plots.push(("cost.svg", draw(report, &title, &knobs, Vec::new())));
     }
     if !samplers.is_empty() {
-        let title = format!("{}: samplers, 1 to {} samples a pixel", told.scene, most(&samplers));
+        let title = format!("{}: samplers, 1 to {} samples a pixel", report.scene, most(&samplers));
         let guides =
             [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
-        plots.push(("samplers.svg", draw(told, &title, &samplers, guides.to_vec())));
+        plots.push(("samplers.svg", draw(report, &title, &samplers, guides.to_vec())));
     }
-    if !told.numerics.is_empty() {
-        plots.push(("numerics.svg", numerics(&told.numerics)));
+    if !report.numerics.is_empty() {
+        plots.push(("numerics.svg", numerics(&report.numerics)));
     }
     plots
 }
@@ -102,10 +102,10 @@ fn most(samplers: &[&Series]) -> String {
     samplers.first().and_then(|series| series.rungs.last()).map_or(String::new(), |(name, _)| name.clone())
 }
 
-fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
-    let points = &told.measured.points;
+fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
+    let points = &report.measured.points;
     let line = |one: &&Series| {
-        let slope = told.slopes.iter().find(|(name, _)| *name == one.name);
+        let slope = report.slopes.iter().find(|(name, _)| *name == one.name);
         let name = match slope {
             Some((name, slope)) => format!("{name} ({:.2} ± {:.2})", slope.mean, slope.half_interval),
             None => one.name.clone(),
@@ -119,7 +119,7 @@ fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, Stri
         Line { name, points: one.rungs.iter().map(place).collect() }
     };
     let samplers_only = series.iter().all(|one| one.knob == Knob::Sampler);
-    let front = told.front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    let front = report.front.iter().map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
         x_axis: "seconds a picture, logarithmic",
@@ -128,7 +128,7 @@ fn draw(told: &Told<'_>, title: &str, series: &[&Series], guides: Vec<(f64, Stri
         guides,
         front: if samplers_only { Vec::new() } else { front.collect() },
         // Below that it is the reference that is off.
-        floor: told.reference_error.max(1e-9),
+        floor: report.reference_error.max(1e-9),
     })
 }
 
@@ -157,6 +157,6 @@ fn numerics(all: &[Summary]) -> String {
 }
 
 /// What theory says of a ladder of samples.
-pub fn expected_slope(told: &Told<'_>, name: &str) -> Option<f64> {
-    theory(if name == Knob::Samples.name() { told.own_sampler } else { name })
+pub fn expected_slope(report: &Report<'_>, name: &str) -> Option<f64> {
+    theory(if name == Knob::Samples.name() { report.own_sampler } else { name })
 }

@@ -2,7 +2,7 @@
 //!
 //! `options` (what can be asked) · `called`, `ladder` and `setting` (which knobs, which values) · `reference` (what is right) ·
 //! `error` (how far off) · `hits` (judged exactly) · `measure` (counts, times) · `slope` (how fast error falls) · `advice`
-//! and `climb` (the best for your time) · `table`, `page`, `plot`, `files` (how it is told) · `headline` and `landscape`
+//! and `climb` (the best for your time) · `table`, `page`, `plot`, `files` (how it is report) · `headline` and `landscape`
 //! (brute force against a hierarchy)
 
 mod advice;
@@ -48,9 +48,9 @@ use std::time::Instant;
 /// Pictures that are measured have at most so many pixels, unless a size was given: some hundred of them are made.
 const MOST_PIXELS: f64 = 10_000.0;
 
-/// Everything that is told.
+/// Everything that is report.
 #[derive(Serialize)]
-pub struct Told<'a> {
+pub struct Report<'a> {
     scene: String,
     /// How to make this again.
     command: String,
@@ -161,7 +161,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         Some(numerics) if about_tests && !bench.stopped() => numerics(kit),
         _ => Vec::new(),
     };
-    let told = Told {
+    let report = Report {
         scene: name,
         command: command(program),
         kit: which.package(),
@@ -183,12 +183,12 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         took: began.elapsed().as_secs_f64(),
         right: &right,
     };
-    table::print(&told);
+    table::print(&report);
     make_folder(&out)?;
-    files::write(&out, &told)?;
-    page::write(&out.join("index.html"), &told)?;
-    println!("\nthe report: {} ({:.0} s)", out.join("index.html").display(), told.took);
-    Ok(!told.partial)
+    files::write(&out, &report)?;
+    page::write(&out.join("index.html"), &report)?;
+    println!("\nthe report: {} ({:.0} s)", out.join("index.html").display(), report.took);
+    Ok(!report.partial)
 }
 
 /// The ladders of all knobs that are to be turned, and those that buy nothing. It is an error to ask for one of those.

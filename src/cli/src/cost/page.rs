@@ -1,6 +1,6 @@
 //! The report: one HTML file that needs nothing else, for screens, phones and paper.
 
-use super::Told;
+use super::Report;
 use super::advice::Advice;
 use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
@@ -15,56 +15,56 @@ use std::io::Write;
 use std::path::Path;
 
 /// Writes the page.
-pub fn write(file: &Path, told: &Told<'_>) -> Result<()> {
-    let page = page(told)?;
+pub fn write(file: &Path, report: &Report<'_>) -> Result<()> {
+    let page = page(report)?;
     write_atomically(file, |out| out.write_all(page.as_bytes()))
         .with_context(|| format!("cannot write {}", file.display()))
 }
 
-fn page(told: &Told<'_>) -> Result<String> {
-    let title = format!("What accuracy costs: {}", told.scene);
+fn page(report: &Report<'_>) -> Result<String> {
+    let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
     let about = format!(
         "{} × {} pixels by {}, {} rounds by turns, each with other random numbers. Errors are root mean squares in linear \
          light, against {} samples a pixel, which are off by {:.1e} themselves. Times are medians. Made by {} in {:.0} s.",
-        told.width,
-        told.height,
-        told.kit,
-        told.measured.rounds,
-        told.reference_samples,
-        told.reference_error,
-        element("code", &told.command),
-        told.took
+        report.width,
+        report.height,
+        report.kit,
+        report.measured.rounds,
+        report.reference_samples,
+        report.reference_error,
+        element("code", &report.command),
+        report.took
     );
     body += &around("p", "class=\"about\"", &about);
-    if told.partial {
+    if report.partial {
         let words = "Stopped before the end: this is what had been measured by then.";
         body += &around("p", "class=\"warning\"", words);
     }
-    if let Some(advice) = &told.advice {
-        body += &proposal(told, advice);
+    if let Some(advice) = &report.advice {
+        body += &proposal(report, advice);
     }
-    for (_, plot) in plots(told) {
+    for (_, plot) in plots(report) {
         body += &around("figure", "class=\"plot\"", &plot);
     }
-    if !told.front.is_empty() {
+    if !report.front.is_empty() {
         let words = "The broad yellow line is the front: no setting that was measured is both faster and more accurate. \
                      What leaks is left out of it.";
         body += &around("p", "class=\"about\"", words);
     }
-    for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
-        body += &ladder(told, series)?;
+    for series in report.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+        body += &ladder(report, series)?;
     }
-    body += &numerics(told);
+    body += &numerics(report);
     body += &element("h2", "Not measured");
     let mut left_out = String::new();
-    for (knob, why) in &told.not_offered {
+    for (knob, why) in &report.not_offered {
         left_out += &element("li", format!("{}: {why}", knob.name()));
     }
-    for words in &told.measured.left_out {
+    for words in &report.measured.left_out {
         left_out += &element("li", words);
     }
-    for lacking in &told.measured.lacking {
+    for lacking in &report.measured.lacking {
         left_out += &element("li", format!("Lacking: {lacking}"));
     }
     left_out += &element(
@@ -94,11 +94,11 @@ fn head_of_row(words: &str) -> String {
     around("th", "scope=\"row\"", &escape(words))
 }
 
-fn proposal(told: &Told<'_>, advice: &Advice) -> String {
+fn proposal(report: &Report<'_>, advice: &Advice) -> String {
     let values = advice.values.iter();
     let values: String =
         values.map(|(knob, value)| row([head_of_row(knob.name()), element("td", value)])).collect();
-    let mut text = element("h2", goal(told, advice)) + &around("table", "class=\"values\"", &values);
+    let mut text = element("h2", goal(report, advice)) + &around("table", "class=\"values\"", &values);
     text.extend(verdict(advice).iter().map(|line| element("p", line)));
     if !advice.steps.is_empty() {
         let mut steps = heads(&["turn", "to", "error", "seconds in full size"]);
@@ -117,13 +117,13 @@ fn proposal(told: &Told<'_>, advice: &Advice) -> String {
     around("section", "class=\"advice\"", &text)
 }
 
-fn ladder(told: &Told<'_>, series: &Series) -> Result<String> {
+fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let geometric = series.knob.is_geometric();
     let name =
         if series.knob == Knob::Sampler { format!("sampler: {}", series.name) } else { series.name.clone() };
     let mut text = element("h2", name);
-    if let Some((name, slope)) = told.slopes.iter().find(|(name, _)| *name == series.name) {
-        let theory = expected_slope(told, name)
+    if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
+        let theory = expected_slope(report, name)
             .map_or(String::new(), |theory| format!(" (in theory {theory} where there are edges)"));
         let slope = element("b", format!("{:.2} ± {:.2}", slope.mean, slope.half_interval));
         text += &around("p", "", &format!("Error falls as samples to the power {slope}{theory}"));
@@ -132,26 +132,26 @@ fn ladder(told: &Told<'_>, series: &Series) -> Result<String> {
     columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
     columns.extend(["ms", "rays a pixel", "tests a ray"]);
     columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
-    let rungs = series.rungs.iter().map(|(value, index)| rung(told, value, *index, geometric));
+    let rungs = series.rungs.iter().map(|(value, index)| rung(report, value, *index, geometric));
     let table = heads(&columns) + &rungs.collect::<String>();
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
-    if let Some(waste) = waste(told, series) {
+    if let Some(waste) = waste(report, series) {
         text += &around("p", "class=\"waste\"", &escape(waste));
     }
-    if let (true, Some(hits)) = (geometric, about_hits(told)) {
+    if let (true, Some(hits)) = (geometric, about_hits(report)) {
         text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks {hits}.")));
     }
     if !geometric && series.knob != Knob::Sampler {
-        text += &pictures(told, series)?;
+        text += &pictures(report, series)?;
     }
     Ok(around("section", "", &text))
 }
 
-fn rung(told: &Told<'_>, value: &str, index: usize, is_geometric: bool) -> String {
-    let point = &told.measured.points[index];
+fn rung(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> String {
+    let point = &report.measured.points[index];
     let rays = point.counts.rays();
     let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
-    let unbeaten = told.front.contains(&index);
+    let unbeaten = report.front.contains(&index);
     let mark = if unbeaten { " •" } else { "" };
     let mut cells = vec![format!("{:.5}", point.error())];
     if !is_geometric {
@@ -159,31 +159,31 @@ fn rung(told: &Told<'_>, value: &str, index: usize, is_geometric: bool) -> Strin
         cells.push(format!("{:.4}", point.errors.similarity));
     }
     cells.push(format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread));
-    cells.push(format!("{:.2}", rays as f64 / (f64::from(told.width) * f64::from(told.height))));
+    cells.push(format!("{:.2}", rays as f64 / (f64::from(report.width) * f64::from(report.height))));
     cells.push(format!("{tests:.1}"));
     if is_geometric {
         cells.push(point.hits.map_or(String::new(), |hits| hits.wrong.to_string()));
         cells.push(point.hits.map_or(String::new(), |hits| hits.leaks.to_string()));
     }
-    let head = head_of_row(&format!("{}{mark}", named(told, value, index)));
+    let head = head_of_row(&format!("{}{mark}", named(report, value, index)));
     let cells: String = cells.iter().map(|cell| element("td", cell)).collect();
     around("tr", if unbeaten { "class=\"front\"" } else { "" }, &(head + &cells))
 }
 
 /// The cheapest, the middle and the dearest, and where they are wrong, on one scale.
-fn pictures(told: &Told<'_>, series: &Series) -> Result<String> {
+fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
     let last = series.rungs.len() - 1;
     let mut shown_rungs = vec![0, last / 2, last];
     shown_rungs.dedup();
-    let worst = &told.measured.points[series.rungs[0].1];
+    let worst = &report.measured.points[series.rungs[0].1];
     // A pixel that is off by three times the mean of the cheapest is white.
     let most = 3.0 * worst.error();
     let mut figures = String::new();
     for rung in shown_rungs {
         let (value, index) = &series.rungs[rung];
-        let film = &told.measured.points[*index].film;
+        let film = &report.measured.points[*index].film;
         let picture = embedded(&shown(film)?)?;
-        let heat = embedded(&heat(film, &told.right.film, most))?;
+        let heat = embedded(&heat(film, &report.right.film, most))?;
         let about = escape(format!("the picture with {} {value}", series.name));
         let images =
             format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"where it is wrong\">");
@@ -199,12 +199,12 @@ fn embedded(picture: &RgbImage) -> Result<String> {
     Ok(format!("data:image/png;base64,{}", base64(&bytes)))
 }
 
-fn numerics(told: &Told<'_>) -> String {
-    if told.numerics.is_empty() {
+fn numerics(report: &Report<'_>) -> String {
+    if report.numerics.is_empty() {
         return String::new();
     }
     let mut table = heads(&["", "ns a test", "wrong in a million", "leaks in a million"]);
-    for one in &told.numerics {
+    for one in &report.numerics {
         table += &row([
             head_of_row(&one.name),
             element("td", format!("{:.1}", one.nanoseconds)),
@@ -216,7 +216,7 @@ fn numerics(told: &Told<'_>) -> String {
                  meshes that get out.";
     let mut text = element("h2", "what right digits cost") + &around("p", "class=\"about\"", words);
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
-    if let Some(warning) = about_kit_times(told) {
+    if let Some(warning) = about_kit_times(report) {
         text += &around("p", "class=\"about\"", warning);
     }
     around("section", "", &text)

@@ -1,6 +1,6 @@
 //! The table in the terminal.
 
-use super::Told;
+use super::Report;
 use super::advice::{Advice, Goal};
 use super::files::expected_slope;
 use super::ladder::Knob;
@@ -8,14 +8,14 @@ use super::measure::Series;
 use crate::report::Thousands;
 
 /// Prints it.
-pub fn print(told: &Told<'_>) {
+pub fn print(report: &Report<'_>) {
     println!(
         "{}: {} × {} pixels, {} {}, times are medians ± half the distance of their quartiles\n",
-        told.scene,
-        told.width,
-        told.height,
-        told.measured.rounds,
-        if told.measured.rounds == 1 { "round" } else { "rounds" }
+        report.scene,
+        report.width,
+        report.height,
+        report.measured.rounds,
+        if report.measured.rounds == 1 { "round" } else { "rounds" }
     );
     println!(
         "{:<32}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
@@ -29,53 +29,53 @@ pub fn print(told: &Told<'_>) {
         "wrong hits",
         "leaks"
     );
-    for series in told.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
-        println!("{}{}", heading(series), slope(told, series));
+    for series in report.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+        println!("{}{}", heading(series), slope(report, series));
         for (name, index) in &series.rungs {
-            let point = &told.measured.points[*index];
+            let point = &report.measured.points[*index];
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             let hits = point.hits.filter(|_| series.knob.is_geometric());
             println!(
                 "  {:<28}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
-                named(told, name, *index),
-                if told.front.contains(index) { "•" } else { " " },
+                named(report, name, *index),
+                if report.front.contains(index) { "•" } else { " " },
                 point.error(),
                 point.errors.relative_mse,
                 point.errors.similarity,
                 format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
-                rays as f64 / (f64::from(told.width) * f64::from(told.height)),
+                rays as f64 / (f64::from(report.width) * f64::from(report.height)),
                 tests as f64 / rays.max(1) as f64,
                 hits.map_or(String::new(), |hits| hits.wrong.to_string()),
                 hits.map_or(String::new(), |hits| hits.leaks.to_string()),
             );
         }
-        if let Some(waste) = waste(told, series) {
+        if let Some(waste) = waste(report, series) {
             println!("    {waste}");
         }
     }
     println!("  • no other setting here is both faster and more accurate; what leaks is left out of it");
-    if let Some(hits) = about_hits(told) {
+    if let Some(hits) = about_hits(report) {
         println!("  wrong hits and leaks: {hits}");
     }
-    for left_out in &told.measured.left_out {
+    for left_out in &report.measured.left_out {
         println!("  left out: {left_out}");
     }
-    for lacking in &told.measured.lacking {
+    for lacking in &report.measured.lacking {
         println!("  lacking: {lacking}");
     }
-    numerics(told);
-    if let Some(advice) = &told.advice {
-        print_advice(told, advice);
+    numerics(report);
+    if let Some(advice) = &report.advice {
+        print_advice(report, advice);
     }
-    if told.partial {
+    if report.partial {
         println!("\nstopped before the end: what is above is what had been measured by then");
     }
 }
 
 /// What was judged, if anything was.
-pub fn about_hits(told: &Told<'_>) -> Option<String> {
-    let rays = told.measured.points.iter().find_map(|point| point.hits)?.rays;
+pub fn about_hits(report: &Report<'_>) -> Option<String> {
+    let rays = report.measured.points.iter().find_map(|point| point.hits)?.rays;
     Some(format!(
         "of {} rays from the eye, through the picture and at edges and corners that are seen, against exact arithmetic; a \
          leak goes through a closed surface, other wrong hits are neighbours that a rounding chose",
@@ -84,8 +84,8 @@ pub fn about_hits(told: &Told<'_>) -> Option<String> {
 }
 
 /// The scene's own value is marked.
-pub fn named(told: &Told<'_>, name: &str, index: usize) -> String {
-    if told.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
+pub fn named(report: &Report<'_>, name: &str, index: usize) -> String {
+    if report.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
 }
 
 fn heading(series: &Series) -> String {
@@ -95,11 +95,11 @@ fn heading(series: &Series) -> String {
     }
 }
 
-fn slope(told: &Told<'_>, series: &Series) -> String {
-    let Some((name, slope)) = told.slopes.iter().find(|(name, _)| *name == series.name) else {
+fn slope(report: &Report<'_>, series: &Series) -> String {
+    let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) else {
         return String::new();
     };
-    let theory = expected_slope(told, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
+    let theory = expected_slope(report, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
     format!(": error falls as samples to the power {:.2} ± {:.2}{theory}", slope.mean, slope.half_interval)
 }
 
@@ -107,11 +107,11 @@ fn slope(told: &Told<'_>, series: &Series) -> String {
 const SAME: f64 = 0.02;
 
 /// From where on a knob takes time and gives nothing.
-pub fn waste(told: &Told<'_>, series: &Series) -> Option<String> {
+pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
     if series.knob.is_geometric() {
         return None;
     }
-    let point = |index: usize| &told.measured.points[series.rungs[index].1];
+    let point = |index: usize| &report.measured.points[series.rungs[index].1];
     let last = series.rungs.len().checked_sub(1)?;
     let end = point(last);
     let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
@@ -125,8 +125,8 @@ pub fn waste(told: &Told<'_>, series: &Series) -> Option<String> {
     Some(format!("beyond {rung} it gives less than {same:.0} % more accuracy, {takes}"))
 }
 
-fn numerics(told: &Told<'_>) {
-    let numerics = &told.numerics;
+fn numerics(report: &Report<'_>) {
+    let numerics = &report.numerics;
     if numerics.is_empty() {
         return;
     }
@@ -143,21 +143,21 @@ fn numerics(told: &Told<'_>) {
             Thousands(one.leaks_per_million.round() as u64).to_string()
         );
     }
-    if let Some(warning) = about_kit_times(told) {
+    if let Some(warning) = about_kit_times(report) {
         println!("  {warning}");
     }
 }
 
 /// What the times of a kit in a process of its own say.
-pub fn about_kit_times(told: &Told<'_>) -> Option<&'static str> {
-    told.numerics.iter().any(|one| one.name.starts_with("kit")).then_some(
+pub fn about_kit_times(report: &Report<'_>) -> Option<&'static str> {
+    report.numerics.iter().any(|one| one.name.starts_with("kit")).then_some(
         "kit: questions go to a process of their own and answers come back, and that counts in its ns; wrong hits and \
          leaks do not change",
     )
 }
 
-fn print_advice(told: &Told<'_>, advice: &Advice) {
-    println!("\n{}", goal(told, advice));
+fn print_advice(report: &Report<'_>, advice: &Advice) {
+    println!("\n{}", goal(report, advice));
     for (knob, value) in &advice.values {
         println!("  {:<22}{value}", knob.name());
     }
@@ -167,8 +167,8 @@ fn print_advice(told: &Told<'_>, advice: &Advice) {
 }
 
 /// What is proposed, in a sentence.
-pub fn goal(told: &Told<'_>, advice: &Advice) -> String {
-    let size = format!("{} × {} pixels", told.full_width, told.full_height);
+pub fn goal(report: &Report<'_>, advice: &Advice) -> String {
+    let size = format!("{} × {} pixels", report.full_width, report.full_height);
     match advice.goal {
         Goal::Seconds(budget) => format!("the best for {budget:.1} s and {size}:"),
         Goal::Error(error) => format!("the fastest with an error of at most {error}, at {size}:"),

@@ -39,7 +39,7 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
             _ => "",
         };
         let broken =
-            Broken::told(query.call("plane"), format!("{yours:?}"), expected.words(), "double precision");
+            Broken::describe(query.call("plane"), format!("{yours:?}"), expected.words(), "double precision");
         Err(broken.looks_like(known(diagnosis)))
     })
 }
@@ -73,7 +73,7 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
         if yours.is_some() {
             let diagnosis =
                 "n·d = 0 makes t infinite or NaN, and a start in the plane makes t = 0: none of them counts";
-            return Err(Broken::told(query.call("plane"), format!("{yours:?}"), "None", "the definition")
+            return Err(Broken::describe(query.call("plane"), format!("{yours:?}"), "None", "the definition")
                 .looks_like(Some(diagnosis)));
         }
     }

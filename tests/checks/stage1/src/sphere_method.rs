@@ -29,7 +29,7 @@ impl Method {
             if expected.accepts(yours) {
                 return Ok(());
             }
-            let broken = Broken::told(
+            let broken = Broken::describe(
                 query.call(self.name),
                 format!("{yours:?}"),
                 expected.words(),

@@ -47,7 +47,7 @@ impl Loss {
         }
     }
 
-    fn told(self) -> &'static str {
+    fn describe(self) -> &'static str {
         match self {
             Loss::Inside => "the ray starts in the box: it is in the box from its start",
             Loss::Cancellation => "b / d - o / d cancels: subtract before you divide",
@@ -61,7 +61,7 @@ impl Loss {
 pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 8);
     let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
-    // The first failure is told: let it be one that has a single cause.
+    // The first failure is describe: let it be one that has a single cause.
     queries.sort_by_cached_key(Loss::of);
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
@@ -69,8 +69,8 @@ pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let expected = "Some: the ray meets the box";
-        Err(Broken::told(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
-            .looks_like(Some(Loss::of(query).told())))
+        Err(Broken::describe(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
+            .looks_like(Some(Loss::of(query).describe())))
     };
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
 }
@@ -94,7 +94,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let roundings = format!("None: the ray passes by {:.0} roundings", exact.margin);
-        Err(Broken::told(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
+        Err(Broken::describe(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
             .looks_like(Some(
                 "a hit where there is none: more room than 64 roundings, and each costs a visit",
             )))
@@ -120,7 +120,7 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome
             return Ok(());
         };
         match yours {
-            Some((enter, _)) if enter > t => Err(Broken::told(
+            Some((enter, _)) if enter > t => Err(Broken::describe(
                 query.call("conservative_slab"),
                 format!("enters at {enter}"),
                 format!("at {t} or before: there it meets a triangle in the box"),
@@ -144,7 +144,7 @@ pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
     );
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let broken = |expected: &str, diagnosis: &'static str| {
-            Err(Broken::told(
+            Err(Broken::describe(
                 query.call("conservative_slab"),
                 format!("{yours:?}"),
                 expected,

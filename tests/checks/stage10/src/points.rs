@@ -10,7 +10,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use raykata::kit::OffsetQuery;
 
-fn told(query: &OffsetQuery) -> String {
+fn describe(query: &OffsetQuery) -> String {
     call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])
 }
 
@@ -54,8 +54,8 @@ pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> Outco
                 }
                 () => "a fixed offset is too small here: move by the error of the point, error · |n|",
             };
-            Err(Broken::told(
-                told(query),
+            Err(Broken::describe(
+                describe(query),
                 format!("{height:.3e} off the point"),
                 format!("{bound:.3e} or more, on the side of the direction"),
                 "closed form",
@@ -75,8 +75,8 @@ pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> Outcome 
                 return Ok(());
             }
             let diagnosis = "a fixed offset is too large here: what touches the surface is not seen";
-            Err(Broken::told(
-                told(query),
+            Err(Broken::describe(
+                describe(query),
                 format!("{height:.3e} off the point"),
                 format!("at most {most:.3e}"),
                 "closed form",

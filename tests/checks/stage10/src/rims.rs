@@ -1,6 +1,6 @@
 //! Spheres with all their digits.
 
-use super::doubles::told;
+use super::doubles::describe;
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::double::U;
@@ -126,8 +126,8 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
         }
         _ => "",
     };
-    let expected = format!("{exact:?}, {}", told(margin(query) / U));
-    let broken = Broken::told(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
+    let expected = format!("{exact:?}, {}", describe(margin(query) / U));
+    let broken = Broken::describe(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
     Err(broken.looks_like(known(diagnosis)))
 }
 
@@ -186,6 +186,6 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     };
     let expected = format!("Some({rounded:?}), or a neighbour");
     let broken =
-        Broken::told(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
+        Broken::describe(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
     Err(broken.looks_like(known(diagnosis)))
 }

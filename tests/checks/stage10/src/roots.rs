@@ -11,7 +11,7 @@ use proptest::prelude::*;
 
 type Coefficients = [f32; 3];
 
-fn told([a, b, c]: &Coefficients) -> String {
+fn describe([a, b, c]: &Coefficients) -> String {
     call("stable_roots", &[a, b, c])
 }
 
@@ -37,7 +37,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let expected = roots(*query);
-        let broken = || Broken::new(told(query), yours, expected, "double precision");
+        let broken = || Broken::new(describe(query), yours, expected, "double precision");
         let Some(yours) = yours else {
             return Err(broken().looks_like(Some("the discriminant is far above 0: there are two roots")));
         };
@@ -86,7 +86,7 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
             let (value, _) = discriminant(*query);
             let p = f64::from(-query[1] / (2.0 * query[0]));
             let broken = |expected: String, diagnosis: &'static str| {
-                Err(Broken::told(told(query), format!("{yours:?}"), expected, "whole numbers, exactly")
+                Err(Broken::describe(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
                     .looks_like(Some(diagnosis)))
             };
             match (value, yours) {
@@ -115,7 +115,7 @@ pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> Outcome 
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let refused = query[0] == 0.0 || !query.iter().all(|x| x.is_finite());
         let broken = |expected: &str, diagnosis: &'static str| {
-            Err(Broken::told(told(query), format!("{yours:?}"), expected, "the definition")
+            Err(Broken::describe(describe(query), format!("{yours:?}"), expected, "the definition")
                 .looks_like(known(diagnosis)))
         };
         match yours {

@@ -76,7 +76,7 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
                 ("needle", None) => "t has lost all digits on a needle: take it from the plane",
                 _ => "a miss where there is a hit, and not for a rounding",
             };
-            Err(Broken::told(
+            Err(Broken::describe(
                 query.call("watertight"),
                 format!("{:?}", yours.map(|hit| hit.t)),
                 format!("{:?}, {margin:.0} roundings from anything else", exact.t),
@@ -149,7 +149,7 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                 }
             };
             return Err(
-                Broken::told(input, "no hit", "a hit", "the mesh is closed").looks_like(Some(diagnosis))
+                Broken::describe(input, "no hit", "a hit", "the mesh is closed").looks_like(Some(diagnosis))
             );
         }
     }
@@ -207,7 +207,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
             .collect();
         for ((query, yours), plain) in scaled.iter().zip(trial.kit.watertight(&scaled)).zip(&plain) {
             if yours != *plain {
-                let broken = Broken::told(
+                let broken = Broken::describe(
                     query.call("watertight"),
                     format!("{yours:?}"),
                     format!("{plain:?}, as without the factor 2^{exponent}"),

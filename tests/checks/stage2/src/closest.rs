@@ -61,11 +61,11 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome
                     .looks_like(known(diagnosis)));
             }
             let tests = yours.counts.primitive_tests;
-            let told = |n: u64| format!("{n} primitive tests");
+            let describe = |n: u64| format!("{n} primitive tests");
             if tests == n {
                 Ok(())
             } else {
-                Err(Broken::told(input, told(tests), told(n), "each primitive once"))
+                Err(Broken::describe(input, describe(tests), describe(n), "each primitive once"))
             }
         })
     })

@@ -33,12 +33,12 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
             for (name, yours, exact, size) in scalars {
                 // Three products and two sums.
                 if (f64::from(yours) - exact).abs() > 8.0 * double::U * f64::from(size) {
-                    let (told, expected) = (format!("{name} = {yours}"), format!("{name} = {exact}"));
+                    let (describe, expected) = (format!("{name} = {yours}"), format!("{name} = {exact}"));
                     let other = scalars.iter().find(|(_, _, other, _)| {
                         (f64::from(yours) - other).abs() <= 1e-6 * other.abs() && *other != exact
                     });
                     let swapped = other.map(|(other, ..)| format!("{name} and {other} look swapped"));
-                    return Err(Broken::told(input, told, expected, "double precision").looks_like(swapped));
+                    return Err(Broken::describe(input, describe, expected, "double precision").looks_like(swapped));
                 }
             }
             let d = -u.as_dvec3().cross(v.as_dvec3()).length_squared();
@@ -49,7 +49,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
                 return Ok(());
             }
             let broken =
-                Broken::told(input, format!("D = {:?}", yours.d), format!("D = {d:e}"), "double precision");
+                Broken::describe(input, format!("D = {:?}", yours.d), format!("D = {d:e}"), "double precision");
             if (f64::from(yours.d) + d).abs() <= tolerance {
                 return Err(broken.looks_like(Some("the sign of D is wrong: it is UV² - UU·VV = -|u × v|²")));
             }

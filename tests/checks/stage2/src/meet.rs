@@ -1,6 +1,6 @@
 //! Ray against triangle: each law for all three methods.
 
-use super::method::{CHOICE, CRAMER, GRAM, Method, aimed, told};
+use super::method::{CHOICE, CRAMER, GRAM, Method, aimed, describe};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::generate::{point, rough_point, triangle};
@@ -62,7 +62,7 @@ for_all_methods! {
 }
 
 pub(super) fn triangle_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
-    // First a ray on which every formula is right that is right on any: what it gets wrong is told most plainly.
+    // First a ray on which every formula is right that is right on any: what it gets wrong is describe most plainly.
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let ray = Ray::new(vec3(0.125, 0.5, 2.0), vec3(0.0, 0.0, -0.5));
     let drawn = TriangleQuery { ray, triangle: unit };
@@ -180,10 +180,10 @@ pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
                 if yours == expected {
                     return Ok(());
                 }
-                let broken = Broken::told(
+                let broken = Broken::describe(
                     query.call(method.name),
-                    told(yours),
-                    told(expected),
+                    describe(yours),
+                    describe(expected),
                     "the answer at scale 1",
                 );
                 let diagnosis = yours
@@ -258,9 +258,9 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
     let huge = with(-1e20 * Vec3::ONE, 1e20 * Vec3::X, 1e20 * Vec3::Y);
     for yours in (method.ask)(trial.kit, &[huge]).into_iter().flatten() {
         if !(yours.t.is_finite() && yours.beta.is_finite() && yours.gamma.is_finite()) {
-            return Err(Broken::told(
+            return Err(Broken::describe(
                 huge.call(method.name),
-                told(Some(yours)),
+                describe(Some(yours)),
                 "None, or finite numbers",
                 "the definition",
             )

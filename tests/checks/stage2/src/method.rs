@@ -35,7 +35,7 @@ impl Method {
                 return Ok(());
             }
             let broken =
-                Broken::told(query.call(self.name), told(yours), expected.words(), "double precision");
+                Broken::describe(query.call(self.name), describe(yours), expected.words(), "double precision");
             Err(broken.looks_like(triangle_diagnosis(self.name, query, yours, &expected)))
         })
     }
@@ -49,7 +49,7 @@ impl Method {
         for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
             if yours != *expected {
                 let broken =
-                    Broken::told(query.call(self.name), told(yours), told(*expected), "exact arithmetic");
+                    Broken::describe(query.call(self.name), describe(yours), describe(*expected), "exact arithmetic");
                 return Err(broken.looks_like(known(diagnosis)));
             }
         }
@@ -57,7 +57,7 @@ impl Method {
     }
 }
 
-pub(super) fn told(hit: Option<TriangleHit>) -> String {
+pub(super) fn describe(hit: Option<TriangleHit>) -> String {
     hit.map_or("None".into(), |hit| {
         format!("t = {:?}, beta = {:?}, gamma = {:?}", hit.t, hit.beta, hit.gamma)
     })

@@ -18,7 +18,7 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Out
             None => Ok(()),
             Some((yours, expected)) => {
                 let diagnosis = build_diagnosis(&yours);
-                let broken = Broken::told(query.call("build"), yours, expected, "what makes a hierarchy");
+                let broken = Broken::describe(query.call("build"), yours, expected, "what makes a hierarchy");
                 Err(broken.looks_like(known(diagnosis)))
             }
         }
@@ -65,7 +65,7 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
                         false => "a split put everything on one side: fall back on one that divides",
                     };
                     let panic = format!("a panic at {place}: {message}");
-                    let broken = Broken::told(query.call("build"), panic, "a tree", "what makes a hierarchy");
+                    let broken = Broken::describe(query.call("build"), panic, "a tree", "what makes a hierarchy");
                     return Err(broken.looks_like(Some(diagnosis)));
                 }
                 Err(error) => kit_error::unwind(error),
@@ -129,11 +129,11 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
     if (depth, nodes) == (10, 1023) {
         return Ok(());
     }
-    let told = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
-    Err(Broken::told(
+    let describe = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
+    Err(Broken::describe(
         "build of 512 boxes, ObjectMedian, leaf_size 1",
-        told(depth, nodes),
-        told(10, 1023),
+        describe(depth, nodes),
+        describe(10, 1023),
         "log₂ 512 + 1",
     ))
 }

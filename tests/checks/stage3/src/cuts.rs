@@ -58,8 +58,8 @@ fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, 
     // Coincident centroids may be sorted in any order, which changes the cost of cuts between them; those sets are
     // judged by the best cut that some order gives only if centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
-        let told = format!("cost {yours:.4} (cut before {middle})");
-        (told, format!("cost {best:.4}"), cut_diagnosis(ordered, middle))
+        let describe = format!("cost {yours:.4} (cut before {middle})");
+        (describe, format!("cost {best:.4}"), cut_diagnosis(ordered, middle))
     })
 }
 

@@ -140,13 +140,13 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
             let met = tree::overlapped(query).len() as u64;
             let visits = yours.counts.node_visits;
-            let told = |n: u64| format!("{n} nodes opened");
+            let describe = |n: u64| format!("{n} nodes opened");
             if visits <= met {
                 return Ok(());
             }
-            Err(Broken::told(
+            Err(Broken::describe(
                 describe_search(query),
-                told(visits),
+                describe(visits),
                 format!("at most {met}: the ray meets no more boxes"),
                 "counted",
             )
@@ -192,10 +192,10 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
-            let told = |n: u64| format!("{n} primitives asked about after the first hit");
+            let describe = |n: u64| format!("{n} primitives asked about after the first hit");
             match answer.tests_after_hit {
                 0 => Ok(()),
-                n => Err(Broken::told(describe_search(query), told(n), told(0), "counted")
+                n => Err(Broken::describe(describe_search(query), describe(n), describe(0), "counted")
                     .looks_like(Some("the search goes on after a hit: one is enough"))),
             }
         })

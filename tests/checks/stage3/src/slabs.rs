@@ -30,11 +30,11 @@ pub(super) fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery], diagnosis: &
         if right {
             return Ok(());
         }
-        let told = match near <= far {
+        let describe = match near <= far {
             true => format!("Some(({near}, {far}))"),
             false => "None".into(),
         };
-        let broken = Broken::told(query.call("slab"), format!("{yours:?}"), told, "double precision");
+        let broken = Broken::describe(query.call("slab"), format!("{yours:?}"), describe, "double precision");
         Err(broken.looks_like(known(slab_diagnosis(query, yours, diagnosis))))
     })
 }
@@ -130,7 +130,7 @@ pub(super) fn judge_slabs_exactly(
         let sound = yours.is_none_or(|(enter, leave)| enter <= leave);
         if yours.is_some() != *hit || !sound {
             let expected = if *hit { "a hit" } else { "None" };
-            let broken = Broken::told(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
+            let broken = Broken::describe(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
             return Err(broken.looks_like(Some(diagnosis)));
         }
     }
@@ -259,7 +259,7 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
         compare(queries, trial.kit.slab(queries), |query, yours| match yours {
             Some(_) => Ok(()),
             None => {
-                Err(Broken::told(query.call("slab"), "None", "a hit", "exact arithmetic").looks_like(Some(
+                Err(Broken::describe(query.call("slab"), "None", "a hit", "exact arithmetic").looks_like(Some(
                     "1/d, the difference and the product are rounded, so far may fall just short of near: \
                      make far a little longer, (1 + 2 γ₃) times",
                 )))

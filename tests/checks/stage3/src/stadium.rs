@@ -82,7 +82,7 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
         format!("expected cost {yours:.3} a ray"),
         format!("at most {:.3} (object median: {median:.3})", 1.05 * best),
     );
-    Err(Broken::told(
+    Err(Broken::describe(
         "build of the 200 boxes of a stadium, SurfaceArea, leaf_size 4",
         yours,
         best,
@@ -109,12 +109,12 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
         // Along which axis a nearly cubic box is cut, and who gets the odd one, moves the cost by a tenth.
         let most = counted(split) * 5 / 4;
         if yours > most {
-            let told = |n: u64| format!("{n} nodes opened and primitives tested");
+            let describe = |n: u64| format!("{n} nodes opened and primitives tested");
             let input = format!("180 rays through a stadium of 200 spheres, tree by {split:?}, leaf_size 4");
-            let broken = Broken::told(
+            let broken = Broken::describe(
                 input,
-                told(yours),
-                format!("at most {}", told(most)),
+                describe(yours),
+                format!("at most {}", describe(most)),
                 "a tree by the same rule",
             );
             return Err(broken.looks_like(Some(
@@ -133,7 +133,7 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
     let query = tree::search_query(&bvh, &spheres, &Ray::new(vec3(-9.0, 0.0, 0.0), Vec3::X));
     let needed = tree::needed(&query).0.len() as u64;
     let yours = trial.kit.closest_hit(std::slice::from_ref(&query))[0].counts.node_visits;
-    let told = |n: u64| format!("{n} nodes opened");
+    let describe = |n: u64| format!("{n} nodes opened");
     // No two boxes overlap, so there is one order, and no room for another count.
     if yours <= needed {
         return Ok(());
@@ -145,8 +145,8 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
         _ => "the farther box is not tested again after a nearer hit was found",
     };
     let input = "a ray along a row of 64 spheres, of which it hits the first";
-    let most = format!("at most {}", told(needed));
-    Err(Broken::told(input, told(yours), most, "counted").looks_like(Some(diagnosis)))
+    let most = format!("at most {}", describe(needed));
+    Err(Broken::describe(input, describe(yours), most, "counted").looks_like(Some(diagnosis)))
 }
 
 pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
@@ -165,9 +165,9 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
         }
         _ => "the farther child is entered first, or a box is not tested again after a nearer hit was found",
     };
-    let told = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
-    let (yours, most) = (told(yours.node_visits, yours.primitive_tests), told(most_visits, most_tests));
-    Err(Broken::told(
+    let describe = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
+    let (yours, most) = (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
+    Err(Broken::describe(
         format!("{} rays through a stadium", queries.len()),
         yours,
         format!("at most {most}"),

@@ -31,7 +31,7 @@ pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
             .looks_like(known(diagnosis)));
         }
     }
-    // √0.16 = 0.4. One off may be rounding, which is told apart below.
+    // √0.16 = 0.4. One off may be rounding, which is describe apart below.
     let yours = trial.kit.encode_gamma(&[0.16])[0];
     if yours.abs_diff(102) > 1 {
         let diagnosis = match yours {

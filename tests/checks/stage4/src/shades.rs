@@ -226,8 +226,8 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
                 () if missed => "a light is counted without asking whether it is visible",
                 () => return Ok(()),
             };
-            let told = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-            Err(Broken::told(query.call("shade"), told(&traced), told(&needed), "counted")
+            let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
+            Err(Broken::describe(query.call("shade"), describe(&traced), describe(&needed), "counted")
                 .looks_like(Some(diagnosis)))
         })
     })

@@ -60,7 +60,7 @@ pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> O
     if off < 1e-6 {
         return Ok(());
     }
-    let broken = Broken::told(
+    let broken = Broken::describe(
         "mirror, 1000 times",
         format!("|d| - 1 = {off:.1e}"),
         "less than 1e-6",

@@ -32,7 +32,7 @@ pub(super) fn paste(query: &ScatterQuery) -> String {
     )
 }
 
-fn told(children: &[SecondaryRay]) -> String {
+fn describe(children: &[SecondaryRay]) -> String {
     let one = |child: &SecondaryRay| format!("{:?} of weight {}", child.bounce, child.weight);
     match children {
         [] => "no rays".into(),
@@ -149,7 +149,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
         };
         let [reflected, transmitted] = expected.map(|weight| weight.as_vec3());
         let expected = format!("Reflection of weight {reflected}, Transmission of weight {transmitted}");
-        Err(Broken::told(paste(query), told(&yours), expected, "the formula in double precision")
+        Err(Broken::describe(paste(query), describe(&yours), expected, "the formula in double precision")
             .looks_like(known(diagnosis)))
     })
 }
@@ -173,7 +173,7 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
         let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
         super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
         let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
-            let broken = Broken::told(paste(&enter), told(&inside), "a refracted ray", "glass");
+            let broken = Broken::describe(paste(&enter), describe(&inside), "a refracted ray", "glass");
             return Err(broken.looks_like(Some(ENTERING)));
         };
         let bent = super::directions::snell(&snell).0.map(|direction| direction.as_vec3());
@@ -222,7 +222,7 @@ pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> 
         let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
         if refracted || !sound || (reflected - mirrored).abs() > 1e-5 {
             let expected = format!("Reflection of weight {mirrored}, and no Transmission");
-            let broken = Broken::told(paste(&query), told(&yours), expected, "total internal reflection");
+            let broken = Broken::describe(paste(&query), describe(&yours), expected, "total internal reflection");
             return Err(broken
                 .looks_like(Some("beyond the critical angle no ray goes through, and the share F is 1")));
         }
@@ -247,7 +247,7 @@ pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let broken =
-                Broken::told(paste(query), told(&yours), "no rays", "what counts nothing shows nothing");
+                Broken::describe(paste(query), describe(&yours), "no rays", "what counts nothing shows nothing");
             Err(broken.looks_like(Some("a child of weight zero: test the child's own weight")))
         })
     })

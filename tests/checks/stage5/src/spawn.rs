@@ -38,7 +38,7 @@ fn at_any_scale() -> impl Strategy<Value = Leaving> + Clone {
     )
 }
 
-fn told((surface, child): &Leaving) -> String {
+fn describe((surface, child): &Leaving) -> String {
     let direction = child.direction.paste();
     let child =
         format!("&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
@@ -58,7 +58,7 @@ pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome 
 fn judge(query: &Leaving, ray: Ray) -> Outcome {
     let (surface, child) = query;
     let broken = |yours: String, expected: String, diagnosis: &'static str| {
-        Err(Broken::told(told(query), yours, expected, "closed form").looks_like(known(diagnosis)))
+        Err(Broken::describe(describe(query), yours, expected, "closed form").looks_like(known(diagnosis)))
     };
     let direction = ray.direction.as_dvec3();
     if !((direction.normalize() - child.direction.as_dvec3()).length() < 1e-5) {

@@ -56,10 +56,10 @@ fn judge(
     if rays == expected {
         return Ok(());
     }
-    let told =
+    let describe =
         |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "a tree without end".into() };
     let input = format!("a closed room, every ray followed, from\n{}", paste(&first));
-    Err(Broken::told(input, told(rays), told(expected), "counted").looks_like(Some(diagnosis)))
+    Err(Broken::describe(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
 }
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {

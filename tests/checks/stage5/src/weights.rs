@@ -69,6 +69,6 @@ fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
     let kind = ["Reflection", "Transmission"][off];
     let verdict =
         |traced: bool| format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" });
-    Err(Broken::told(paste(query), verdict(found[off]), verdict(counts[off]), "its own weight and the limit")
+    Err(Broken::describe(paste(query), verdict(found[off]), verdict(counts[off]), "its own weight and the limit")
         .looks_like(Some(diagnosis)))
 }

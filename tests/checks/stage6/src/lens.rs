@@ -164,7 +164,7 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
                 }
                 () => "",
             };
-            Err(Broken::told(
+            Err(Broken::describe(
                 paste(query),
                 format!("a ray that misses by {:.2e}", (found - expected).length()),
                 format!("a ray through camera.position + {:?}", expected.as_vec3()),

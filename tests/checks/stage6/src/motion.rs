@@ -27,7 +27,7 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
                 let input =
                     format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
                 let yours = format!("a panic at {place}: {message}");
-                let broken = Broken::told(input, yours, "each of 1..=16 once", "the definition");
+                let broken = Broken::describe(input, yours, "each of 1..=16 once", "the definition");
                 return Err(broken.looks_like((left > 0).then_some(repeat)));
             }
             Err(error) => kit_error::unwind(error),
@@ -146,7 +146,7 @@ pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
 
 type Move = (Vec3, Vec3, f32);
 
-fn told((start, end, time): &Move) -> String {
+fn describe((start, end, time): &Move) -> String {
     call("lerp", &[start, end, time])
 }
 
@@ -157,7 +157,7 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, at_ends, |queries| {
         compare(queries, trial.kit.lerp(queries), |query, yours| {
             let expected = if query.2 == 0.0 { query.0 } else { query.1 };
-            let broken = || Broken::new(told(query), yours, expected, "bit for bit");
+            let broken = || Broken::new(describe(query), yours, expected, "bit for bit");
             let near = (yours - expected).length() < 1e-3;
             let smaller = yours == query.0.min(query.1);
             match yours == expected {
@@ -174,7 +174,7 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, still, |queries| {
         compare(queries, trial.kit.lerp(queries), |query, yours| match yours == query.0 {
             true => Ok(()),
-            false => Err(Broken::new(told(query), yours, query.0, "what does not move stands still")
+            false => Err(Broken::new(describe(query), yours, query.0, "what does not move stands still")
                 .looks_like(Some(
                     "off by a rounding: (1 - t) a + t a is not always a; clamp to what lies between the ends",
                 ))),
@@ -210,7 +210,7 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
                 () if is(at(0.5)) => "half the way at any time",
                 () => "",
             };
-            Err(Broken::new(told(query), yours, exact.as_vec3(), "double precision, within the ends")
+            Err(Broken::new(describe(query), yours, exact.as_vec3(), "double precision, within the ends")
                 .looks_like(known(diagnosis)))
         })
     };

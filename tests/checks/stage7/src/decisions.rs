@@ -304,7 +304,7 @@ fn compare_effects(
     if yours == expected {
         return Ok(());
     }
-    let broken = Broken::new(told(query), yours, expected, source);
+    let broken = Broken::new(describe(query), yours, expected, source);
     Err(broken.looks_like(known(diagnosis(query, yours, expected))))
 }
 
@@ -350,7 +350,7 @@ fn material_query() -> impl Strategy<Value = MaterialQuery> + Clone {
     )
 }
 
-fn told(query: &MaterialQuery) -> String {
+fn describe(query: &MaterialQuery) -> String {
     let m = &query.material;
     let lights: Vec<String> = query.lights.iter().map(|light| light.radiance().paste()).collect();
     format!(

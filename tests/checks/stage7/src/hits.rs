@@ -74,7 +74,7 @@ fn drawn() -> HitsQuery {
 /// light 2 casts no shadows. The 10 hits of rough glass send 3 rays each way.
 const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
 
-/// What mistakes make of [`drawn`], counted by hand in the same way, and how they are told.
+/// What mistakes make of [`drawn`], counted by hand in the same way, and how they are describe.
 const MISTAKES: [(RayCounts, &str); 10] = [
     // 3 + 20, 4 + 31; and light 2 casts no shadows.
     (RayCounts { shadow: 58, ..DRAWN }, "lights that do not matter to the material cost no ray"),

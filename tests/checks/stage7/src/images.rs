@@ -330,7 +330,7 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
                 Ok(color) => color,
                 Err(KitError::Panicked { message, place }) => {
                     let yours = format!("a panic at {place}: {message}");
-                    let broken = Broken::told(input, yours, "a colour", "the definition");
+                    let broken = Broken::describe(input, yours, "a colour", "the definition");
                     let overflow = message.contains("overflow");
                     return Err(broken
                         .looks_like(overflow.then_some(

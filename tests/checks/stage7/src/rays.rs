@@ -51,7 +51,7 @@ fn judge(
         }
         Err(KitError::Panicked { message, place }) => {
             let overflow = message.contains("overflow");
-            let broken = Broken::told(
+            let broken = Broken::describe(
                 input,
                 format!("a panic at {place}: {message}"),
                 format!("{expected:?}"),

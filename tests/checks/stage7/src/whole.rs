@@ -39,7 +39,7 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
             effects.lens, effects.motion, effects.indirect_light
         ),
     };
-    let broken = Broken::told(format!("effects of {what}"), part(&yours), part(expected), "the definition");
+    let broken = Broken::describe(format!("effects of {what}"), part(&yours), part(expected), "the definition");
     Err(broken.looks_like(known(diagnosis)))
 }
 
@@ -173,7 +173,7 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
                     format!("{} {effect}", if calls { "calls for" } else { "does not call for" })
                 };
                 let input = format!("effects of a scene with just these: {}", names.join(", "));
-                let broken = Broken::told(input, says(!expected), says(expected), "how the scene was made");
+                let broken = Broken::describe(input, says(!expected), says(expected), "how the scene was made");
                 return Err(broken.looks_like(Some(clue(effect, expected))));
             }
         }

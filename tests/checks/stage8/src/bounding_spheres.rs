@@ -28,7 +28,7 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
         } else {
             "the radius is the largest distance of a point from the centre: no other measure holds all of them"
         };
-        Err(Broken::told(
+        Err(Broken::describe(
             format!("bounding_sphere(&{})", list(points)),
             format!("radius {:?} around {}, which leaves {outside} outside", sphere.radius, sphere.center),
             "a sphere with all points in it",
@@ -53,7 +53,7 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
             if sphere.radius <= most {
                 return Ok(());
             }
-            Err(Broken::told(
+            Err(Broken::describe(
                 format!("bounding_sphere(&{})", list(points)),
                 format!("radius {:?}", sphere.radius),
                 format!("{most} at most, twice that of the smallest sphere"),
@@ -76,7 +76,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
         let broken = |expected: String, diagnosis: &'static str| {
             let input = call("enter_bounding_sphere", &[&ray, &sphere]);
-            Err(Broken::told(input, format!("{yours:?}"), expected, "exact arithmetic")
+            Err(Broken::describe(input, format!("{yours:?}"), expected, "exact arithmetic")
                 .looks_like(Some(diagnosis)))
         };
         if starts_inside(smaller) {
@@ -107,14 +107,14 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
                     };
                     return broken(format!("Some({exact:?}), or a little less"), diagnosis);
                 }
-                // A ray whose range ends between the two shells may be told anything.
+                // A ray whose range ends between the two shells may be describe anything.
                 if t >= ray.t_min && (t >= early || near(t, early) || starts_inside(larger)) {
                     return Ok(());
                 }
                 let diagnosis = match () {
                     () if t < ray.t_min => "before the range of the ray",
                     () if other_units => "t counts lengths of direction",
-                    () => "much too early: the ray is told to look where there is nothing yet",
+                    () => "much too early: the ray is describe to look where there is nothing yet",
                 };
                 broken(format!("Some({exact:?})"), diagnosis)
             }

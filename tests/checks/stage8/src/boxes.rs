@@ -40,7 +40,7 @@ fn ends(query: &BoundsQuery, row: usize) -> (f64, f64, f64) {
     (low, high, size)
 }
 
-fn told(query: &BoundsQuery) -> String {
+fn describe(query: &BoundsQuery) -> String {
     call("bounds_to_world", &[&query.to_world, &query.bounds])
 }
 
@@ -64,8 +64,8 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
                 () => "two corners are not enough: a rotation may turn any of the eight into the farthest",
             };
             let axis = ["x", "y", "z"][row];
-            return Err(Broken::told(
-                told(query),
+            return Err(Broken::describe(
+                describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, or more"),
                 "double precision",
@@ -90,8 +90,8 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
             }
             let axis = ["x", "y", "z"][row];
             let diagnosis = "larger than the roundings ask for: a ray visits what it need not";
-            return Err(Broken::told(
-                told(query),
+            return Err(Broken::describe(
+                describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, and {room:.1e} on either side at most"),
                 "double precision",
@@ -106,6 +106,6 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
     if yours.min.cmpgt(yours.max).all() {
         return Ok(());
     }
-    let broken = Broken::new(told(&empty), yours, "an empty box", "the definition");
+    let broken = Broken::new(describe(&empty), yours, "an empty box", "the definition");
     Err(broken.looks_like(Some("an empty box stays empty: ∞ - ∞ is NaN")))
 }

@@ -54,12 +54,12 @@ fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
     GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
 }
 
-/// The first failure is told: that of the fewest nodes.
+/// The first failure is describe: that of the fewest nodes.
 fn plainest_first(queries: &mut [GraphQuery]) {
     queries.sort_by_key(|query| (query.graph.nodes.len(), query.table.primitives.len()));
 }
 
-fn told(query: &GraphQuery) -> String {
+fn describe(query: &GraphQuery) -> String {
     let node = |(index, node): (usize, &GraphNode)| {
         let (enter, leave) = query.table.boxes[index];
         let hits: Vec<String> = node
@@ -114,7 +114,7 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
         let named = |hit: Option<PrimitiveHit>| {
             hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
         };
-        Err(Broken::told(told(query), named(found), named(expected), "brute force")
+        Err(Broken::describe(describe(query), named(found), named(expected), "brute force")
             .looks_like(known(diagnosis)))
     };
     compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
@@ -138,8 +138,8 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ou
             () if asked.len() > all.len() => "a primitive was asked twice",
             () => "without `skip` nothing is left out",
         };
-        Err(Broken::told(
-            told(query),
+        Err(Broken::describe(
+            describe(query),
             format!("{n_boxes} volumes and the primitives {asked:?}"),
             format!("no volume and the primitives {all:?}"),
             "the definition",
@@ -182,8 +182,8 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
             }
             () => "something was left out that the ray may meet",
         };
-        Err(Broken::told(
-            told(query),
+        Err(Broken::describe(
+            describe(query),
             format!("{n_boxes} volumes, primitives {asked:?}"),
             format!("{boxes} volumes, primitives {expected:?}"),
             "the definition",
@@ -215,8 +215,8 @@ fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)
         if yours.asked == *expected {
             return Ok(());
         }
-        Err(Broken::told(
-            told(query),
+        Err(Broken::describe(
+            describe(query),
             format!("asked the primitives {:?}", yours.asked),
             format!("{expected:?}"),
             "the definition",

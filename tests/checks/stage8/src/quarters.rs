@@ -70,8 +70,8 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
         });
     }
     if got != expected {
-        let told = "triangles with the material of another one";
-        return Err((told.into(), "its own for each".into(), "the four take the material of the one"));
+        let describe = "triangles with the material of another one";
+        return Err((describe.into(), "its own for each".into(), "the four take the material of the one"));
     }
     for (vertex, &(p, q)) in labels.iter().enumerate().take(yours.uvs.len()) {
         let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);

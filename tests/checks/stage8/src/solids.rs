@@ -101,8 +101,8 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
             return Ok(());
         }
         let exact = query.solid.meet(&query.ray).and_then(|meeting| meeting.t);
-        let told = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
-        Err(Broken::told(input(query), told(yours.map(|hit| hit.t)), told(exact), "exact arithmetic")
+        let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
+        Err(Broken::describe(input(query), describe(yours.map(|hit| hit.t)), describe(exact), "exact arithmetic")
             .looks_like(known(diagnosis(query, yours, exact))))
     })
 }
@@ -186,7 +186,7 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 () if unit => "not the normal of this part of the surface",
                 () => "neither of unit length nor at right angles to the surface",
             };
-            Err(Broken::told(
+            Err(Broken::describe(
                 input(query),
                 format!("normal {} at t = {:?}", hit.normal, hit.t),
                 "a unit vector out of the surface there",
@@ -231,17 +231,17 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 (None, None) => true,
                 _ => false,
             };
-            let told = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
+            let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
             let diagnosis = scaled.is_none().then_some(
                 "a fixed epsilon drops it: t is small because direction is long, not because the hit is near",
             );
             if same {
                 return Ok(());
             }
-            Err(Broken::told(
+            Err(Broken::describe(
                 input(query),
-                told(scaled.map(|hit| hit.t)),
-                told(t),
+                describe(scaled.map(|hit| hit.t)),
+                describe(t),
                 "1/1024 of the t for direction / 1024",
             )
             .looks_like(diagnosis))
@@ -276,7 +276,7 @@ fn nonsense<S: Solid>(trial: &Trial<'_>) -> Outcome {
     }
     compare(&queries, S::ask(trial.kit, &queries), |query, yours| match yours {
         None => Ok(()),
-        Some(hit) => Err(Broken::told(input(query), format!("{hit:?}"), "None", "the definition")
+        Some(hit) => Err(Broken::describe(input(query), format!("{hit:?}"), "None", "the definition")
             .looks_like(Some("such a ray or shape cannot be hit; compare so that NaN fails"))),
     })
     .into_iter()

@@ -83,11 +83,11 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
             () => "",
         };
         let input = call("ray_to_object", &[ray, to_object]);
-        let told = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
-        Err(Broken::told(
+        let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
+        Err(Broken::describe(
             input,
-            told(yours.origin, yours.direction),
-            told(origin.as_vec3(), direction.as_vec3()),
+            describe(yours.origin, yours.direction),
+            describe(origin.as_vec3(), direction.as_vec3()),
             "double precision",
         )
         .looks_like(known(diagnosis)))
@@ -134,13 +134,13 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
             () if yours.time != ray.time => "the time of the ray was forgotten",
             () => "the range of the ray must stay: t is the same number in both spaces",
         };
-        let told = |length: f64, ray: &Ray| {
+        let describe = |length: f64, ray: &Ray| {
             format!("length {length:.6}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
         };
-        Err(Broken::told(
+        Err(Broken::describe(
             call("ray_to_object", &[ray, to_object]),
-            told(f64::from(yours.direction.length()), &yours),
-            told(exact, ray),
+            describe(f64::from(yours.direction.length()), &yours),
+            describe(exact, ray),
             "the definition",
         )
         .looks_like(Some(diagnosis)))
@@ -222,7 +222,7 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             let exact = path.iter().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
             let input = format!("placement(&{})", list(path));
             let Some(yours) = yours else {
-                let broken = Broken::told(input, "None", "Some", "each transform can be undone");
+                let broken = Broken::describe(input, "None", "Some", "each transform can be undone");
                 return Err(broken.looks_like(Some("a determinant below 0 is a mirror, and not singular")));
             };
             let near = |yours: &Affine3A, right: &DAffine3| {
@@ -253,11 +253,11 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             let which = if up { "to_object" } else { "to_world" };
             let (got, right) =
                 if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
-            let told = |entries: Vec<f64>| format!("{which} {entries:.3?}");
-            Err(Broken::told(
+            let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
+            Err(Broken::describe(
                 input,
-                told(got.as_daffine3().to_cols_array().to_vec()),
-                told(right.to_cols_array().to_vec()),
+                describe(got.as_daffine3().to_cols_array().to_vec()),
+                describe(right.to_cols_array().to_vec()),
                 "double precision",
             )
             .looks_like(known(diagnosis)))
@@ -272,7 +272,7 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outc
     let paths = vec![vec![flat], vec![turn, line], vec![flat, turn, turn]];
     let judge = |path: &Vec<Affine3A>, yours: Option<raykata::graph::Placement>| match yours {
         None => Ok(()),
-        Some(_) => Err(Broken::told(
+        Some(_) => Err(Broken::describe(
             format!("placement(&{})", list(path)),
             "Some",
             "None",
@@ -286,7 +286,7 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outc
         vec![Affine3A::from_scale(Vec3::splat(1e-4)), Affine3A::from_scale(Vec3::new(1e-3, 1e3, -1.0))];
     match trial.kit.placement(std::slice::from_ref(&small))[0] {
         Some(_) => Ok(()),
-        None => Err(Broken::told(format!("placement(&{})", list(&small)), "None", "Some", "the definition")
+        None => Err(Broken::describe(format!("placement(&{})", list(&small)), "None", "Some", "the definition")
             .looks_like(Some("a fixed limit for the determinant: it is small because the object is small"))),
     }
 }

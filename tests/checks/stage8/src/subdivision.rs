@@ -97,7 +97,7 @@ fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) ->
     let pairs: Vec<_> = meshes.iter().zip(trial.kit.loop_subdivide(&queries)).collect();
     pairs.iter().try_for_each(|((name, mesh), yours)| {
         law(mesh, yours).map_err(|(got, expected, diagnosis)| {
-            Broken::told(format!("loop_subdivide of {name}"), got, expected, "the rule")
+            Broken::describe(format!("loop_subdivide of {name}"), got, expected, "the rule")
                 .looks_like(known(diagnosis))
         })
     })
@@ -106,7 +106,7 @@ fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) ->
 pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
     judge(trial, |mesh, yours| {
         let (n_old, n_edges) = (mesh.positions.len(), edges(mesh).len());
-        let told =
+        let describe =
             |mesh: &Mesh| format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
         let (vertices, triangles) = (n_old + n_edges, 4 * mesh.triangles.len());
         if (yours.positions.len(), yours.triangles.len()) != (vertices, triangles) {
@@ -119,11 +119,11 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
                 }
                 _ => "",
             };
-            return Err((told(yours), format!("{vertices} vertices, {triangles} triangles"), diagnosis));
+            return Err((describe(yours), format!("{vertices} vertices, {triangles} triangles"), diagnosis));
         }
         if !yours.normals.is_empty() {
-            let told = format!("{} normals", yours.normals.len());
-            return Err((told, "none".into(), "normals are dropped: the surface is another one"));
+            let describe = format!("{} normals", yours.normals.len());
+            return Err((describe, "none".into(), "normals are dropped: the surface is another one"));
         }
         let lengths = [
             (mesh.uvs.len(), yours.uvs.len(), vertices, "texture coordinates: each vertex has its own"),
@@ -195,7 +195,7 @@ fn shared(vertex: u32, others: &[u32], share: f64) -> Shares {
     [own].into_iter().chain(others.iter().map(|&other| (other, share))).collect()
 }
 
-fn told(shares: &Shares) -> String {
+fn describe(shares: &Shares) -> String {
     let one = |(old, share): &(u32, f64)| format!("{share} of vertex {old}");
     shares.iter().map(one).collect::<Vec<String>>().join(", ")
 }
@@ -240,12 +240,12 @@ impl<'a> Step<'a> {
     }
 
     /// Where a vertex is, and what it takes of the old ones.
-    fn told(&self, vertex: usize) -> String {
+    fn describe(&self, vertex: usize) -> String {
         let weights = self.weights[vertex].iter().enumerate();
         // Rounded to four digits.
         let rounded = weights.map(|(old, weight)| (old as u32, (1e4 * weight).round() / 1e4));
         let shares: Shares = rounded.filter(|(_, weight)| *weight != 0.0).collect();
-        format!("vertex {vertex} at {}: {}", self.yours.positions[vertex], told(&shares))
+        format!("vertex {vertex} at {}: {}", self.yours.positions[vertex], describe(&shares))
     }
 
     /// The vertices at the other ends of the edges of an old one: all of them, and those along a border.
@@ -280,7 +280,7 @@ impl<'a> Step<'a> {
             }
             () => "β is 3/16 for three neighbours, and 3/8 divided by their number otherwise",
         };
-        Err((self.told(index), told(&shares), diagnosis))
+        Err((self.describe(index), describe(&shares), diagnosis))
     }
 
     /// Judges the new vertex of an edge: one of the new ones has to take the right shares.
@@ -304,7 +304,7 @@ impl<'a> Step<'a> {
             () if fresh.all(|vertex| self.takes_of_others(vertex, &around)) => FROM_BEFORE,
             () => "3/8 of both ends and 1/8 of both third corners",
         };
-        Err((format!("no new vertex for the edge {p} {q}"), format!("one with {}", told(&shares)), diagnosis))
+        Err((format!("no new vertex for the edge {p} {q}"), format!("one with {}", describe(&shares)), diagnosis))
     }
 
     /// Judges the vertices of a border, or those that are not.

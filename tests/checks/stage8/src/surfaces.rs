@@ -17,7 +17,7 @@ fn patch() -> impl Strategy<Value = BezierPatch> + Clone {
     })
 }
 
-fn told(query: &PatchQuery) -> String {
+fn describe(query: &PatchQuery) -> String {
     // Two rows a line: a message shows three lines of the input.
     let [a, b, c, d] = query.patch.rows.map(|row| list(&row));
     format!("bezier_point(&BezierPatch {{ rows: [{a}, {b},\n{c}, {d}] }},\n{})", query.uv.paste())
@@ -50,7 +50,7 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> Outcom
             };
             match yours == corner {
                 true => Ok(()),
-                false => Err(Broken::new(told(query), yours, corner, "the corner of the net")
+                false => Err(Broken::new(describe(query), yours, corner, "the corner of the net")
                     .looks_like(known(diagnosis))),
             }
         };
@@ -104,7 +104,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<Outcome> {
         };
         match near(right) {
             true => Ok(()),
-            false => Err(Broken::new(told(query), yours, right.as_vec3(), "Bernstein polynomials in double")
+            false => Err(Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
                 .looks_like(known(diagnosis))),
         }
     })

@@ -11,7 +11,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
 use raykata::partition::{Bsp, BspNode, CutPlane, corners};
 
-fn told(query: &BspQuery) -> String {
+fn describe(query: &BspQuery) -> String {
     let hulls: Vec<String> = query.hulls.iter().map(checks::paste::list).collect();
     format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
 }
@@ -38,7 +38,7 @@ fn usable(hull: &[Vec3]) -> bool {
 fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
     let nothing = !query.hulls.iter().any(|hull| usable(hull));
     super::lists::judge_tree(
-        || told(query),
+        || describe(query),
         WHAT_MAKES_IT,
         (nothing, yours.nodes.len()),
         || fault(query, yours),
@@ -170,6 +170,6 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     };
     let yours = format!("up to {fullest} sheets a leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
-    Err(Broken::told(input, yours, format!("2 a leaf, at most {} references, 8 levels", 2 * n), "counted")
+    Err(Broken::describe(input, yours, format!("2 a leaf, at most {} references, 8 levels", 2 * n), "counted")
         .looks_like(Some(diagnosis)))
 }

@@ -78,17 +78,17 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
     if counts == [32, 2] {
         return Ok(());
     }
-    let told = |[first, again]: [usize; 2]| format!("{first} tests without a known hit, {again} with it");
+    let describe = |[first, again]: [usize; 2]| format!("{first} tests without a known hit, {again} with it");
     let diagnosis = match counts {
         [_, again] if again > 32 => "the ray is not shortened by the known hit",
         [first, _] if first > 32 => "without a known hit there is nothing to test beforehand",
         [_, 1] => "the search is left out: something nearer may have come",
         _ => "",
     };
-    Err(Broken::told(
+    Err(Broken::describe(
         "a ray along 32 spheres in a row, and the next ray, which hits the same one",
-        told(counts),
-        told([32, 2]),
+        describe(counts),
+        describe([32, 2]),
         "counted",
     )
     .looks_like(known(diagnosis)))
@@ -128,7 +128,7 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
             let input = format!("{} rays, {} nodes", query.rays.len(), query.bvh.nodes.len());
             if yours.hits.len() != query.rays.len() {
                 let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
-                let broken = Broken::told(input, yours, expected, "one a ray");
+                let broken = Broken::describe(input, yours, expected, "one a ray");
                 return Err(broken.looks_like(Some("a packet has eight rays at most: take the rest in further packets")));
             }
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
@@ -191,8 +191,8 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         let needless = yours.opened.iter().filter(|&&node| !needed(node)).count();
         // The rays go together, so a few may go into the farther child first.
         if needless > yours.opened.len() / 4 {
-            let told = format!("{needless} of {} nodes opened without need", yours.opened.len());
-            return Err(Broken::told("8 rays side by side through 64 spheres", told, "few", "counted").looks_like(Some(
+            let describe = format!("{needless} of {} nodes opened without need", yours.opened.len());
+            return Err(Broken::describe("8 rays side by side through 64 spheres", describe, "few", "counted").looks_like(Some(
                 "nodes are opened that no ray enters before its hit: shorten each ray by its hits, and take the nearer child first",
             )));
         }
@@ -209,19 +209,19 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
     let mut opened = yours.opened.clone();
     opened.sort_unstable();
     let again = opened.windows(2).find(|pair| pair[0] == pair[1]);
-    let told = |n: u64| format!("{n} nodes opened");
+    let describe = |n: u64| format!("{n} nodes opened");
     let input = format!("{what} 64 spheres");
     if let Some(pair) = again {
         let broken =
-            Broken::told(input, format!("node {} is opened again", pair[0]), "once a packet", "counted");
+            Broken::describe(input, format!("node {} is opened again", pair[0]), "once a packet", "counted");
         return Err(broken
             .looks_like(Some("the rays go one after the other: open a node once, for all that enter it")));
     }
     if yours.opened.len() as u64 > most {
-        let broken = Broken::told(
+        let broken = Broken::describe(
             input,
-            told(yours.opened.len() as u64),
-            format!("at most {}", told(most)),
+            describe(yours.opened.len() as u64),
+            format!("at most {}", describe(most)),
             "counted",
         );
         return Err(broken.looks_like(Some("nodes are opened that no ray enters before its hit")));

@@ -32,7 +32,7 @@ fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<Outcome> {
         None => Ok(()),
         Some((yours, expected, diagnosis)) => {
             let input = format!("build(&{}, {})", checks::paste::list(&query.bounds), query.resolution);
-            Err(Broken::told(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
+            Err(Broken::describe(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
         }
     })
 }
@@ -58,9 +58,9 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
         let listed = grid.primitives(number);
         for (id, one) in query.bounds.iter().enumerate() {
             let times = listed.iter().filter(|&&other| other == id as u32).count();
-            let told = |times: usize| format!("primitive {id} is listed {times} times in cell {at}");
+            let describe = |times: usize| format!("primitive {id} is listed {times} times in cell {at}");
             if one.is_empty() && times > 0 {
-                return Some((told(times), told(0), "what is not a number is in no cell"));
+                return Some((describe(times), describe(0), "what is not a number is in no cell"));
             }
             // Cells over one point are all that point: one that lists what is there will do.
             let elsewhere = || (0..n).any(|other| grid.primitives(other).contains(&(id as u32)));
@@ -75,12 +75,12 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
                     0 => "a primitive was left out",
                     _ => "a primitive is listed twice in one cell",
                 };
-                return Some((told(times), told(1), diagnosis));
+                return Some((describe(times), describe(1), diagnosis));
             }
             if times > 0 && is_far_off(&grid.bounds, &cell.to_box(), one) {
                 return Some((
-                    told(times),
-                    told(0),
+                    describe(times),
+                    describe(0),
                     "a primitive is listed in a cell that it does not reach",
                 ));
             }
@@ -142,7 +142,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
             query.cells.resolution,
             query.ray.paste()
         );
-        Err(Broken::told(input, yours, expected, "every cell asked, in double precision")
+        Err(Broken::describe(input, yours, expected, "every cell asked, in double precision")
             .looks_like(known(diagnosis)))
     };
     // A cell that the ray goes through well inside must be visited; one that it touches may be.
@@ -196,13 +196,13 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
         let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
         let expected = diagonal(&query);
         if let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) {
-            let told = |cells: &[u32]| {
+            let describe = |cells: &[u32]| {
                 format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
             };
             let input =
                 format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
             let broken =
-                Broken::told(input, told(&yours.visits), told(&expected), "planes in double precision");
+                Broken::describe(input, describe(&yours.visits), describe(&expected), "planes in double precision");
             return Err(broken.looks_like(Some(
                 "trap A8: tMax += tDelta adds up a rounding a step: work out t from the number of the cell, in double",
             )));

@@ -33,7 +33,7 @@ fn first_cut(tree: &KdTree) -> Option<(usize, f32, [usize; 3])> {
     Some((usize::from(axis), at, [left.len(), right.len(), both]))
 }
 
-fn told(cut: &Option<(usize, f32, [usize; 3])>) -> String {
+fn describe(cut: &Option<(usize, f32, [usize; 3])>) -> String {
     match cut {
         None => "no cut at the root".into(),
         Some((axis, at, [left, right, both])) => {
@@ -51,7 +51,7 @@ fn refuse(
     expected: &str,
     diagnosis: &'static str,
 ) -> Outcome {
-    Err(Broken::told(format!("build of {what}, leaf_size 2"), told(cut), expected, "the heuristic")
+    Err(Broken::describe(format!("build of {what}, leaf_size 2"), describe(cut), expected, "the heuristic")
         .looks_like(Some(diagnosis)))
 }
 
@@ -186,13 +186,13 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
     };
     let all = cubes(crowd(0.0).chain(crowd(18.0)));
     let what = "two crowds of 27 boxes in opposite corners of a cube of 20";
-    let told = |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
+    let describe = |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
     let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);
     // 99.8 % of the cube is empty; after four cuts a crowd is still in a cell of a tenth of its side at most twice over.
     if on < 0.9 {
-        return Err(Broken::told(
+        return Err(Broken::describe(
             format!("build of {what}, cut_off_empty_space alone, leaf_size 2"),
-            told(on),
+            describe(on),
             "at least 90 %",
             "the heuristic",
         )
@@ -204,7 +204,7 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
     if off >= early {
         let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
         let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
-        return Err(Broken::told(input, yours, "more with it than without", "the heuristic")
+        return Err(Broken::describe(input, yours, "more with it than without", "the heuristic")
             .looks_like(Some("the margins are cut off although that is switched off")));
     }
     Ok(())

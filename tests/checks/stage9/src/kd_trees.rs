@@ -16,7 +16,7 @@ use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-fn told(query: &KdQuery) -> String {
+fn describe(query: &KdQuery) -> String {
     let boxes = checks::paste::list(&query.bounds);
     format!("build(&{boxes},\n&{:?}, {})", query.heuristics, query.leaf_size)
 }
@@ -26,7 +26,7 @@ const WHAT_MAKES_IT: &str = "what makes a kd-tree";
 fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
     super::lists::judge_tree(
-        || told(query),
+        || describe(query),
         WHAT_MAKES_IT,
         (nothing, yours.nodes.len()),
         || fault(query, yours),

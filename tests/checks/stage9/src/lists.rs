@@ -44,7 +44,7 @@ pub(super) type Fault = (String, String, &'static str);
 
 /// Judges a tree of `n_nodes` nodes: over `nothing` it has none, and over anything `fault` looks for what is wrong.
 pub(super) fn judge_tree(
-    told: impl FnOnce() -> String,
+    describe: impl FnOnce() -> String,
     source: &'static str,
     (nothing, n_nodes): (bool, usize),
     fault: impl FnOnce() -> Option<Fault>,
@@ -55,7 +55,7 @@ pub(super) fn judge_tree(
         (false, _) => fault(),
     };
     fault.map_or(Ok(()), |(yours, expected, diagnosis)| {
-        Err(Broken::told(told(), yours, expected, source).looks_like(known(diagnosis)))
+        Err(Broken::describe(describe(), yours, expected, source).looks_like(known(diagnosis)))
     })
 }
 
@@ -68,7 +68,7 @@ pub(super) fn ended<T>(
 ) -> Result<T, Broken> {
     kit_error::catch(build).map_err(|error| match error {
         KitError::Panicked { message, .. } => {
-            Broken::told(input, message, "a tree", source).looks_like(Some(says))
+            Broken::describe(input, message, "a tree", source).looks_like(Some(says))
         }
         error => kit_error::unwind(error),
     })
@@ -76,11 +76,11 @@ pub(super) fn ended<T>(
 
 /// Whether no more than `most` primitives stand in leaves, each counted once a leaf.
 pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> Outcome {
-    let told = |n: usize| format!("{n} references");
+    let describe = |n: usize| format!("{n} references");
     if yours.len() <= most {
         return Ok(());
     }
-    let broken = Broken::told(input, told(yours.len()), format!("at most {}", told(most)), "counted");
+    let broken = Broken::describe(input, describe(yours.len()), format!("at most {}", describe(most)), "counted");
     Err(broken.looks_like(Some(says)))
 }
 
@@ -92,9 +92,9 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
     for (node, cell, listed) in leaves {
         for (id, one) in boxes.iter().enumerate() {
             let times = listed.iter().filter(|&&other| other == id as u32).count();
-            let told = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
+            let describe = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if one.is_empty() && times > 0 {
-                return Some((told(times), told(0), "what is not a number is in no cell"));
+                return Some((describe(times), describe(0), "what is not a number is in no cell"));
             }
             if !one.is_empty() && cell.touches(one) && times != 1 {
                 let touches = (0..3).any(|axis| {
@@ -106,12 +106,12 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
                     0 => "a primitive that reaches into several cells belongs to all of them",
                     _ => "a primitive is listed twice in one leaf",
                 };
-                return Some((told(times), told(1), diagnosis));
+                return Some((describe(times), describe(1), diagnosis));
             }
             if times > 0 && is_far_off(bounds, &cell.to_box(), one) {
                 return Some((
-                    told(times),
-                    told(0),
+                    describe(times),
+                    describe(0),
                     "a primitive is listed in a leaf that it does not reach",
                 ));
             }

@@ -16,7 +16,7 @@ use raykata::partition::{Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-fn told(query: &OctreeQuery) -> String {
+fn describe(query: &OctreeQuery) -> String {
     let boxes = checks::paste::list(&query.bounds);
     format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
 }
@@ -25,7 +25,7 @@ const WHAT_MAKES_IT: &str = "what makes an octree";
 
 fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
-    judge_tree(|| told(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), || fault(query, yours))
+    judge_tree(|| describe(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), || fault(query, yours))
 }
 
 fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
@@ -77,7 +77,7 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
     };
     let yours = format!("up to {most} primitives a leaf, {depth} levels, {n} nodes");
     let expected = "2 a leaf, more levels where boxes are dense, and none divided that holds 2";
-    Err(Broken::told(
+    Err(Broken::describe(
         "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
         yours,
         expected,
@@ -146,7 +146,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
         Ok(answers) => answers,
         Err(kit_error::KitError::Panicked { message, .. }) => {
             let input = format!("{} over 26 spheres, rays along axes and diagonals", searcher.name());
-            return Err(Broken::told(input, message, "an answer", "brute force").looks_like(Some(says)));
+            return Err(Broken::describe(input, message, "an answer", "brute force").looks_like(Some(says)));
         }
         Err(error) => kit_error::unwind(error),
     };

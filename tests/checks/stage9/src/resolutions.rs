@@ -58,7 +58,7 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
     })
 }
 
-fn told(query: &ResolutionQuery) -> String {
+fn describe(query: &ResolutionQuery) -> String {
     format!("resolution({}, {}, {:?})", query.bounds.paste(), query.n_primitives, query.density)
 }
 
@@ -93,7 +93,7 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
                 () => "too many cells",
             };
             let expected = format!("about {wanted} cells that are nearly cubes");
-            Err(Broken::told(told(query), format!("{yours}, {n} cells"), expected, "the definition")
+            Err(Broken::describe(describe(query), format!("{yours}, {n} cells"), expected, "the definition")
                 .looks_like(Some(diagnosis)))
         })
     })
@@ -131,8 +131,8 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Outc
                 () if query.bounds.is_empty() || query.n_primitives == 0 => "nothing is one cell",
                 () => "a flat box has no volume: take the axes along which it is thick, an area or a length",
             };
-            let told = told(&query);
-            let broken = Broken::new(told, yours, expected, "by hand");
+            let describe = describe(&query);
+            let broken = Broken::new(describe, yours, expected, "by hand");
             return Err(broken.looks_like(Some(diagnosis)));
         }
     }

@@ -202,10 +202,10 @@ mod tests {
 
     #[test]
     fn a_header_that_lacks_something_or_has_too_much_is_refused() {
-        let told = |header: &str| wrong(header).unwrap_err().to_string();
-        assert!(told("mistake: it counts\nsays: many").contains("lacks a line `caught_by: …`"));
-        assert!(told("mistake: it counts\ncaught_by: a_check").contains("lacks `says"));
-        assert!(told("mistake: m\ncaught_by: c\nsays: s\ntarp: S3").contains("has `tarp`"));
-        assert!(told("mistake").contains("not `key: value`"));
+        let text = |header: &str| wrong(header).unwrap_err().to_string();
+        assert!(text("mistake: it counts\nsays: many").contains("lacks a line `caught_by: …`"));
+        assert!(text("mistake: it counts\ncaught_by: a_check").contains("lacks `says"));
+        assert!(text("mistake: m\ncaught_by: c\nsays: s\ntarp: S3").contains("has `tarp`"));
+        assert!(text("mistake").contains("not `key: value`"));
     }
 }

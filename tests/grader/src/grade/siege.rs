@@ -65,8 +65,8 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let chosen = attacks::choose(attacks::load(root)?, &options.names)?;
     let bar = bar_of_steps(chosen.len());
     let tried = attacks::run_all(root, chosen, grade, |tried| {
-        let told = tried.complaints.iter().map(|complaint| format!("{}: {complaint}", tried.attack.name));
-        bar.suspend(|| told.for_each(|line| println!("{line}")));
+        let text = tried.complaints.iter().map(|complaint| format!("{}: {complaint}", tried.attack.name));
+        bar.suspend(|| text.for_each(|line| println!("{line}")));
         bar.inc(1);
     })?;
     bar.finish_and_clear();

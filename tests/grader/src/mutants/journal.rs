@@ -19,12 +19,12 @@ impl Journal {
     /// That of the last run, or an empty one.
     pub fn open(root: &Path, keep: bool) -> Result<Journal> {
         let file = root.join("target/corpus/mutants.jsonl");
-        let told = || format!("{}", file.display());
-        std::fs::create_dir_all(file.parent().unwrap_or(root)).with_context(told)?;
+        let text = || format!("{}", file.display());
+        std::fs::create_dir_all(file.parent().unwrap_or(root)).with_context(text)?;
         let mut fates = BTreeMap::new();
         if keep {
             let text =
-                std::fs::read_to_string(&file).with_context(|| format!("{}: no run before this", told()))?;
+                std::fs::read_to_string(&file).with_context(|| format!("{}: no run before this", text()))?;
             // The last line of a run that was killed may be half a line: that change is tried again.
             fates.extend(text.lines().filter_map(|line| serde_json::from_str::<(String, Fate)>(line).ok()));
         }
@@ -34,7 +34,7 @@ impl Journal {
             .append(keep)
             .truncate(!keep)
             .open(&file)
-            .with_context(told)?;
+            .with_context(text)?;
         let mut journal = Journal { file, out, fates };
         if keep {
             journal.line("")?;

@@ -50,7 +50,7 @@ fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
     }
 }
 
-fn told(expected: &str, graded: &Graded) -> Vec<String> {
+fn message(expected: &str, graded: &Graded) -> Vec<String> {
     complaints(&[1], &toml::from_str(expected).unwrap(), graded)
 }
 
@@ -167,28 +167,28 @@ fn archives_take_the_place_of_the_folder() {
 #[test]
 fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given() {
     let fine = graded(|_| Outcome::Passed);
-    assert_eq!(told("earned = \"all\"", &fine), [""; 0]);
-    assert_eq!(told("earned = \"none\"", &fine).len(), 24);
-    assert_eq!(told("earned = \"any\"", &fine), [""; 0]);
+    assert_eq!(message("earned = \"all\"", &fine), [""; 0]);
+    assert_eq!(message("earned = \"none\"", &fine).len(), 24);
+    assert_eq!(message("earned = \"any\"", &fine), [""; 0]);
     let normal =
         graded(|name| if name.starts_with("sphere_normal") { Outcome::TooLong } else { Outcome::Passed });
-    assert_eq!(told("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
-    assert_eq!(told("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal), [""; 0]);
-    let both = told("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
+    assert_eq!(message("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
+    assert_eq!(message("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal), [""; 0]);
+    let both = message("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
     assert!(both.len() == 1 && both[0].contains("face_forward_turns") && both[0].contains("not earned"));
-    let none = told("earned = { at_least_all_but = [\"plane_*\"] }", &normal);
+    let none = message("earned = { at_least_all_but = [\"plane_*\"] }", &normal);
     assert!(none.len() == 1 && none[0].contains("should pass and is: too long"), "{none:?}");
-    assert_eq!(told("earned = { at_most = [\"plane_*\"] }", &normal).len(), 20);
-    let outcome = told("earned = { all_but = [\"sphere_normal_*\"] }\noutcomes = [\"crashed\"]", &normal);
+    assert_eq!(message("earned = { at_most = [\"plane_*\"] }", &normal).len(), 20);
+    let outcome = message("earned = { all_but = [\"sphere_normal_*\"] }\noutcomes = [\"crashed\"]", &normal);
     assert!(outcome[0].ends_with("is: too long, not: crashed"), "{outcome:?}");
 }
 
 #[test]
 fn words_are_looked_for_in_everything_that_is_told() {
     let wrong = graded(|_| Outcome::Wrong);
-    assert_eq!(told("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
+    assert_eq!(message("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
     let missing =
-        told("earned = \"none\"\nsays = [\"sorry\"]\nnever_says = [\"build.rs\"]\ntrouble = true", &wrong);
+        message("earned = \"none\"\nsays = [\"sorry\"]\nnever_says = [\"build.rs\"]\ntrouble = true", &wrong);
     assert!(missing.iter().any(|one| one == "nobody is told `sorry`"), "{missing:?}");
     assert!(missing.iter().any(|one| one == "somebody is told `build.rs`"), "{missing:?}");
     assert!(missing.iter().any(|one| one.contains("nobody is told why")), "{missing:?}");
@@ -199,7 +199,7 @@ fn reports_that_leak_obey_or_are_endless_are_complained_about() {
     let with = |change: fn(&mut Graded)| {
         let mut graded = graded(|_| Outcome::Wrong);
         change(&mut graded);
-        told("earned = \"none\"", &graded)
+        message("earned = \"none\"", &graded)
     };
     assert_eq!(with(|_| ()), [""; 0]);
     type Spoil = fn(&mut Graded);
@@ -213,8 +213,8 @@ fn reports_that_leak_obey_or_are_endless_are_complained_about() {
         (|graded| drop(graded.checks.pop()), "checks were graded"),
     ];
     for (change, says) in cases {
-        let told = with(change);
-        assert!(told.iter().any(|one| one.contains(says)), "{says}: {told:?}");
+        let text = with(change);
+        assert!(text.iter().any(|one| one.contains(says)), "{says}: {text:?}");
     }
 }
 
@@ -230,17 +230,17 @@ fn a_run_names_what_went_wrong_and_what_was_changed() {
         Ok(graded(|_| if honest { Outcome::Passed } else { Outcome::Wrong }))
     });
     assert_eq!(fine[1].complaints, [""; 0]);
-    let told = &fine[0].complaints;
-    assert!(told.iter().any(|one| one.starts_with("without the syntax check: ")), "{told:?}");
+    let text = &fine[0].complaints;
+    assert!(text.iter().any(|one| one.starts_with("without the syntax check: ")), "{text:?}");
     let broken = run(&|_, allowed| bail_out(allowed));
-    let told = &broken[0].complaints;
-    assert!(told.iter().any(|one| one.contains("gave up: out of paper with 1 rule")), "{told:?}");
+    let text = &broken[0].complaints;
+    assert!(text.iter().any(|one| one.contains("gave up: out of paper with 1 rule")), "{text:?}");
     let harmful = run(&|path, _| {
         fs::write(path.join("../../beside/secret.txt"), "gone")?;
         Ok(graded(|_| Outcome::Passed))
     });
-    let told = &harmful[1].complaints;
-    assert!(told.iter().any(|one| one.starts_with("it changed ") && one.ends_with("secret.txt")));
+    let text = &harmful[1].complaints;
+    assert!(text.iter().any(|one| one.starts_with("it changed ") && one.ends_with("secret.txt")));
     assert!(choose(load(&root()).unwrap(), &["nobody".into()]).is_err());
 }
 

@@ -123,24 +123,24 @@ fn points(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>)
 fn words(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) {
     let messages = graded.checks.iter().map(|check| check.message.as_str());
     let remarks = graded.remarks.iter().flat_map(|remark| [remark.file.as_str(), remark.what.as_str()]);
-    let told: Vec<&str> =
+    let text: Vec<&str> =
         messages.chain(remarks).chain([graded.compiler.as_str(), graded.trouble.as_str()]).collect();
     let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in &expected.says {
-        if !told.iter().any(|text| one_line(text).contains(&one_line(words))) {
+        if !text.iter().any(|text| one_line(text).contains(&one_line(words))) {
             complaints.push(format!("nobody is told `{words}`"));
         }
     }
     for words in expected.never_says.iter().map(String::as_str).chain([CANARY]) {
-        if told.iter().any(|text| text.contains(words)) {
+        if text.iter().any(|text| text.contains(words)) {
             complaints.push(format!("somebody is told `{words}`"));
         }
     }
-    if let Some(text) = told.iter().find(|text| text.chars().any(is_dangerous)) {
+    if let Some(text) = text.iter().find(|text| text.chars().any(is_dangerous)) {
         let shown: String = text.escape_debug().take(200).collect();
         complaints.push(format!("control characters were left in: {shown}"));
     }
-    let length: usize = told.iter().map(|text| text.len()).sum();
+    let length: usize = text.iter().map(|text| text.len()).sum();
     if length > LONGEST_REPORT {
         complaints.push(format!("the report has {length} bytes"));
     }

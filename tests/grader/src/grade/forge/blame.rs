@@ -24,10 +24,10 @@ pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
         let mut blamed: BTreeMap<String, String> = BTreeMap::new();
         for error in &errors {
             for name in sign(error, suspects) {
-                let told = blamed.entry(name).or_default();
-                if told.len() < SHOWN {
+                let text = blamed.entry(name).or_default();
+                if text.len() < SHOWN {
                     let rendered = error["rendered"].as_str().unwrap_or_default();
-                    told.extend(rendered.chars().take(SHOWN));
+                    text.extend(rendered.chars().take(SHOWN));
                 }
             }
         }

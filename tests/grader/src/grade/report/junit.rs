@@ -1,7 +1,7 @@
 //! `junit.xml`: what CI servers show. A test suite is a submission, a test case a check.
 
 use super::machines::is_error;
-use super::told;
+use super::messages;
 use crate::grade::result::{CheckResult, Class, Graded, Outcome};
 use anyhow::Result;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -43,8 +43,8 @@ fn case(check: &CheckResult) -> TestCase {
         outcome => {
             let kind = if is_error(outcome) { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
-            status.set_message(told::entry(check).title).set_type(outcome.words());
-            status.set_description(told::told(check));
+            status.set_message(messages::entry(check).title).set_type(outcome.words());
+            status.set_description(messages::message(check));
             status
         }
     };

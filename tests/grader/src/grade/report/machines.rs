@@ -1,7 +1,7 @@
 //! For programs: `results.json`, and the files of Gradescope and GitHub Classroom.
 
 use super::clean::clean_line;
-use super::{presentable, told};
+use super::{messages, presentable};
 use crate::grade::result::{CheckResult, Class, Graded, Outcome, Remark, Session};
 use anyhow::Result;
 use base64::Engine;
@@ -70,7 +70,7 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
                 "score": check.earned,
                 "max_score": check.points,
                 "status": status,
-                "output": told::told(check),
+                "output": messages::message(check),
                 "output_format": "text",
                 "name_format": "text",
                 "visibility": "visible",
@@ -79,7 +79,7 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
         .collect();
     let kit = clean_line(&session.kit, super::LINE);
     let mut results = json!({
-        "output": format!("{}\n\nkit: {kit}", told::summary(graded)),
+        "output": format!("{}\n\nkit: {kit}", messages::summary(graded)),
         "output_format": "text",
         "test_output_format": "text",
         "test_name_format": "text",
@@ -102,7 +102,7 @@ pub fn classroom(graded: &Graded) -> Value {
     let mut tests: Vec<Value> = graded
         .checks
         .iter()
-        .map(|check| classroom_test(&title(check), status(check.outcome), &told::told(check), check.earned))
+        .map(|check| classroom_test(&title(check), status(check.outcome), &messages::message(check), check.earned))
         .collect();
     if graded.checks.is_empty() {
         tests.push(classroom_test("submission", "error", &graded.trouble, 0));
@@ -149,7 +149,7 @@ fn status(outcome: Outcome) -> &'static str {
 
 /// The law and the name of the check, since several checks are about the same law.
 fn title(check: &CheckResult) -> String {
-    format!("{} ({})", told::entry(check).title, check.name)
+    format!("{} ({})", messages::entry(check).title, check.name)
 }
 
 /// Whether JUnit counts it as an error, and not as a failure.

@@ -15,7 +15,7 @@ mod tables;
 mod tally;
 #[cfg(test)]
 mod tests;
-mod told;
+mod messages;
 
 pub use clean::{clean, clean_line};
 pub use machines::{classroom, classroom_output, gradescope};

@@ -2,7 +2,7 @@
 
 use super::chart;
 use super::page::{page, session_line, with_code};
-use super::{tally, told};
+use super::{messages, tally};
 use crate::grade::result::{CheckResult, Graded, Outcome, Picture, Session, sum};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
@@ -87,7 +87,7 @@ fn groups<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> Vec<Vec<&'a Chec
             let no_answer = !matches!(check.outcome, Outcome::Wrong | Outcome::TooLong | Outcome::Crashed);
             no_answer
                 && first.outcome == check.outcome
-                && told::told_without_header(first) == told::told_without_header(check)
+                && messages::message_without_header(first) == messages::message_without_header(check)
         };
         match groups.iter_mut().find(same) {
             Some(group) => group.push(check),
@@ -106,7 +106,7 @@ fn card(group: &[&CheckResult]) -> Markup {
                 @if group.len() > 1 { " " (group.len()) " checks" }
             }
             @for check in group { (failed(check, group.len() == 1)) }
-            pre { (told::told_without_header(first)) }
+            pre { (messages::message_without_header(first)) }
             @if let Some(picture) = first.picture.as_ref().filter(|_| shows_pictures(first)) { (figure(picture)) }
         }
     }
@@ -114,7 +114,7 @@ fn card(group: &[&CheckResult]) -> Markup {
 
 /// A check that did not pass: its law, where to read on, and a nudge where it stands alone.
 fn failed(check: &CheckResult, alone: bool) -> Markup {
-    let entry = told::entry(check);
+    let entry = messages::entry(check);
     html! {
         h3 { (heading(check)) }
         @if !entry.slide.is_empty() { p.slide { "Read on: " (entry.slide) } }
@@ -125,12 +125,12 @@ fn failed(check: &CheckResult, alone: bool) -> Markup {
 fn heading(check: &CheckResult) -> Markup {
     html! {
         span.worth { (check.earned) " of " (check.points) }
-        (with_code(&told::entry(check).title)) " " span.name { (check.name) }
+        (with_code(&messages::entry(check).title)) " " span.name { (check.name) }
     }
 }
 
 fn shows_pictures(check: &CheckResult) -> bool {
-    check.outcome != Outcome::WrongOnHidden && told::entry(check).visibility == Visibility::Visible
+    check.outcome != Outcome::WrongOnHidden && messages::entry(check).visibility == Visibility::Visible
 }
 
 /// A picture inside the page, if it is one.

@@ -1,6 +1,6 @@
 //! What a class did, counted.
 
-use super::told;
+use super::messages;
 use crate::grade::result::{CheckResult, Class, Graded, Outcome};
 use checks::rubric::{Entry, RUBRIC};
 use std::cmp::Reverse;
@@ -20,7 +20,7 @@ pub(super) struct Tally {
 impl Tally {
     fn new(check: &CheckResult) -> Self {
         let (stage, name, points) = (check.stage, check.name.clone(), check.points);
-        Tally { stage, name, points, entry: told::entry(check), counts: [0; Outcome::ALL.len()] }
+        Tally { stage, name, points, entry: messages::entry(check), counts: [0; Outcome::ALL.len()] }
     }
 
     /// How many submissions passed.

@@ -148,8 +148,8 @@ fn a_check_that_fails_on_hidden_inputs_tells_no_more_than_that() -> Result<()> {
     // What the instructor keeps.
     files.remove("results.json");
     assert!(files.iter().all(|(_, text)| !text.contains("0.1234")));
-    let told = files.values().filter(|text| text.contains("stage 1: 1 check fails on hidden inputs only"));
-    assert_eq!(told.count(), 1);
+    let text = files.values().filter(|text| text.contains("stage 1: 1 check fails on hidden inputs only"));
+    assert_eq!(text.count(), 1);
     Ok(())
 }
 

@@ -9,7 +9,7 @@ pub fn entry(check: &CheckResult) -> Entry {
 }
 
 /// What went wrong, and nothing of what is hidden. Empty if nothing did.
-pub fn told(check: &CheckResult) -> String {
+pub fn message(check: &CheckResult) -> String {
     if check.outcome == Outcome::Passed {
         return String::new();
     }
@@ -26,15 +26,15 @@ pub fn told(check: &CheckResult) -> String {
 }
 
 /// The same without the lines that a page shows as headings.
-pub fn told_without_header(check: &CheckResult) -> String {
-    let told = told(check);
-    match told.strip_prefix(&entry(check).header()) {
+pub fn message_without_header(check: &CheckResult) -> String {
+    let text = message(check);
+    match text.strip_prefix(&entry(check).header()) {
         // What follows the header is indented below it.
         Some(rest) => {
             let lines: Vec<&str> = rest.lines().map(|line| line.strip_prefix("  ").unwrap_or(line)).collect();
             lines.join("\n")
         }
-        None => told,
+        None => text,
     }
 }
 
