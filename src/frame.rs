@@ -163,7 +163,7 @@ pub fn render<T: Tally>(
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-        // Where threads cannot be had, as in a jail, this one does the same work.
+        // Where threads cannot be had, as in a sandbox, this one does the same work.
         match pool {
             Ok(pool) => pool.install(|| corners.into_par_iter().map(tile).collect()),
             Err(_) => corners.into_iter().map(tile).collect(),

@@ -108,7 +108,7 @@ pub fn serve_with(answer: &Answering<'_>) {
         let deep = std::thread::Builder::new().name("exercise".into()).stack_size(STACK_BYTES);
         match deep.spawn_scoped(scope, work) {
             Ok(thread) => thread.join().unwrap_or(Ok(())),
-            // In a jail there are no threads, and whoever made it has given this one a deep stack.
+            // In a sandbox there are no threads, and whoever made it has given this one a deep stack.
             Err(_) => work(),
         }
     });

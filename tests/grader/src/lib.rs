@@ -16,7 +16,7 @@ pub mod generate;
 #[cfg(target_os = "linux")]
 pub mod grade;
 pub mod handout;
-pub mod jail;
+pub mod sandbox;
 pub mod mutants;
 pub mod pictures;
 pub mod sync;

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use grader::kits::root;
-use grader::{cases, corpus, gaps, gauntlet, generate, handout, jail, mutants, sync};
+use grader::{cases, corpus, gaps, gauntlet, generate, handout, sandbox, mutants, sync};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
 use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};
@@ -51,7 +51,7 @@ const GROUPS: &[(&str, &str)] = &[
 
 fn main() -> ExitCode {
     // As a launcher of what is not trusted, or as the syntax check, this program does nothing else.
-    jail::launch_if_asked();
+    sandbox::launch_if_asked();
     #[cfg(target_os = "linux")]
     grade::lint_if_asked();
     match run(std::env::args_os().skip(1).collect()) {

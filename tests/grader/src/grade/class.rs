@@ -7,7 +7,7 @@ use super::report::clean::{clean, clean_line};
 use super::result::{Graded, Outcome, Remark};
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
-use crate::jail::{self, How, Jail, Purpose, Walls};
+use crate::sandbox::{self, How, Sandbox, Purpose, Confinement};
 use crate::queue;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub struct Grader {
     /// Asks them.
     pub judge: Arc<Judge>,
     /// Lerp a submission and the machine.
-    pub walls: Walls,
+    pub confinement: Confinement,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,
 }
@@ -129,7 +129,7 @@ impl Grader {
         graded
     }
 
-    /// Puts the files to the syntax check, each in a jail: what is meant to confuse a compiler may confuse the check.
+    /// Puts the files to the syntax check, each in a sandbox: what is meant to confuse a compiler may confuse the check.
     fn read(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Read> {
         let mut lost = Lost::new();
         // What a rule would have kept out may remember in ways that the check does not know.
@@ -166,9 +166,9 @@ impl Grader {
 
     /// What the syntax check reads in a file; `None` if it broke.
     fn reading(&self, text: &str) -> Result<Option<Reading>> {
-        let mut command = Jail::with(self.walls, Purpose::Reader).command(&own_program()?);
+        let mut command = Sandbox::with(self.confinement, Purpose::Reader).command(&own_program()?);
         command.arg(LINT_WORD);
-        let ended = jail::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
+        let ended = sandbox::run(command, text.as_bytes(), LINT_PATIENCE, 4 << 20)
             .context("the syntax check cannot be started")?;
         if ended.how != How::Exited(0) {
             return Ok(None);

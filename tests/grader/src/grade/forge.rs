@@ -1,8 +1,8 @@
-//! Makes a worker of a submission: one `rustc` for the exercises, one for the program, both in a jail, against libraries
+//! Makes a worker of a submission: one `rustc` for the exercises, one for the program, both in a sandbox, against libraries
 //! that were built once. Cargo is not asked, so no two submissions ever share what cargo would take for fresh.
 
 use super::result::Outcome;
-use crate::jail::{self, Ended, How, Jail, Purpose, Walls};
+use crate::sandbox::{self, Ended, How, Sandbox, Purpose, Confinement};
 use crate::sync::stage_of;
 use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};
@@ -31,7 +31,7 @@ pub struct Forge {
     /// The exercises as nobody has begun them, and what connects them.
     pristine: BTreeMap<String, String>,
     /// Lerp the compiler and the machine.
-    walls: Walls,
+    confinement: Confinement,
 }
 
 /// What came of it.
@@ -46,12 +46,12 @@ pub struct Forged {
 
 impl Forge {
     /// Builds the libraries, if that has not been done, and looks at what is there.
-    pub fn prepare(root: &Path, walls: Walls) -> Result<Forge> {
+    pub fn prepare(root: &Path, confinement: Confinement) -> Result<Forge> {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
         ensure!(rustc.is_file(), "no compiler at {}", rustc.display());
         let pristine = crate::sync::pristine(root)?;
-        Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine, walls })
+        Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine, confinement })
     }
 
     /// The names of the files in which students write.
@@ -188,12 +188,12 @@ impl Forge {
         arguments: &[&str],
         externs: &[&str],
     ) -> Result<Ended> {
-        let jail = Jail {
+        let sandbox = Sandbox {
             readable: vec![self.toolchain.clone(), self.libraries.clone()],
             writable: vec![scratch.to_owned()],
-            ..Jail::with(self.walls, purpose)
+            ..Sandbox::with(self.confinement, purpose)
         };
-        let mut command = jail.command(&self.rustc);
+        let mut command = sandbox.command(&self.rustc);
         command.current_dir(scratch).args(arguments).args(["--edition=2024", "-Cdebuginfo=0"]);
         // An exercise is asked so little that optimising it costs more than its answers take.
         command.args(["-Copt-level=0", "-Ccodegen-units=2", "-Cembed-bitcode=no"]);
@@ -202,7 +202,7 @@ impl Forge {
             command
                 .arg(option(&format!("--extern={name}="), &self.libraries.join(format!("lib{name}.rlib"))));
         }
-        jail::run(command, &[], COMPILER_PATIENCE, MOST_MESSAGES).context("the compiler cannot be started")
+        sandbox::run(command, &[], COMPILER_PATIENCE, MOST_MESSAGES).context("the compiler cannot be started")
     }
 }
 

@@ -3,7 +3,7 @@
 use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
-use crate::jail::{Jail, Purpose, Walls};
+use crate::sandbox::{Sandbox, Purpose, Confinement};
 use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::worker::{self, Worker};
@@ -44,7 +44,7 @@ pub struct Judge {
     /// Picks the hidden inputs.
     seed: u64,
     /// Lerp a worker and the machine.
-    walls: Walls,
+    confinement: Confinement,
     /// The inputs of all checks, which are the same for all submissions.
     drawn: Arc<Drawn>,
 }
@@ -76,7 +76,7 @@ impl Answered {
 impl Judge {
     /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
     /// put once, and one on which the reference itself fails with this seed is unfair; its seed is left out, with a word.
-    pub fn of(root: &Path, stages: &[u8], seed: u64, walls: Walls) -> Result<Judge> {
+    pub fn of(root: &Path, stages: &[u8], seed: u64, confinement: Confinement) -> Result<Judge> {
         checks::golden::seal();
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
@@ -93,7 +93,7 @@ impl Judge {
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
         let checks = queue::run(&workers, &checks, hides)?;
-        Ok(Judge { checks, seed, walls, drawn: Arc::default() })
+        Ok(Judge { checks, seed, confinement, drawn: Arc::default() })
     }
 
     /// Puts all checks to the program `worker`; those of the files in `replaced` have their outcome already.
@@ -108,8 +108,8 @@ impl Judge {
         may_remember: bool,
     ) -> Vec<CheckResult> {
         let fresh = || {
-            let jail = Jail::with(self.walls, Purpose::Worker);
-            Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, jail))
+            let sandbox = Sandbox::with(self.confinement, Purpose::Worker);
+            Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, sandbox))
         };
         let mut seasoned: Option<Arc<Worker>> = None;
         let until = Instant::now() + BUDGET;

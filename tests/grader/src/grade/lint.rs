@@ -1,6 +1,6 @@
 //! The syntax check: names what no exercise needs, with line and reason, before anything is compiled.
 //!
-//! It is a courtesy and no wall: safe Rust can reach around it, and the jail is there for that. It reads tokens and not
+//! It is a courtesy and no wall: safe Rust can reach around it, and the sandbox is there for that. It reads tokens and not
 //! only syntax trees, so that what stands in a macro is seen as well. A file that is no Rust is left to the compiler.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};

@@ -1,7 +1,7 @@
 //! `grader grade`: a verdict on each submission of a class, reached outside the students' processes.
 //!
 //! The way of a submission: `submission` takes the files in which students write and nothing else, `lint` says what no
-//! exercise needs, `forge` compiles the rest in a jail, `judge` puts the laws to the worker that came of it, `store`
+//! exercise needs, `forge` compiles the rest in a sandbox, `judge` puts the laws to the worker that came of it, `store`
 //! writes the grade down, `report` tells everybody.
 
 pub mod attacks;

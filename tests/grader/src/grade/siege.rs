@@ -5,7 +5,7 @@ use super::class::Grader;
 use super::forge::Forge;
 use super::judge::Judge;
 use super::result::Outcome;
-use crate::jail::{self, Walls};
+use crate::sandbox::{self, Confinement};
 use crate::report::bar_of_steps;
 use anyhow::Result;
 use raykata_cli::args::{Argument, Given, Opt, Spec};
@@ -43,22 +43,22 @@ const SEED: u64 = 20_26;
 
 /// `Ok(true)` if every attack got what it should.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
-    let level = jail::self_test()?;
+    let level = sandbox::self_test()?;
     println!("contained by {level}");
-    let forge = Arc::new(Forge::prepare(root, Walls::Closed)?);
+    let forge = Arc::new(Forge::prepare(root, Confinement::Full)?);
     let judges: Mutex<BTreeMap<Vec<u8>, Arc<Judge>>> = Mutex::default();
     let judge = |stages: &[u8]| -> Result<Arc<Judge>> {
         let mut judges = judges.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(judge) = judges.get(stages) {
             return Ok(judge.clone());
         }
-        let judge = Arc::new(Judge::of(root, stages, SEED, Walls::Closed)?);
+        let judge = Arc::new(Judge::of(root, stages, SEED, Confinement::Full)?);
         judges.insert(stages.to_owned(), judge.clone());
         Ok(judge)
     };
     let grade = |submission: &Path, stages: &[u8], allowed: &[String]| {
         let (forge, judge, allowed) = (forge.clone(), judge(stages)?, allowed.to_owned());
-        let grader = Grader { forge, judge, walls: Walls::Closed, allowed };
+        let grader = Grader { forge, judge, confinement: Confinement::Full, allowed };
         let student = submission.file_name().unwrap_or_default().to_string_lossy().into_owned();
         grader.grade(&student, grader.take(submission))
     };

@@ -4,7 +4,7 @@ use super::class::Grader;
 use super::forge::{self, Forge};
 use super::judge::Judge;
 use super::result::Session;
-use crate::jail::{self, Walls};
+use crate::sandbox::{self, Confinement};
 use all_checks::STAGES;
 use anyhow::{Context, Result, ensure};
 use raykata_cli::args::{Given, Misuse, Opt};
@@ -58,8 +58,8 @@ impl Terms {
     /// A grader, and what is to be written down about it. Stages and seed that are not given are those with which the
     /// class was `begun`.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {
-        let (walls, isolation) = self.walls()?;
-        let forge = Forge::prepare(root, walls)?;
+        let (confinement, isolation) = self.confinement()?;
+        let forge = Forge::prepare(root, confinement)?;
         let stages = self.stages.as_ref().map(|Stages(stages)| stages.clone());
         let session = Session {
             kit: kit(root, &self.allow, &forge)?,
@@ -67,19 +67,19 @@ impl Terms {
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
         };
-        let judge = Judge::of(root, &session.stages, session.seed, walls)?;
+        let judge = Judge::of(root, &session.stages, session.seed, confinement)?;
         let allowed = self.allow.clone();
-        Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), walls, allowed }, session))
+        Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), confinement, allowed }, session))
     }
 
     /// What stands around submissions, and in a line for the reports.
-    fn walls(&self) -> Result<(Walls, String)> {
-        match jail::self_test() {
-            Ok(level) => Ok((Walls::Closed, level.to_string())),
+    fn confinement(&self) -> Result<(Confinement, String)> {
+        match sandbox::self_test() {
+            Ok(level) => Ok((Confinement::Full, level.to_string())),
             Err(error) if self.insecure => {
                 eprintln!("warning: submissions are not contained: {error:#}");
                 let isolation = "nothing but limits on resources, on the word of the instructor (--insecure)";
-                Ok((Walls::Open, isolation.into()))
+                Ok((Confinement::LimitsOnly, isolation.into()))
             }
             Err(error) => Err(error.context(
                 "submissions cannot be contained here, so none is run (--insecure runs them all the same, with your \

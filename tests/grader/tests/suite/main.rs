@@ -11,9 +11,9 @@ mod export;
 mod grade;
 mod handout;
 #[cfg(target_os = "linux")]
-mod jail;
+mod sandbox;
 #[cfg(target_os = "linux")]
-mod jailed_workers;
+mod sandboxed_workers;
 mod one_build;
 mod paste;
 mod pictures;

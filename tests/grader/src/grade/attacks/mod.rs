@@ -4,7 +4,7 @@
 //! `step` (what attack.toml says) · `make` (the folder or archive) · `source` (changes of a source file) · `pack` (archives
 //! that no archiver makes) · `remember` (answers known by heart) · `verdict` (what came of it) · `run` (all of them)
 //!
-//! Nothing here runs or compiles an attack: that is for the jail alone.
+//! Nothing here runs or compiles an attack: that is for the sandbox alone.
 
 mod make;
 mod pack;
@@ -111,7 +111,7 @@ pub struct Attack {
     pub step: Vec<step::Step>,
     /// What must come of it.
     pub expect: Expectation,
-    /// What must come of it if the syntax check lets it pass, so that the jail itself is tried.
+    /// What must come of it if the syntax check lets it pass, so that the sandbox itself is tried.
     pub without_lint: Option<Expectation>,
 }
 

@@ -1,6 +1,6 @@
 //! Whose fault it is that the exercises do not compile, by what the compiler says.
 
-use crate::jail::Ended;
+use crate::sandbox::Ended;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! What code could ask of the kernel that is not bound by Rust's rules, for `jail.rs`. Compiled by a test, not by cargo.
+//! What code could ask of the kernel that is not bound by Rust's rules, for `sandbox.rs`. Compiled by a test, not by cargo.
 //! Says what was not refused.
 
 use std::arch::asm;

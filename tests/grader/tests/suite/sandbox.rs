@@ -1,6 +1,6 @@
-//! What runs in a jail stays in it.
+//! What runs in a sandbox stays in it.
 
-use grader::jail::{self, Ended, How, Jail, Limits, Purpose, Walls, got_through, run, this_program};
+use grader::sandbox::{self, Ended, How, Sandbox, Limits, Purpose, Confinement, got_through, run, this_program};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 const PATIENCE: Duration = Duration::from_secs(60);
 const CAP: usize = 1 << 20;
 
-fn probe(jail: &Jail, what: &str) -> Ended {
-    let mut command = jail.command(&this_program());
-    command.args(["--probe-the-jail", what]);
+fn probe(sandbox: &Sandbox, what: &str) -> Ended {
+    let mut command = sandbox.command(&this_program());
+    command.args(["--probe-the-sandbox", what]);
     run(command, b"", PATIENCE, CAP).expect("it runs")
 }
 
@@ -27,7 +27,7 @@ fn said(ended: &Ended) -> String {
 #[test]
 fn this_machine_contains_submissions() {
     let started = Instant::now();
-    let level = jail::self_test().expect("contained").to_string();
+    let level = sandbox::self_test().expect("contained").to_string();
     assert!(level.starts_with("Landlock ABI ") && level.contains("seccomp"), "{level}");
     eprintln!("{level}, found out in {:?}", started.elapsed());
 }
@@ -40,15 +40,15 @@ fn each_purpose_lets_through_what_it_is_for_and_nothing_else() {
         (Purpose::Compiler, &["start a thread"]),
         (Purpose::Linker, &["make a pair of sockets", "start a process", "start a thread"]),
     ] {
-        assert_eq!(got_through(&Jail::new(purpose)).expect("probed"), through, "{purpose:?}");
+        assert_eq!(got_through(&Sandbox::new(purpose)).expect("probed"), through, "{purpose:?}");
     }
 }
 
 #[test]
 fn what_is_not_asked_for_is_not_there() {
     let scratch = tempfile::tempdir().expect("a folder");
-    let worker = Jail::new(Purpose::Worker);
-    let compiler = Jail { writable: vec![scratch.path().into()], ..Jail::new(Purpose::Compiler) };
+    let worker = Sandbox::new(Purpose::Worker);
+    let compiler = Sandbox { writable: vec![scratch.path().into()], ..Sandbox::new(Purpose::Compiler) };
     assert_eq!(said(&probe(&worker, "environment")), "Exited(0): []\n");
     let environment = said(&probe(&compiler, "environment"));
     assert_eq!(environment, format!("Exited(0): [(\"TMPDIR\", {:?})]\n", scratch.path()));
@@ -58,13 +58,13 @@ fn what_is_not_asked_for_is_not_there() {
 /// What an instructor gets who says `--insecure` where the kernel has no walls.
 #[test]
 fn without_walls_limits_still_hold() {
-    let open = Jail::with(Walls::Open, Purpose::Worker);
+    let open = Sandbox::with(Confinement::LimitsOnly, Purpose::Worker);
     let all = probe(&open, "all");
     let said = String::from_utf8_lossy(&all.stdout).into_owned();
     assert!(said.contains("through: read a file of the system"), "{said}");
     // A worker's files may have no byte: the probe that writes one is its last (SIGXFSZ).
     assert_eq!(all.how, How::Signalled(25), "{said}");
-    let brief = Jail { limits: Limits { cpu_seconds: 1, ..open.limits }, ..open };
+    let brief = Sandbox { limits: Limits { cpu_seconds: 1, ..open.limits }, ..open };
     assert_eq!(probe(&brief, "spin").how, How::UsedUpCpu);
 }
 
@@ -74,24 +74,24 @@ fn an_open_file_of_the_judge_is_not_inherited() {
     let script = "exec 7</etc/passwd 9</etc/passwd
         launcher=$1 word=$2 walls=$3 purpose=$4; shift 5
         \"$launcher\" \"$word\" \"$walls\" \"$purpose\" $$ \"$@\"; exit $?";
-    let jailed = Jail::new(Purpose::Worker).command(&this_program());
+    let sandboxed = Sandbox::new(Purpose::Worker).command(&this_program());
     let mut command = Command::new("/bin/sh");
-    command.args(["-c", script, "sh"]).arg(jailed.get_program()).args(jailed.get_args());
-    command.args(["--probe-the-jail", "descriptors"]);
+    command.args(["-c", script, "sh"]).arg(sandboxed.get_program()).args(sandboxed.get_args());
+    command.args(["--probe-the-sandbox", "descriptors"]);
     assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 0\n");
 }
 
 #[test]
 fn endless_work_output_and_sleep_end() {
-    let jail = Jail::new(Purpose::Worker);
-    let brief = Jail { limits: Limits { cpu_seconds: 1, ..jail.limits }, ..jail.clone() };
+    let sandbox = Sandbox::new(Purpose::Worker);
+    let brief = Sandbox { limits: Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
     let spun = probe(&brief, "spin");
     assert_eq!(spun.how, How::UsedUpCpu);
     assert!(spun.cpu >= Duration::from_millis(900), "{:?}", spun.cpu);
-    let flooded = probe(&jail, "flood");
+    let flooded = probe(&sandbox, "flood");
     assert_eq!((flooded.how, flooded.stdout.len()), (How::WroteTooMuch, CAP));
-    let mut command = jail.command(&this_program());
-    command.args(["--probe-the-jail", "sleep"]);
+    let mut command = sandbox.command(&this_program());
+    command.args(["--probe-the-sandbox", "sleep"]);
     let ended = run(command, b"", Duration::from_millis(200), CAP).expect("it runs");
     assert_eq!(ended.how, How::TookTooLong);
 }
@@ -117,7 +117,7 @@ fn zombies() -> usize {
 }
 
 fn shell(script: &str) -> Command {
-    let mut command = Jail::new(Purpose::Linker).command(Path::new("/bin/sh"));
+    let mut command = Sandbox::new(Purpose::Linker).command(Path::new("/bin/sh"));
     command.args(["-c", script]);
     command
 }
@@ -150,16 +150,16 @@ fn a_crowd_of_processes_is_ended() {
 }
 
 #[test]
-fn what_cannot_be_jailed_does_not_run() {
-    let missing = Jail { readable: vec!["/no/such/folder".into()], ..Jail::new(Purpose::Worker) };
+fn what_cannot_be_sandboxed_does_not_run() {
+    let missing = Sandbox { readable: vec!["/no/such/folder".into()], ..Sandbox::new(Purpose::Worker) };
     let ended = probe(&missing, "environment");
-    assert_eq!(ended.how, How::Exited(jail::NOT_LAUNCHED));
-    assert!(said(&ended).contains("the jail: /no/such/folder cannot be made accessible"), "{}", said(&ended));
-    let writes = Jail { writable: vec!["/tmp".into()], ..Jail::new(Purpose::Worker) };
+    assert_eq!(ended.how, How::Exited(sandbox::NOT_LAUNCHED));
+    assert!(said(&ended).contains("the sandbox: /no/such/folder cannot be made accessible"), "{}", said(&ended));
+    let writes = Sandbox { writable: vec!["/tmp".into()], ..Sandbox::new(Purpose::Worker) };
     assert!(said(&probe(&writes, "environment")).contains("a worker writes nothing"));
-    let command = Jail::new(Purpose::Worker).command(Path::new("/no/such/program"));
+    let command = Sandbox::new(Purpose::Worker).command(Path::new("/no/such/program"));
     let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
-    assert!(said(&ended).contains("the jail: /no/such/program"), "{}", said(&ended));
+    assert!(said(&ended).contains("the sandbox: /no/such/program"), "{}", said(&ended));
 }
 
 fn toolchain() -> PathBuf {
@@ -171,9 +171,9 @@ fn compile(purpose: Purpose, scratch: &Path, source: &str, arguments: &[&str]) -
     let file = scratch.join("source.rs");
     std::fs::write(&file, source).expect("written");
     let toolchain = toolchain();
-    let jail =
-        Jail { readable: vec![toolchain.clone()], writable: vec![scratch.into()], ..Jail::new(purpose) };
-    let mut command = jail.command(&toolchain.join("bin/rustc"));
+    let sandbox =
+        Sandbox { readable: vec![toolchain.clone()], writable: vec![scratch.into()], ..Sandbox::new(purpose) };
+    let mut command = sandbox.command(&toolchain.join("bin/rustc"));
     command.arg(file).args(["--edition", "2024"]).args(arguments);
     run(command, b"", PATIENCE, CAP).expect("it runs")
 }
@@ -202,7 +202,7 @@ fn a_program_is_linked_and_runs() {
     let source = r#"fn main() { println!("hello from {:?}", std::env::current_dir().is_ok()); }"#;
     let ended = compile(Purpose::Linker, scratch.path(), source, &["-o", "hello"]);
     assert_eq!(said(&ended), "Exited(0): ");
-    let command = Jail::new(Purpose::Worker).command(&scratch.path().join("hello"));
+    let command = Sandbox::new(Purpose::Worker).command(&scratch.path().join("hello"));
     let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
     assert_eq!(said(&ended), "Exited(0): hello from false\n");
 }
@@ -215,7 +215,7 @@ fn a_recursion_as_deep_as_a_worker_may_go_returns() {
         fn deep(n: u32) -> u32 { let room = black_box([n; 100]); if n == 0 { 0 } else { 1 + deep(n - 1) + room[9] - n } }
         fn main() { println!(\"{}\", deep(100_000)); }";
     assert_eq!(said(&compile(Purpose::Linker, scratch.path(), source, &["-O", "-o", "deep"])), "Exited(0): ");
-    let command = Jail::new(Purpose::Worker).command(&scratch.path().join("deep"));
+    let command = Sandbox::new(Purpose::Worker).command(&scratch.path().join("deep"));
     assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 100000\n");
 }
 
@@ -228,10 +228,10 @@ fn code_beyond_the_rules_of_rust_gets_no_further() {
     let ended = compile(Purpose::Linker, scratch.path(), source, &["-O", "-o", "native"]);
     assert_eq!(said(&ended), "Exited(0): ");
     for purpose in [Purpose::Worker, Purpose::Reader] {
-        let jail = Jail::new(purpose);
-        let command = jail.command(&scratch.path().join("native"));
+        let sandbox = Sandbox::new(purpose);
+        let command = sandbox.command(&scratch.path().join("native"));
         assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): tried\n");
-        let mut command = jail.command(&scratch.path().join("native"));
+        let mut command = sandbox.command(&scratch.path().join("native"));
         command.arg("other-architecture");
         // SIGSYS.
         assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Signalled(31): ");

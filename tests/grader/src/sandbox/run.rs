@@ -28,7 +28,7 @@ const COUNT_EVERY: Duration = Duration::from_millis(50);
 pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -> io::Result<Ended> {
     guard_this_process()?;
     let cpu_limit = cpu_limit(&command);
-    // A group of its own, which nothing in a jail can leave: by that its children are found.
+    // A group of its own, which nothing in a sandbox can leave: by that its children are found.
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
     let mut child = spawn(command)?;
     let (to_it, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
@@ -52,14 +52,14 @@ pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -
     })
 }
 
-/// Starts a jailed command whose end is its owner's business.
+/// Starts a sandboxed command whose end is its owner's business.
 pub fn spawn_guarded(mut command: Command) -> io::Result<Child> {
     guard_this_process()?;
     command.process_group(0);
     spawn(command)
 }
 
-/// From a thread that lasts as long as the program: a jailed process ends with the thread that has
+/// From a thread that lasts as long as the program: a sandboxed process ends with the thread that has
 /// started it.
 fn spawn(command: Command) -> io::Result<Child> {
     type Order = (Command, Sender<io::Result<Child>>);

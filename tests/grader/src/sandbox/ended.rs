@@ -34,7 +34,7 @@ pub enum How {
     TooManyProcesses,
 }
 
-/// What a signal means for a process that was given so much memory; `None` if that was not the jail.
+/// What a signal means for a process that was given so much memory; `None` if that was not the sandbox.
 #[cfg(target_os = "linux")]
 pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Option<Death> {
     use nix::libc;
@@ -46,7 +46,7 @@ pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Opti
             Death::Crashed(format!("it took more memory than the {} it was given", size(memory)))
         }
         libc::SIGSYS => crashed("it asked the kernel for what no exercise needs"),
-        // There is no list of its memory in a jail, by which Rust tells one from the other.
+        // There is no list of its memory in a sandbox, by which Rust tells one from the other.
         libc::SIGSEGV => crashed(
             "the stack overflowed, or memory was touched that is not its own: a recursion that never ends?",
         ),
@@ -54,7 +54,7 @@ pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Opti
     })
 }
 
-/// Nothing was jailed.
+/// Nothing was sandboxed.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn how_it_died(_: ExitStatus, _: &str, _: u64) -> Option<Death> {
     None

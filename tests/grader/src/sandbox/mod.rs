@@ -3,7 +3,7 @@
 //! A launcher, which is this same program started with a hidden word, takes rights away from itself and then becomes
 //! the program: limits on resources, no new privileges, Landlock for files, seccomp for the rest of the kernel. None
 //! of it needs privileges, and none can be given back. Whatever cannot be set up ends the launcher: nothing ever runs
-//! half jailed.
+//! half sandboxed.
 
 mod ended;
 #[cfg(target_os = "linux")]
@@ -36,18 +36,18 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 /// The first argument of a launcher.
-const LAUNCH: &str = "--in-a-jail";
+const LAUNCH: &str = "--in-a-sandbox";
 
 /// The first argument of a program that tries what should not work.
-const PROBE: &str = "--probe-the-jail";
+const PROBE: &str = "--probe-the-sandbox";
 
-/// How a launcher that could not jail itself ends.
+/// How a launcher that could not sandbox itself ends.
 pub const NOT_LAUNCHED: i32 = 126;
 
 /// What its message begins with.
-pub const NOT_LAUNCHED_BECAUSE: &str = "the jail: ";
+pub const NOT_LAUNCHED_BECAUSE: &str = "the sandbox: ";
 
-/// What a jailed program is for, which decides what it may ask of the kernel.
+/// What a sandboxed program is for, which decides what it may ask of the kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Answers calls over the socket that is its standard input: no files to write, no threads, no processes, no
@@ -61,7 +61,7 @@ pub enum Purpose {
     Linker,
 }
 
-/// How much of the machine a jailed process may use.
+/// How much of the machine a sandboxed process may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
     /// Address space.
@@ -125,37 +125,37 @@ impl Purpose {
     }
 }
 
-/// How closed a jail is.
+/// How closed a sandbox is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Walls {
+pub enum Confinement {
     /// Nothing gets through that is not allowed, or nothing runs.
-    Closed,
-    /// On the instructor's own word, where the kernel has no walls: limits on resources hold, files, networks and other
+    Full,
+    /// On the instructor's own word, where the kernel has no confinement: limits on resources hold, files, networks and other
     /// processes are open.
-    Open,
+    LimitsOnly,
 }
 
-impl Walls {
+impl Confinement {
     fn word(self) -> &'static str {
         match self {
-            Walls::Closed => "closed",
-            Walls::Open => "open",
+            Confinement::Full => "closed",
+            Confinement::LimitsOnly => "open",
         }
     }
 
     #[cfg(target_os = "linux")]
-    fn of_word(word: &std::ffi::OsStr) -> Option<Walls> {
-        [Walls::Closed, Walls::Open].into_iter().find(|walls| word == walls.word())
+    fn of_word(word: &std::ffi::OsStr) -> Option<Confinement> {
+        [Confinement::Full, Confinement::LimitsOnly].into_iter().find(|confinement| word == confinement.word())
     }
 }
 
-/// Walls around a program.
+/// Confinement around a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Jail {
+pub struct Sandbox {
     /// What it is for.
     pub purpose: Purpose,
     /// How closed it is.
-    pub walls: Walls,
+    pub confinement: Confinement,
     /// What it may use.
     pub limits: Limits,
     /// Files and folders that it may read, besides itself and the libraries of the system.
@@ -165,15 +165,15 @@ pub struct Jail {
     pub writable: Vec<PathBuf>,
 }
 
-impl Jail {
+impl Sandbox {
     /// Closed, with the usual limits, and nothing to read or write.
-    pub fn new(purpose: Purpose) -> Jail {
-        Jail::with(Walls::Closed, purpose)
+    pub fn new(purpose: Purpose) -> Sandbox {
+        Sandbox::with(Confinement::Full, purpose)
     }
 
-    /// The same with other walls.
-    pub fn with(walls: Walls, purpose: Purpose) -> Jail {
-        Jail { purpose, walls, limits: purpose.limits(), readable: vec![], writable: vec![] }
+    /// The same with other confinement.
+    pub fn with(confinement: Confinement, purpose: Purpose) -> Sandbox {
+        Sandbox { purpose, confinement, limits: purpose.limits(), readable: vec![], writable: vec![] }
     }
 
     /// The command that runs `program` in here. Its environment is empty, but for where a linker looks for tools and
@@ -181,7 +181,7 @@ impl Jail {
     pub fn command(&self, program: &Path) -> Command {
         let limits = &self.limits;
         let mut command = Command::new(launcher());
-        command.args([LAUNCH, self.walls.word(), self.purpose.word()]).arg(std::process::id().to_string());
+        command.args([LAUNCH, self.confinement.word(), self.purpose.word()]).arg(std::process::id().to_string());
         for limit in
             [limits.cpu_seconds, limits.memory_bytes, limits.file_bytes, limits.open_files, limits.processes]
         {
@@ -203,9 +203,9 @@ impl Jail {
     }
 }
 
-impl Launcher for Jail {
+impl Launcher for Sandbox {
     fn command(&self, program: &Path) -> Command {
-        Jail::command(self, program)
+        Sandbox::command(self, program)
     }
 
     fn spawn(&self, command: Command) -> io::Result<Child> {
@@ -237,13 +237,13 @@ fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Where the processor time is among the arguments of a launcher; before it come walls, purpose and parent.
+/// Where the processor time is among the arguments of a launcher; before it come confinement, purpose and parent.
 #[cfg(target_os = "linux")]
 const CPU_SECONDS_AT: usize = 4;
 
 static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
 
-/// The program that jails itself: this one, or, for tests and benchmarks, the tool that cargo has put near them.
+/// The program that sandboxes itself: this one, or, for tests and benchmarks, the tool that cargo has put near them.
 fn launcher() -> PathBuf {
     LAUNCHER.get().cloned().unwrap_or_else(|| {
         let here = std::env::current_exe().unwrap_or_default();
@@ -253,13 +253,13 @@ fn launcher() -> PathBuf {
     })
 }
 
-/// This program, as something to run in a jail: for a reader.
+/// This program, as something to run in a sandbox: for a reader.
 pub fn this_program() -> PathBuf {
     let launcher = launcher();
     launcher.canonicalize().unwrap_or(launcher)
 }
 
-/// First thing in `main`: a process that was started as a launcher, or to probe a jail, goes no further.
+/// First thing in `main`: a process that was started as a launcher, or to probe a sandbox, goes no further.
 pub fn launch_if_asked() {
     let mut arguments = std::env::args_os().skip(1);
     let word = arguments.next().unwrap_or_default();

@@ -1,6 +1,6 @@
-//! What a jailed program should not be able to do, tried. The program that tries is this one, so no compiler is needed.
+//! What a sandboxed program should not be able to do, tried. The program that tries is this one, so no compiler is needed.
 
-use super::{Ended, How, Jail, PROBE, Purpose, run, this_program};
+use super::{Ended, How, Sandbox, PROBE, Purpose, run, this_program};
 use anyhow::{Context, Result, bail, ensure};
 use std::fmt;
 use std::io::{self, Write};
@@ -23,18 +23,18 @@ impl fmt::Display for Level {
     }
 }
 
-/// Tries to break out of a jail like those of workers. Fails if anything gets through, or if there can be no jail.
+/// Tries to break out of a sandbox like those of workers. Fails if anything gets through, or if there can be no sandbox.
 pub fn self_test() -> Result<Level> {
     ensure!(
         cfg!(target_os = "linux"),
         "submissions can only be contained on Linux: grade them on a Linux machine"
     );
-    let jail = Jail::new(Purpose::Worker);
-    let brief = Jail { limits: super::Limits { cpu_seconds: 1, ..jail.limits }, ..jail.clone() };
+    let sandbox = Sandbox::new(Purpose::Worker);
+    let brief = Sandbox { limits: super::Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
     let (through, spun, flooded) = std::thread::scope(|scope| {
         let spun = scope.spawn(|| act_in(&brief, "spin", PATIENCE));
-        let flooded = scope.spawn(|| act_in(&jail, "flood", PATIENCE));
-        (got_through(&jail), spun.join(), flooded.join())
+        let flooded = scope.spawn(|| act_in(&sandbox, "flood", PATIENCE));
+        (got_through(&sandbox), spun.join(), flooded.join())
     });
     let mut through = through.context("submissions cannot be contained on this machine")?;
     let how = |ended: std::thread::Result<Result<Ended>>| match ended {
@@ -49,7 +49,7 @@ pub fn self_test() -> Result<Level> {
     }
     if !through.is_empty() {
         bail!(
-            "submissions cannot be contained on this machine: a jailed program could {}",
+            "submissions cannot be contained on this machine: a sandboxed program could {}",
             through.join(", ")
         );
     }
@@ -63,10 +63,10 @@ fn landlock_level() -> Result<String> {
     Ok(String::from_utf8_lossy(&ended.stdout).trim().to_owned())
 }
 
-/// The things that a program could do in `jail` and should not, as ends of the sentence "it could …". A jail for
+/// The things that a program could do in `sandbox` and should not, as ends of the sentence "it could …". A sandbox for
 /// compilers or linkers lets some through on purpose: threads, processes.
-pub fn got_through(jail: &Jail) -> Result<Vec<String>> {
-    let ended = act_in(jail, "all", PATIENCE)?;
+pub fn got_through(sandbox: &Sandbox) -> Result<Vec<String>> {
+    let ended = act_in(sandbox, "all", PATIENCE)?;
     let said = String::from_utf8_lossy(&ended.stdout);
     let mut through = Vec::new();
     // Line by line: a probe that was not tried has not been contained.
@@ -76,7 +76,7 @@ pub fn got_through(jail: &Jail) -> Result<Vec<String>> {
             Some("contained: ") => {}
             Some("through: ") => through.push((*name).to_owned()),
             _ => bail!(
-                "no probe of the jail could be run ({:?}): {}",
+                "no probe of the sandbox could be run ({:?}): {}",
                 ended.how,
                 String::from_utf8_lossy(&ended.stderr).trim()
             ),
@@ -85,13 +85,13 @@ pub fn got_through(jail: &Jail) -> Result<Vec<String>> {
     Ok(through)
 }
 
-fn act_in(jail: &Jail, what: &str, patience: Duration) -> Result<Ended> {
-    let mut command = jail.command(&this_program());
+fn act_in(sandbox: &Sandbox, what: &str, patience: Duration) -> Result<Ended> {
+    let mut command = sandbox.command(&this_program());
     command.args([PROBE, what]);
     Ok(run(command, b"", patience, CAP)?)
 }
 
-/// In the jailed process.
+/// In the sandboxed process.
 pub(super) fn act(what: &str) {
     match what {
         "spin" => loop {

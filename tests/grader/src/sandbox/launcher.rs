@@ -1,7 +1,7 @@
 //! Takes rights away from this process and becomes the program. Single-threaded, and safe code: nothing happens
 //! between a fork and an exec.
 
-use super::{Limits, Purpose, Walls, files, filter};
+use super::{Limits, Purpose, Confinement, files, filter};
 use anyhow::{Context, Result, bail, ensure};
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, setrlimit};
@@ -29,7 +29,7 @@ pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
     ensure!(nix::unistd::getppid().as_raw() == asked.judge, "the judge has ended");
     restrict_resources(asked.purpose, &asked.limits)?;
     prctl::set_no_new_privs().context("privileges cannot be given up")?;
-    if asked.walls == Walls::Closed {
+    if asked.confinement == Confinement::Full {
         files::restrict(asked.purpose, &asked.program, &asked.readable, &asked.writable)?;
         filter::install(asked.purpose).context("system calls cannot be filtered")?;
     }
@@ -38,7 +38,7 @@ pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
 }
 
 struct Asked {
-    walls: Walls,
+    confinement: Confinement,
     purpose: Purpose,
     judge: i32,
     limits: Limits,
@@ -48,10 +48,10 @@ struct Asked {
 }
 
 impl Asked {
-    /// Of what [`super::Jail::command`] writes.
+    /// Of what [`super::Sandbox::command`] writes.
     fn from(arguments: &mut impl Iterator<Item = OsString>) -> Result<Asked> {
         let mut next = || arguments.next().context("an argument is missing");
-        let walls = Walls::of_word(&next()?).context("no such walls")?;
+        let confinement = Confinement::of_word(&next()?).context("no such confinement")?;
         let purpose = Purpose::of_word(&next()?).context("no such purpose")?;
         let judge = number(&next()?)? as i32;
         let limits = Limits {
@@ -67,7 +67,7 @@ impl Asked {
         };
         let (readable, writable) = (paths()?, paths()?);
         ensure!(writable.is_empty() || purpose.writes(), "a {} writes nothing", purpose.word());
-        Ok(Asked { walls, purpose, judge, limits, readable, writable, program: next()?.into() })
+        Ok(Asked { confinement, purpose, judge, limits, readable, writable, program: next()?.into() })
     }
 }
 

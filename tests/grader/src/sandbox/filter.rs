@@ -1,4 +1,4 @@
-//! What a jailed program may ask of the kernel: seccomp, as a list of what is allowed.
+//! What a sandboxed program may ask of the kernel: seccomp, as a list of what is allowed.
 //!
 //! Everything else fails with "operation not permitted", so that Rust code gets an error and not a death; system calls
 //! of another architecture end the process. File names are Landlock's business, except that it does not know about

@@ -1,10 +1,10 @@
-//! What the judge makes of jailed workers that do everything wrong: one error for the call, never a wait without end.
+//! What the judge makes of sandboxed workers that do everything wrong: one error for the call, never a wait without end.
 
 #[path = "../../../misbehaving/tests/asking/mod.rs"]
 mod asking;
 
 use asking::{ask, how_it_crashed, query};
-use grader::jail::{Jail, Purpose};
+use grader::sandbox::{Sandbox, Purpose};
 use grader::kits::{self, Need, Program, Source, Which};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-fn jailed(program: impl Into<PathBuf>, seconds: u64) -> Door<Worker> {
-    Door(Worker::sandboxed(program.into(), Duration::from_secs(seconds), Jail::new(Purpose::Worker)))
+fn sandboxed(program: impl Into<PathBuf>, seconds: u64) -> Door<Worker> {
+    Door(Worker::sandboxed(program.into(), Duration::from_secs(seconds), Sandbox::new(Purpose::Worker)))
 }
 
 /// The program that misbehaves. It is in a package of its own, because it links the solutions.
@@ -29,7 +29,7 @@ fn misbehaving() -> PathBuf {
 }
 
 fn door() -> Door<Worker> {
-    jailed(misbehaving(), 1)
+    sandboxed(misbehaving(), 1)
 }
 
 fn crash(door: &Door<Worker>, radius: f32) -> String {
@@ -37,11 +37,11 @@ fn crash(door: &Door<Worker>, radius: f32) -> String {
 }
 
 #[test]
-fn an_honest_worker_passes_every_check_in_a_jail() {
+fn an_honest_worker_passes_every_check_in_a_sandbox() {
     for (_, checks) in all_checks::STAGES {
         for check in *checks {
             // The patience of the tool: some checks take a while where others run at the same time.
-            let kit = jailed(misbehaving(), 10);
+            let kit = sandboxed(misbehaving(), 10);
             let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(kit);
             assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
         }
@@ -58,7 +58,7 @@ fn each_death_is_told_in_words_and_the_next_call_is_answered() {
     assert_eq!(crash(&door, -10.0), "it took more memory than the 1 GiB it was given");
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     assert!(
-        crash(&jailed("/no/such/worker", 1), 10.0).contains("cannot be started: the jail: /no/such/worker")
+        crash(&sandboxed("/no/such/worker", 1), 10.0).contains("cannot be started: the sandbox: /no/such/worker")
     );
 }
 
@@ -77,7 +77,7 @@ fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
         assert_eq!(ask(&door, radius), Err(KitError::TimedOut { seconds: 1 }));
     }
     // It sleeps for three seconds, as if others had the processor: twice that is granted.
-    assert!(ask(&jailed(misbehaving(), 2), -14.0).is_ok());
+    assert!(ask(&sandboxed(misbehaving(), 2), -14.0).is_ok());
 }
 
 #[test]
@@ -95,7 +95,7 @@ fn a_worker_that_does_not_read_does_not_stop_the_judge() {
     // More than any socket holds, so that writing it has to wait.
     let many: Vec<SphereQuery> = std::iter::repeat_n(query(10.0), 200_000).collect();
     // Says nothing on the pipe and reads nothing.
-    let outcome = kit_error::catch(|| jailed("/usr/bin/yes", 1).sphere_algebraic(&many));
+    let outcome = kit_error::catch(|| sandboxed("/usr/bin/yes", 1).sphere_algebraic(&many));
     assert_eq!(outcome, Err(KitError::TimedOut { seconds: 1 }));
     // Answers this and all that follows without reading it.
     let door = door();
@@ -105,16 +105,16 @@ fn a_worker_that_does_not_read_does_not_stop_the_judge() {
 }
 
 #[test]
-fn a_frame_in_a_jail_is_the_frame_outside() {
+fn a_frame_in_a_sandbox_is_the_frame_outside() {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
     let mut scene = raykata::scene::load::load(file).expect("the scene");
     (scene.film.width, scene.film.height) = (40, 25);
-    // Two threads are asked for; there are none in a jail.
+    // Two threads are asked for; there are none in a sandbox.
     let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
     let watch: &dyn Watch = &Unwatched;
-    let kit = jailed(misbehaving(), 10);
-    let jailed = kit.render(&job, watch).expect("nobody cancels");
+    let kit = sandboxed(misbehaving(), 10);
+    let sandboxed = kit.render(&job, watch).expect("nobody cancels");
     let solutions = Source::prepare(&kits::root().expect("a kit"), Which::Solutions, Need::Frames);
     let free = solutions.expect("it builds").fresh().render(&job, watch).expect("nobody cancels");
-    assert_eq!((jailed.film, jailed.counts, jailed.notes), (free.film, free.counts, free.notes));
+    assert_eq!((sandboxed.film, sandboxed.counts, sandboxed.notes), (free.film, free.counts, free.notes));
 }

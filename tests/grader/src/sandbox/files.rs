@@ -1,4 +1,4 @@
-//! What a jailed program may read, write and execute: Landlock.
+//! What a sandboxed program may read, write and execute: Landlock.
 
 use super::Purpose;
 use anyhow::{Context, Result, bail};
