@@ -5,7 +5,7 @@
 //! writes the grade down, `report` tells everybody.
 
 pub mod attacks;
-mod class;
+mod grader;
 mod forge;
 mod judge;
 mod lint;
@@ -14,16 +14,16 @@ mod rehearsal;
 pub mod report;
 pub mod result;
 mod sanity;
-mod siege;
+mod run_attacks;
 mod store;
 mod submission;
-mod terms;
+mod options;
 
-pub use class::{Grader, lint_if_asked};
+pub use grader::{Grader, lint_if_asked};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
-pub use siege::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
-pub(crate) use terms::{draw_seed, stages};
+pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
+pub(crate) use options::{draw_seed, stages};
 
 use crate::queue;
 use anyhow::{Context, Result, ensure};
@@ -33,7 +33,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use store::Store;
 use submission::Submission;
-use terms::Terms;
+use options::GradingOptions;
 
 /// `grader grade`.
 pub static SPEC: Spec = Spec {
@@ -62,7 +62,7 @@ pub static SPEC: Spec = Spec {
                 "Continue with the grades in the folder: only submissions that are new or have changed are graded.",
             ),
         ],
-        Terms::OPTIONS,
+        GradingOptions::OPTIONS,
     ],
 };
 
@@ -81,7 +81,7 @@ pub struct Options {
     jobs: Option<u16>,
     shard: Option<Shard>,
     resume: bool,
-    terms: Terms,
+    grading: GradingOptions,
 }
 
 impl Options {
@@ -93,7 +93,7 @@ impl Options {
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             shard: given.parsed("--shard", shard)?,
             resume: given.has("--resume"),
-            terms: Terms::read(given)?,
+            grading: GradingOptions::read(given)?,
         };
         given.require("--shard", "--seed")?;
         Ok(options)
@@ -141,7 +141,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         "{} holds grades already: --resume goes on with them, or choose another folder",
         options.out.display()
     );
-    let (grader, session) = options.terms.begin(root, begun.as_ref())?;
+    let (grader, session) = options.grading.begin(root, begun.as_ref())?;
     store.begin(&session)?;
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     store.retain(&names)?;

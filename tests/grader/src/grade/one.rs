@@ -2,7 +2,7 @@
 
 use super::report;
 use super::result::{Graded, Session};
-use super::terms::Terms;
+use super::options::GradingOptions;
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
@@ -27,7 +27,7 @@ pub static SPEC: Spec = Spec {
                 "Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.",
             ),
         ],
-        Terms::OPTIONS,
+        GradingOptions::OPTIONS,
     ],
 };
 
@@ -36,7 +36,7 @@ pub struct Options {
     submission: PathBuf,
     gradescope: Option<PathBuf>,
     classroom: Option<PathBuf>,
-    terms: Terms,
+    grading: GradingOptions,
 }
 
 impl Options {
@@ -49,7 +49,7 @@ impl Options {
             submission: given.required(0)?.into(),
             gradescope: given.path("--gradescope"),
             classroom: given.path("--classroom"),
-            terms: Terms::read(given)?,
+            grading: GradingOptions::read(given)?,
         })
     }
 }
@@ -77,7 +77,7 @@ pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<
 }
 
 fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
-    let (grader, session) = options.terms.begin(root, None)?;
+    let (grader, session) = options.grading.begin(root, None)?;
     let graded = grader.grade("submission", grader.take(&options.submission))?;
     Ok((graded, session))
 }
@@ -96,7 +96,7 @@ fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
     let session = Session {
         kit: env!("CARGO_PKG_VERSION").into(),
         stages: Vec::new(),
-        seed: options.terms.seed.unwrap_or_default(),
+        seed: options.grading.seed.unwrap_or_default(),
         isolation: String::new(),
     };
     (graded, session)

@@ -5,7 +5,7 @@ use super::Options as GradeOptions;
 use super::attacks::{self, Attack, Place};
 use super::result::{Class, Graded, Outcome};
 use super::store::Store;
-use super::terms::{Stages, Terms};
+use super::options::{Stages, GradingOptions};
 use crate::corpus::entry::{self, Claim, Entry};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
@@ -112,7 +112,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         jobs: options.jobs,
         shard: None,
         resume: false,
-        terms: Terms { stages: Some(Stages(STAGES_OF_CLASS.to_vec())), ..Terms::default() },
+        grading: GradingOptions { stages: Some(Stages(STAGES_OF_CLASS.to_vec())), ..GradingOptions::default() },
     }
 }
 

@@ -1,7 +1,7 @@
 //! `grader attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
 
 use super::attacks::{self, Tried};
-use super::class::Grader;
+use super::grader::Grader;
 use super::forge::Forge;
 use super::judge::Judge;
 use super::result::Outcome;

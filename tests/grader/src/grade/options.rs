@@ -1,6 +1,6 @@
 //! On what terms submissions are graded, and the grader that keeps to them.
 
-use super::class::Grader;
+use super::grader::Grader;
 use super::forge::{self, Forge};
 use super::judge::Judge;
 use super::result::Session;
@@ -16,14 +16,14 @@ use std::sync::Arc;
 
 /// What an instructor decides, for a class and for one submission alike.
 #[derive(Default)]
-pub struct Terms {
+pub struct GradingOptions {
     pub(super) stages: Option<Stages>,
     pub(super) seed: Option<u64>,
     pub(super) allow: Vec<String>,
     pub(super) insecure: bool,
 }
 
-impl Terms {
+impl GradingOptions {
     /// As options.
     pub const OPTIONS: &[Opt] = &[
         Opt::value("--stages", "LIST", "The stages, as `3`, `1-4` or `1-4,10` [default: all]."),
@@ -46,8 +46,8 @@ impl Terms {
     ];
 
     /// As they were given.
-    pub fn read(given: &Given) -> Result<Terms, Misuse> {
-        Ok(Terms {
+    pub fn read(given: &Given) -> Result<GradingOptions, Misuse> {
+        Ok(GradingOptions {
             stages: given.parsed("--stages", stages)?,
             seed: given.number("--seed", 0..=u64::MAX)?,
             allow: given.list("--allow", |rule| Ok::<_, String>(rule.to_owned()))?,
