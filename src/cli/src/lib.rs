@@ -13,7 +13,7 @@ pub mod explain;
 pub mod html;
 pub mod judge;
 pub mod kits;
-pub mod knobs;
+pub mod quality_options;
 pub mod list;
 pub mod progress;
 pub mod queue;

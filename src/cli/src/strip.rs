@@ -3,7 +3,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::kits::{Choice, Need, Source, root};
-use crate::knobs::{Knobs, SAMPLERS};
+use crate::quality_options::{Knobs, SAMPLERS};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
@@ -48,7 +48,7 @@ pub struct Options {
     scene: PathBuf,
     depths: Vec<u32>,
     samplers: Vec<Sampler>,
-    knobs: Knobs,
+    parameters: Knobs,
     out: Option<PathBuf>,
     kit: Choice,
 }
@@ -65,7 +65,7 @@ impl Options {
             scene: given.required(0)?.into(),
             depths,
             samplers: given.choices("--samplers", &SAMPLERS)?,
-            knobs: Knobs::read(given)?,
+            parameters: Knobs::read(given)?,
             out: given.path("--out"),
             kit: Choice::read(given)?,
         })
@@ -75,7 +75,7 @@ impl Options {
 /// Renders the strip and tells what each picture took.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    options.knobs.apply(&mut scene);
+    options.parameters.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     make_folder_of(&out)?;

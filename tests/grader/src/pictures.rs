@@ -17,7 +17,7 @@ const SIZE: (u32, u32) = (24, 16);
 /// Scenes of more primitives take longer to build, without optimisation, than all others together.
 const MOST_PRIMITIVES: usize = 4_000;
 
-/// A scene that uses most of what there is, in which every knob is turned once.
+/// A scene that uses most of what there is, in which every parameter is turned once.
 const TURNED: &str = "effects";
 
 /// A scene of a few shapes, which every accelerator finds soon.
@@ -70,7 +70,7 @@ impl Scenes {
         let mut scenes: Vec<(String, Scene)> =
             scenes.into_iter().map(|(_, name, scene)| (name, scene)).collect();
         let turned = scenes.iter().find(|(name, _)| name == TURNED).map(|(_, scene)| scene.clone());
-        scenes.extend(turned.iter().flat_map(turn_each_knob));
+        scenes.extend(turned.iter().flat_map(turn_each_parameter));
         let searched = scenes.iter().find(|(name, _)| name == SEARCHED).map(|(_, scene)| scene.clone());
         scenes.extend(searched.iter().flat_map(|scene| with_each_accelerator(SEARCHED, scene)));
         scenes.first().context("the kit has no scenes")?;
@@ -127,7 +127,7 @@ fn with_each_accelerator(name: &str, scene: &Scene) -> Vec<(String, Scene)> {
 }
 
 /// The scene with one setting changed at a time.
-fn turn_each_knob(scene: &Scene) -> Vec<(String, Scene)> {
+fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
     let with = |name: &str, change: &dyn Fn(&mut Quality)| {
         let mut scene = scene.clone();
         change(&mut scene.quality);

@@ -11,7 +11,7 @@ mod table;
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::{Choice, Need, Source, root};
-use crate::knobs::{ACCELERATORS, Knobs, Threads};
+use crate::quality_options::{ACCELERATORS, Knobs, Threads};
 use crate::report::{load_scene, make_folder};
 use anyhow::{Context, Result};
 use measure::Bench;
@@ -69,7 +69,7 @@ pub struct Options {
     rounds: u32,
     threads: Threads,
     level: u32,
-    knobs: Knobs,
+    parameters: Knobs,
     out: Option<PathBuf>,
     table: bool,
 }
@@ -86,7 +86,7 @@ impl Options {
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(3),
             threads: Threads::read(given)?,
             level: given.number("--level", 0..=64)?.unwrap_or(6),
-            knobs: Knobs::read(given)?,
+            parameters: Knobs::read(given)?,
             out: given.path("--out"),
             table: given.has("--table"),
         })
@@ -97,7 +97,7 @@ impl Options {
 /// for a ray that is carried into another space is rounded.
 pub fn run(options: &Options) -> Result<bool> {
     let mut scene = load_scene(&options.scene)?;
-    options.knobs.apply(&mut scene);
+    options.parameters.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
     let root = root()?;

@@ -1,7 +1,7 @@
 //! The best for your time: from the cheapest setting upwards, always by the step that buys the most.
 
-use super::climb::{Climb, Tried};
-use super::ladder::Knob;
+use super::greedy::{GreedySearch, Tried};
+use super::ladder::Parameter;
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
 use super::setting::Setting;
@@ -20,23 +20,23 @@ pub enum Goal {
     Error(f64),
 }
 
-/// One knob, turned by one rung.
+/// One parameter, turned by one level.
 #[derive(Clone, Debug, Serialize)]
 pub struct Step {
-    pub knob: Knob,
+    pub parameter: Parameter,
     pub to: String,
     pub error: f64,
     /// Of a picture of the full size.
     pub seconds: f64,
 }
 
-/// A knob that stays where it is, and what one more rung of it would do.
+/// A parameter that stays where it is, and what one more level of it would do.
 #[derive(Clone, Debug, Serialize)]
 pub struct Left {
-    pub knob: Knob,
+    pub parameter: Parameter,
     /// Where it stays.
     pub at: String,
-    /// How much time, and how much error, one more rung would take: 1.5 for half as much again.
+    /// How much time, and how much error, one more level would take: 1.5 for half as much again.
     pub time_factor: f64,
     pub error_factor: f64,
 }
@@ -45,8 +45,8 @@ pub struct Left {
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice {
     pub goal: Goal,
-    /// The values of all knobs that this is about.
-    pub values: Vec<(Knob, String)>,
+    /// The values of all parameters that this is about.
+    pub values: Vec<(Parameter, String)>,
     pub steps: Vec<Step>,
     pub left: Vec<Left>,
     /// Values that are faster and let rays through closed surfaces, a sentence each.
@@ -69,13 +69,13 @@ pub struct Advice {
 pub const AS_GOOD: f64 = 1.02;
 
 /// Knobs of which one value is best whatever the others are: the fastest of those that are as accurate.
-const CHOSEN_ONCE: [Knob; 6] = [
-    Knob::Accelerator,
-    Knob::Split,
-    Knob::LeafSize,
-    Knob::GridResolution,
-    Knob::Intersection,
-    Knob::Precision,
+const CHOSEN_ONCE: [Parameter; 6] = [
+    Parameter::Accelerator,
+    Parameter::Split,
+    Parameter::LeafSize,
+    Parameter::GridResolution,
+    Parameter::Intersection,
+    Parameter::Precision,
 ];
 
 /// Proposes settings. `full` is how many times as many pixels the picture has in full size.
@@ -92,18 +92,18 @@ pub fn advise(
     let turned_by_steps: Vec<&Series> = measured
         .series
         .iter()
-        .filter(|series| !series.rungs.is_empty() && !is_chosen_once(series.knob))
+        .filter(|series| !series.levels.is_empty() && !is_chosen_once(series.parameter))
         .collect();
-    let Some(mut climb) = Climb::new(&mut tried, measured, turned_by_steps, start, goal, full)? else {
+    let Some(mut search) = GreedySearch::new(&mut tried, measured, turned_by_steps, start, goal, full)? else {
         return Ok(None);
     };
-    if !climb.go_up()? {
+    if !search.go_up()? {
         return Ok(None);
     }
-    climb.spend_the_rest()?;
-    let left = climb.one_step_more()?;
-    let values = [climb.values(), names_of_chosen(measured, &climb.now.setting)].concat();
-    let (now, steps) = (climb.now, climb.steps);
+    search.spend_the_rest()?;
+    let left = search.one_step_more()?;
+    let values = [search.values(), names_of_chosen(measured, &search.now.setting)].concat();
+    let (now, steps) = (search.now, search.steps);
     let Some(own) = tried.point(&Setting::of(scene))? else { return Ok(None) };
     Ok(Some(Advice {
         goal,
@@ -127,8 +127,8 @@ pub fn seconds_in_full(point: &Point, full: f64) -> f64 {
     point.seconds * full + point.build_seconds
 }
 
-fn is_chosen_once(knob: Knob) -> bool {
-    CHOSEN_ONCE.contains(&knob) || knob == Knob::Sampler
+fn is_chosen_once(parameter: Parameter) -> bool {
+    CHOSEN_ONCE.contains(&parameter) || parameter == Parameter::Sampler
 }
 
 /// Whether one is faster than another by more than what their times wobble by.
@@ -136,14 +136,14 @@ fn is_faster(one: &Point, other: &Point) -> bool {
     one.seconds + one.spread + other.spread < other.seconds
 }
 
-/// The setting with every knob that is chosen once at its best value, and what was faster and leaks.
+/// The setting with every parameter that is chosen once at its best value, and what was faster and leaks.
 fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String>) {
     let (mut setting, mut passed_over) = (own.clone(), Vec::new());
     let leaks = |point: &Point| point.hits.map_or(0, |hits| hits.leaks);
-    for series in measured.series.iter().filter(|series| CHOSEN_ONCE.contains(&series.knob)) {
-        let rungs = || series.rungs.iter().map(|(name, index)| (name, &measured.points[*index]));
-        let least = rungs().map(|(_, point)| point.error()).fold(f64::INFINITY, f64::min);
-        let good = || rungs().filter(|(_, point)| point.error() <= AS_GOOD * least);
+    for series in measured.series.iter().filter(|series| CHOSEN_ONCE.contains(&series.parameter)) {
+        let levels = || series.levels.iter().map(|(name, index)| (name, &measured.points[*index]));
+        let least = levels().map(|(_, point)| point.error()).fold(f64::INFINITY, f64::min);
+        let good = || levels().filter(|(_, point)| point.error() <= AS_GOOD * least);
         // A picture may not show it, but what leaks in one scene is wrong in the next.
         let fewest = good().map(|(_, point)| leaks(point)).min().unwrap_or_default();
         let tight = good().filter(|(_, point)| leaks(point) == fewest);
@@ -152,15 +152,15 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
         // What is as fast, to what times wobble by, stays as the scene has it.
         let stays = tight.iter().find(|point| point.setting == *own && !is_faster(fastest, point));
         let best = stays.unwrap_or(fastest);
-        setting = setting.turned(series.knob, &best.setting);
+        setting = setting.turned(series.parameter, &best.setting);
         let faster = good().filter(|(_, point)| leaks(point) > fewest && is_faster(point, best));
         passed_over.extend(faster.map(|(name, point)| {
             let rays = point.hits.map_or(0, |hits| hits.rays);
-            format!("{} {name} is faster, but {} of {rays} rays leak", series.knob.name(), leaks(point))
+            format!("{} {name} is faster, but {} of {rays} rays leak", series.parameter.name(), leaks(point))
         }));
     }
     if let Some(best) = best_sampler(measured) {
-        setting = setting.turned(Knob::Sampler, &best.setting);
+        setting = setting.turned(Parameter::Sampler, &best.setting);
     }
     (setting, passed_over)
 }
@@ -185,26 +185,26 @@ pub fn verify(
 
 /// The sampler with the least error at the most samples, if they were compared.
 fn best_sampler(measured: &Measured) -> Option<&Point> {
-    let samplers = measured.series.iter().filter(|series| series.knob == Knob::Sampler);
-    let last = samplers.filter_map(|series| series.rungs.last()).map(|(_, index)| &measured.points[*index]);
+    let samplers = measured.series.iter().filter(|series| series.parameter == Parameter::Sampler);
+    let last = samplers.filter_map(|series| series.levels.last()).map(|(_, index)| &measured.points[*index]);
     last.min_by(|a, b| a.error().total_cmp(&b.error()))
 }
 
-fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Knob, String)> {
+fn names_of_chosen(measured: &Measured, setting: &Setting) -> Vec<(Parameter, String)> {
     let of_series = |series: &Series| {
         let is_same = |index: &usize| {
             let value = &measured.points[*index].setting;
-            setting.turned(series.knob, value) == *setting
+            setting.turned(series.parameter, value) == *setting
         };
-        let name = match series.knob {
-            Knob::Sampler => {
-                series.rungs.first().filter(|(_, index)| is_same(index)).map(|_| series.name.clone())
+        let name = match series.parameter {
+            Parameter::Sampler => {
+                series.levels.first().filter(|(_, index)| is_same(index)).map(|_| series.name.clone())
             }
-            _ => series.rungs.iter().find(|(_, index)| is_same(index)).map(|(name, _)| name.clone()),
+            _ => series.levels.iter().find(|(_, index)| is_same(index)).map(|(name, _)| name.clone()),
         };
-        Some((series.knob, name?))
+        Some((series.parameter, name?))
     };
-    measured.series.iter().filter(|series| is_chosen_once(series.knob)).filter_map(of_series).collect()
+    measured.series.iter().filter(|series| is_chosen_once(series.parameter)).filter_map(of_series).collect()
 }
 
 #[cfg(test)]
@@ -224,8 +224,8 @@ mod tests {
             Point::made_up(by(Cramer), 0.02, 3.0, 106),
             Point::made_up(by(Watertight), 0.02, 2.0, 0),
         ];
-        let rungs = ["gram", "cramer", "watertight"].map(str::to_owned).into_iter().zip(0..).collect();
-        let series = vec![Series { knob: Knob::Intersection, name: "intersection".into(), rungs }];
+        let levels = ["gram", "cramer", "watertight"].map(str::to_owned).into_iter().zip(0..).collect();
+        let series = vec![Series { parameter: Parameter::Intersection, name: "intersection".into(), levels }];
         let measured = Measured { points, series, ..Measured::default() };
         let (best, passed_over) = with_what_is_best(&measured, &by(Gram));
         assert_eq!(best.quality.triangle_method, Watertight);
@@ -244,8 +244,8 @@ mod tests {
                 Point::made_up(with(8), 0.02, 1.2, 0),
             ];
             points.iter_mut().for_each(|point| point.spread = 0.1);
-            let rungs = ["2", "4", "8"].map(str::to_owned).into_iter().zip(0..).collect();
-            let series = vec![Series { knob: Knob::LeafSize, name: "leaf size".into(), rungs }];
+            let levels = ["2", "4", "8"].map(str::to_owned).into_iter().zip(0..).collect();
+            let series = vec![Series { parameter: Parameter::LeafSize, name: "leaf size".into(), levels }];
             with_what_is_best(&Measured { points, series, ..Measured::default() }, &own).0.quality.leaf_size
         };
         assert_eq!((own.quality.leaf_size, chosen(0.9), chosen(0.7)), (4, 4, 2));

@@ -1,4 +1,4 @@
-//! What a scene calls for, as far as knobs depend on it.
+//! What a scene calls for, as far as parameters depend on it.
 
 use raykata::effects::{Effect, Effects};
 use raykata::scene::Scene;

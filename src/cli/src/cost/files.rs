@@ -1,7 +1,7 @@
 //! What machines and slides read: JSON, a table with commas, plots.
 
 use super::hits::Verdicts;
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use super::measure::Series;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
@@ -25,7 +25,7 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
 /// All points, one per line.
 fn table(report: &Report<'_>) -> String {
     const HEADS: [&str; 15] = [
-        "knob",
+        "parameter",
         "ladder",
         "value",
         "rmse",
@@ -43,13 +43,13 @@ fn table(report: &Report<'_>) -> String {
     ];
     let mut table = csv_line(&HEADS.map(str::to_owned));
     for series in &report.measured.series {
-        for (value, index) in &series.rungs {
+        for (value, index) in &series.levels {
             let point = &report.measured.points[*index];
             let judged = |number: fn(&Verdicts) -> u64| {
                 point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
             };
             table += &csv_line(&[
-                series.knob.name().into(),
+                series.parameter.name().into(),
                 series.name.clone(),
                 value.clone(),
                 point.error().to_string(),
@@ -63,7 +63,7 @@ fn table(report: &Report<'_>) -> String {
                 judged(|hits| hits.rays),
                 judged(|hits| hits.wrong),
                 judged(|hits| hits.leaks),
-                report.front.contains(index).to_string(),
+                report.pareto_front.contains(index).to_string(),
             ]);
         }
     }
@@ -75,16 +75,16 @@ fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
         .with_context(|| format!("cannot write {}", file.display()))
 }
 
-/// File names and pictures: all knobs, and the samplers if they were compared.
+/// File names and pictures: all parameters, and the samplers if they were compared.
 pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let series = &report.measured.series;
-    let knobs: Vec<&Series> =
-        series.iter().filter(|one| one.knob != Knob::Sampler && !one.knob.is_geometric()).collect();
-    let samplers: Vec<&Series> = series.iter().filter(|one| one.knob == Knob::Sampler).collect();
+    let parameters: Vec<&Series> =
+        series.iter().filter(|one| one.parameter != Parameter::Sampler && !one.parameter.is_geometric()).collect();
+    let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
     let mut plots = Vec::new();
-    if !knobs.is_empty() {
-        let title = format!("{}: error over time, one knob turned at a time", report.scene);
-        plots.push(("cost.svg", draw(report, &title, &knobs, Vec::new())));
+    if !parameters.is_empty() {
+        let title = format!("{}: error over time, one parameter turned at a time", report.scene);
+        plots.push(("cost.svg", draw(report, &title, &parameters, Vec::new())));
     }
     if !samplers.is_empty() {
         let title = format!("{}: samplers, 1 to {} samples a pixel", report.scene, most(&samplers));
@@ -99,7 +99,7 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
 }
 
 fn most(samplers: &[&Series]) -> String {
-    samplers.first().and_then(|series| series.rungs.last()).map_or(String::new(), |(name, _)| name.clone())
+    samplers.first().and_then(|series| series.levels.last()).map_or(String::new(), |(name, _)| name.clone())
 }
 
 fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, String)>) -> String {
@@ -116,17 +116,17 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
             let greatest = point.rmse.iter().copied().fold(0.0, f64::max);
             [point.seconds, point.error(), least, greatest]
         };
-        Line { name, points: one.rungs.iter().map(place).collect() }
+        Line { name, points: one.levels.iter().map(place).collect() }
     };
-    let samplers_only = series.iter().all(|one| one.knob == Knob::Sampler);
-    let front = report.front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    let samplers_only = series.iter().all(|one| one.parameter == Parameter::Sampler);
+    let pareto_front = report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
         x_axis: "seconds a picture, logarithmic",
         y_axis: "root mean square error in linear light, logarithmic",
         lines: series.iter().map(line).collect(),
         guides,
-        front: if samplers_only { Vec::new() } else { front.collect() },
+        pareto_front: if samplers_only { Vec::new() } else { pareto_front.collect() },
         // Below that it is the reference that is off.
         floor: report.reference_error.max(1e-9),
     })
@@ -150,7 +150,7 @@ fn numerics(all: &[Summary]) -> String {
         y_axis: "wrong in a million hard inputs, logarithmic",
         lines,
         guides: Vec::new(),
-        front: Vec::new(),
+        pareto_front: Vec::new(),
         // None at all is drawn as one.
         floor: 1.0,
     })
@@ -158,5 +158,5 @@ fn numerics(all: &[Summary]) -> String {
 
 /// What theory says of a ladder of samples.
 pub fn expected_slope(report: &Report<'_>, name: &str) -> Option<f64> {
-    theory(if name == Knob::Samples.name() { report.own_sampler } else { name })
+    theory(if name == Parameter::Samples.name() { report.own_sampler } else { name })
 }

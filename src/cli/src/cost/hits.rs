@@ -22,11 +22,11 @@ pub struct Verdicts {
     pub leaks: u64,
 }
 
-/// Judges all settings of knobs that decide only how hits are found. A scene of too much, or of nothing, is not judged.
+/// Judges all settings of parameters that decide only how hits are found. A scene of too much, or of nothing, is not judged.
 pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measured) -> Result<()> {
-    let geometric = measured.series.iter().filter(|series| series.knob.is_geometric());
+    let geometric = measured.series.iter().filter(|series| series.parameter.is_geometric());
     let mut places: Vec<usize> =
-        geometric.flat_map(|series| &series.rungs).map(|(_, index)| *index).collect();
+        geometric.flat_map(|series| &series.levels).map(|(_, index)| *index).collect();
     places.sort_unstable();
     places.dedup();
     if places.is_empty() || bench.stopped() {

@@ -1,4 +1,4 @@
-//! The knobs that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
+//! The parameters that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
 
 use super::called::Called;
 use super::setting::Setting;
@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Something that can be turned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Knob {
+pub enum Parameter {
     /// Samples a pixel; lens and time are sampled with them.
     Samples,
     /// Where those samples lie.
@@ -39,13 +39,13 @@ pub enum Knob {
     GridResolution,
 }
 
-/// Values of a knob, from cheap to dear.
+/// Values of a parameter, from cheap to dear.
 pub struct Ladder {
-    pub knob: Knob,
-    /// Which of several ladders of the knob.
+    pub parameter: Parameter,
+    /// Which of several ladders of the parameter.
     pub name: String,
     /// What each value is called, and the setting.
-    pub rungs: Vec<(String, Setting)>,
+    pub levels: Vec<(String, Setting)>,
     /// Values that would take too long, and why.
     pub left_out: Vec<String>,
 }
@@ -62,40 +62,40 @@ const MOST_IN_BSP: u64 = 500_000;
 /// How deep the reference follows paths, and the ladder of depths goes at least.
 pub const LEAST_DEPTH: u32 = 8;
 
-impl Knob {
+impl Parameter {
     /// All of them, by the names that the command line has for them.
-    pub const NAMES: [(&str, Knob); 13] = [
-        ("samples", Knob::Samples),
-        ("sampler", Knob::Sampler),
-        ("light-samples", Knob::LightSamples),
-        ("glossy-samples", Knob::GlossySamples),
-        ("depth", Knob::Depth),
-        ("min-contribution", Knob::MinContribution),
-        ("smooth-normals", Knob::SmoothNormals),
-        ("intersection", Knob::Intersection),
-        ("precision", Knob::Precision),
-        ("accelerator", Knob::Accelerator),
-        ("split", Knob::Split),
-        ("leaf-size", Knob::LeafSize),
-        ("grid-resolution", Knob::GridResolution),
+    pub const NAMES: [(&str, Parameter); 13] = [
+        ("samples", Parameter::Samples),
+        ("sampler", Parameter::Sampler),
+        ("light-samples", Parameter::LightSamples),
+        ("glossy-samples", Parameter::GlossySamples),
+        ("depth", Parameter::Depth),
+        ("min-contribution", Parameter::MinContribution),
+        ("smooth-normals", Parameter::SmoothNormals),
+        ("intersection", Parameter::Intersection),
+        ("precision", Parameter::Precision),
+        ("accelerator", Parameter::Accelerator),
+        ("split", Parameter::Split),
+        ("leaf-size", Parameter::LeafSize),
+        ("grid-resolution", Parameter::GridResolution),
     ];
 
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
-            Knob::Samples => "samples a pixel",
-            Knob::Sampler => "sampler",
-            Knob::LightSamples => "light samples",
-            Knob::GlossySamples => "glossy samples",
-            Knob::Depth => "depth",
-            Knob::MinContribution => "minimum contribution",
-            Knob::SmoothNormals => "smooth normals",
-            Knob::Intersection => "intersection",
-            Knob::Precision => "precision",
-            Knob::Accelerator => "accelerator",
-            Knob::Split => "split",
-            Knob::LeafSize => "leaf size",
-            Knob::GridResolution => "grid resolution",
+            Parameter::Samples => "samples a pixel",
+            Parameter::Sampler => "sampler",
+            Parameter::LightSamples => "light samples",
+            Parameter::GlossySamples => "glossy samples",
+            Parameter::Depth => "depth",
+            Parameter::MinContribution => "minimum contribution",
+            Parameter::SmoothNormals => "smooth normals",
+            Parameter::Intersection => "intersection",
+            Parameter::Precision => "precision",
+            Parameter::Accelerator => "accelerator",
+            Parameter::Split => "split",
+            Parameter::LeafSize => "leaf size",
+            Parameter::GridResolution => "grid resolution",
         }
     }
 
@@ -103,13 +103,13 @@ impl Knob {
     pub fn is_geometric(self) -> bool {
         !matches!(
             self,
-            Knob::Samples
-                | Knob::Sampler
-                | Knob::LightSamples
-                | Knob::GlossySamples
-                | Knob::Depth
-                | Knob::MinContribution
-                | Knob::SmoothNormals
+            Parameter::Samples
+                | Parameter::Sampler
+                | Parameter::LightSamples
+                | Parameter::GlossySamples
+                | Parameter::Depth
+                | Parameter::MinContribution
+                | Parameter::SmoothNormals
         )
     }
 
@@ -121,9 +121,9 @@ impl Knob {
         let hierarchy =
             matches!(quality.accelerator, Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh);
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
-        let ladder = |rungs: Vec<(String, Quality)>| {
-            let rungs = rungs.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
-            Ladder { knob: self, name: self.name().into(), rungs: rungs.collect(), left_out: Vec::new() }
+        let ladder = |levels: Vec<(String, Quality)>| {
+            let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
+            Ladder { parameter: self, name: self.name().into(), levels: levels.collect(), left_out: Vec::new() }
         };
         let numbers = |values: Vec<u32>, set: fn(&mut Quality, u32)| {
             let with = |value: u32| {
@@ -134,10 +134,10 @@ impl Knob {
             vec![ladder(values.into_iter().map(with).collect())]
         };
         let ladders = match self {
-            Knob::Samples => {
+            Parameter::Samples => {
                 numbers(doubling(quality.samples_per_pixel, MOST_SAMPLES), |q, n| q.samples_per_pixel = n)
             }
-            Knob::Sampler => {
+            Parameter::Sampler => {
                 let of = |(sampler, name): (Sampler, &str)| {
                     let with = |samples_per_pixel: u32| {
                         (samples_per_pixel.to_string(), Quality { sampler, samples_per_pixel, ..quality })
@@ -147,15 +147,15 @@ impl Knob {
                 };
                 SAMPLERS.into_iter().map(of).collect()
             }
-            Knob::LightSamples => {
+            Parameter::LightSamples => {
                 needs(effects.lights.iter().any(|light| light.area), "no light has an area")?;
                 numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
             }
-            Knob::GlossySamples => {
+            Parameter::GlossySamples => {
                 needs(effects.calls_for(Effect::Glossy), "nothing is rough and mirrors")?;
                 numbers(doubling(quality.glossy_samples, 16), |q, n| q.glossy_samples = n)
             }
-            Knob::Depth => {
+            Parameter::Depth => {
                 needs(mirrors, "nothing mirrors or lets light through")?;
                 let mut depths = vec![0, 1, 2, 3, 5, LEAST_DEPTH];
                 depths.push(quality.max_depth);
@@ -163,7 +163,7 @@ impl Knob {
                 depths.dedup();
                 numbers(depths, |q, n| q.max_depth = n)
             }
-            Knob::MinContribution => {
+            Parameter::MinContribution => {
                 needs(mirrors, "nothing mirrors or lets light through")?;
                 let mut least = vec![0.1, 0.03, 0.01, 0.003, 0.001, 0.0003];
                 least.push(quality.min_contribution);
@@ -174,13 +174,13 @@ impl Knob {
                 };
                 vec![ladder(least.into_iter().map(with).collect())]
             }
-            Knob::SmoothNormals => {
+            Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;
-                let rungs = [("flat", false), ("smooth", true)]
+                let levels = [("flat", false), ("smooth", true)]
                     .map(|(name, smooth)| (name.to_owned(), Setting { quality, smooth }));
-                vec![Ladder { rungs: rungs.to_vec(), ..ladder(Vec::new()) }]
+                vec![Ladder { levels: levels.to_vec(), ..ladder(Vec::new()) }]
             }
-            Knob::Intersection => {
+            Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
                 let all = [
                     ("gram", TriangleMethod::Gram),
@@ -192,7 +192,7 @@ impl Knob {
                 };
                 vec![ladder(all.into_iter().map(with).collect())]
             }
-            Knob::Precision => {
+            Parameter::Precision => {
                 needs(
                     called.shows_triangles() || called.shows_spheres(),
                     "there are no triangles and no spheres, and other shapes have one test each",
@@ -201,7 +201,7 @@ impl Knob {
                 let with = |(name, precision): (&str, _)| (name.to_owned(), Quality { precision, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
             }
-            Knob::Accelerator => {
+            Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
                     Accelerator::BruteForce | Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
                         MOST_ASKED
@@ -222,7 +222,7 @@ impl Knob {
                 let left_out = dear.into_iter().map(why).collect();
                 vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }]
             }
-            Knob::Split => {
+            Parameter::Split => {
                 needs(hierarchy, "what finds hits is no hierarchy")?;
                 let all = [
                     ("object median", Split::ObjectMedian),
@@ -232,11 +232,11 @@ impl Knob {
                 let with = |(name, split): (&str, _)| (name.to_owned(), Quality { split, ..quality });
                 vec![ladder(all.into_iter().map(with).collect())]
             }
-            Knob::LeafSize => {
+            Parameter::LeafSize => {
                 needs(hierarchy, "what finds hits is no hierarchy")?;
                 numbers(doubling(quality.leaf_size, 16), |q, n| q.leaf_size = n)
             }
-            Knob::GridResolution => {
+            Parameter::GridResolution => {
                 needs(
                     quality.accelerator == Accelerator::Grid,
                     "what finds hits is no grid (--accelerator grid makes it one)",
@@ -277,7 +277,7 @@ mod tests {
     use raykata::effects::Effects;
 
     #[test]
-    fn the_scenes_own_value_is_a_rung() {
+    fn the_scenes_own_value_is_a_level() {
         assert_eq!(doubling(1, 16), [1, 2, 4, 8, 16]);
         assert_eq!(doubling(6, 16), [1, 2, 4, 6, 8, 16]);
         assert_eq!(doubling(100, 16), [1, 2, 4, 8, 16, 32, 64, 100, 128]);
@@ -285,18 +285,18 @@ mod tests {
     }
 
     #[test]
-    fn a_knob_that_buys_nothing_says_why() {
+    fn a_parameter_that_buys_nothing_says_why() {
         let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
         let effects = Effects::default();
         let called = Called { scene: &scene, effects: &effects, primitives: 1 };
-        let offered = |knob: Knob| knob.ladders(&called).is_ok();
-        for knob in [Knob::Samples, Knob::Sampler, Knob::Precision, Knob::Accelerator, Knob::Split] {
-            assert!(offered(knob), "{knob:?}");
+        let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();
+        for parameter in [Parameter::Samples, Parameter::Sampler, Parameter::Precision, Parameter::Accelerator, Parameter::Split] {
+            assert!(offered(parameter), "{parameter:?}");
         }
-        for knob in
-            [Knob::LightSamples, Knob::GlossySamples, Knob::Depth, Knob::Intersection, Knob::GridResolution]
+        for parameter in
+            [Parameter::LightSamples, Parameter::GlossySamples, Parameter::Depth, Parameter::Intersection, Parameter::GridResolution]
         {
-            assert!(!offered(knob), "{knob:?}");
+            assert!(!offered(parameter), "{parameter:?}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::{Errors, errors};
 use super::hits::Verdicts;
-use super::ladder::{Knob, Ladder};
+use super::ladder::{Parameter, Ladder};
 use super::reference::Reference;
 use super::setting::Setting;
 use crate::report::{FrameBar, bar_of_steps, quartiles};
@@ -41,7 +41,7 @@ pub struct Point {
     /// Root mean square error of each round.
     pub rmse: Vec<f64>,
     pub counts: Counts,
-    /// What the oracle says of the hits, for knobs that decide only how they are found.
+    /// What the oracle says of the hits, for parameters that decide only how they are found.
     pub hits: Option<Verdicts>,
     /// Seconds for the pixels, the median over all rounds.
     pub seconds: f64,
@@ -83,13 +83,13 @@ impl Point {
     }
 }
 
-/// A ladder, measured: its rungs that could be.
+/// A ladder, measured: its levels that could be.
 #[derive(Clone, Debug, Serialize)]
 pub struct Series {
-    pub knob: Knob,
+    pub parameter: Parameter,
     pub name: String,
     /// What each value is called, and its place among the points.
-    pub rungs: Vec<(String, usize)>,
+    pub levels: Vec<(String, usize)>,
 }
 
 /// What came of it.
@@ -186,27 +186,27 @@ impl Bench<'_> {
 
     /// Measures all ladders: each setting once with counts, then all by turns, with other random numbers each round.
     pub fn measure(&self, scene: &Scene, ladders: Vec<Ladder>, right: &Reference) -> Result<Measured> {
-        let n_rungs: usize = ladders.iter().map(|ladder| ladder.rungs.len()).sum();
-        let bar = bar_of_steps(n_rungs * (1 + self.rounds as usize));
+        let n_levels: usize = ladders.iter().map(|ladder| ladder.levels.len()).sum();
+        let bar = bar_of_steps(n_levels * (1 + self.rounds as usize));
         let mut measured = Measured::default();
         for ladder in ladders {
             bar.set_message(format!("{}: counting", ladder.name));
-            let mut rungs = Vec::new();
-            for (name, setting) in ladder.rungs {
+            let mut levels = Vec::new();
+            for (name, setting) in ladder.levels {
                 let known = measured.points.iter().position(|point| point.setting == setting);
                 let point = match known {
                     Some(_) => None,
                     None => self.point(scene, &setting, right, true)?,
                 };
                 match (known, point) {
-                    (Some(known), _) => rungs.push((name, known)),
+                    (Some(known), _) => levels.push((name, known)),
                     (None, Some(point)) => {
                         for note in &point.notes {
                             if !measured.lacking.contains(note) {
                                 measured.lacking.push(note.clone());
                             }
                         }
-                        rungs.push((name, measured.points.len()));
+                        levels.push((name, measured.points.len()));
                         measured.points.push(point);
                     }
                     (None, None) if self.stopped() => {}
@@ -219,9 +219,9 @@ impl Bench<'_> {
                 bar.inc(1);
             }
             measured.left_out.extend(ladder.left_out);
-            measured.series.push(Series { knob: ladder.knob, name: ladder.name, rungs });
+            measured.series.push(Series { parameter: ladder.parameter, name: ladder.name, levels });
         }
-        bar.set_length((n_rungs + measured.points.len() * self.rounds as usize) as u64);
+        bar.set_length((n_levels + measured.points.len() * self.rounds as usize) as u64);
         for round in 0..self.rounds {
             bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
             for point in &mut measured.points {
@@ -257,7 +257,7 @@ const DIFFERENT: f64 = 0.999;
 
 /// The points that no other beats in both error and time, from the fastest to the most accurate. What lets rays through
 /// closed surfaces is not among them, for the error of a picture hardly shows it.
-pub fn front(points: &[Point]) -> Vec<usize> {
+pub fn pareto_front(points: &[Point]) -> Vec<usize> {
     let leaks = |point: &Point| point.hits.map(|hits| hits.leaks);
     let fewest = points.iter().filter_map(leaks).min();
     let is_tight = |index: &usize| leaks(&points[*index]).is_none_or(|leaks| Some(leaks) == fewest);
@@ -291,6 +291,6 @@ mod tests {
             point(0.02, 4.0, 0),
             point(0.03, 5.0, 0), // slower and less accurate
         ];
-        assert_eq!(front(&points), [0, 3]);
+        assert_eq!(pareto_front(&points), [0, 3]);
     }
 }

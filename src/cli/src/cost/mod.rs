@@ -1,13 +1,13 @@
-//! `raykata cost`: which knob buys how much accuracy for how much time on a scene, and where it is wasted.
+//! `raykata cost`: which parameter buys how much accuracy for how much time on a scene, and where it is wasted.
 //!
-//! `options` (what can be asked) · `called`, `ladder` and `setting` (which knobs, which values) · `reference` (what is right) ·
+//! `options` (what can be asked) · `called`, `ladder` and `setting` (which parameters, which values) · `reference` (what is right) ·
 //! `error` (how far off) · `hits` (judged exactly) · `measure` (counts, times) · `slope` (how fast error falls) · `advice`
-//! and `climb` (the best for your time) · `table`, `page`, `plot`, `files` (how it is report) · `headline` and `landscape`
+//! and `greedy` (the best for your time) · `table`, `page`, `plot`, `files` (how it is report) · `headline` and `landscape`
 //! (brute force against a hierarchy)
 
 mod advice;
 mod called;
-mod climb;
+mod greedy;
 mod error;
 mod files;
 mod headline;
@@ -24,14 +24,14 @@ mod slope;
 mod table;
 
 use crate::kits::{Need, Source, root};
-use crate::knobs::arguments;
+use crate::quality_options::arguments;
 use crate::report::{FrameBar, load_scene, make_folder};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
 use called::Called;
 pub use hits::Verdicts;
-use ladder::{Knob, Ladder};
-use measure::{Bench, Measured, front};
+use ladder::{Parameter, Ladder};
+use measure::{Bench, Measured, pareto_front};
 pub use options::{Options, SPEC};
 use raykata::effects::Effects;
 use raykata::kit::{Kit, KitError, kit_error};
@@ -65,7 +65,7 @@ pub struct Report<'a> {
     #[serde(flatten)]
     measured: &'a Measured,
     /// Places of the points that no other beats, from the fastest on.
-    front: Vec<usize>,
+    pareto_front: Vec<usize>,
     /// The place of the scene's own settings.
     own: Option<usize>,
     /// Slopes of error over samples, by the name of the ladder.
@@ -83,7 +83,7 @@ pub struct Report<'a> {
 }
 
 /// Knobs, and why they buy nothing.
-type NotOffered = Vec<(Knob, String)>;
+type NotOffered = Vec<(Parameter, String)>;
 
 /// Judges the ray/triangle tests of a kit, beside others.
 pub type Numerics<'a> = dyn Fn(&dyn Kit) -> Vec<Summary> + 'a;
@@ -124,14 +124,14 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     };
     let mut full = load_scene(file)?;
     let as_written = full.quality;
-    options.knobs.apply(&mut full);
-    let small = if options.knobs.names_a_size() { full.clone() } else { shrunk(&full) };
+    options.parameters.apply(&mut full);
+    let small = if options.parameters.names_a_size() { full.clone() } else { shrunk(&full) };
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
     let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
-    for (knob, why) in &not_offered {
-        println!("{}: not offered, for {why}", knob.name());
+    for (parameter, why) in &not_offered {
+        println!("{}: not offered, for {why}", parameter.name());
     }
     println!(
         "the reference: {} samples a pixel, {} × {} pixels",
@@ -153,10 +153,10 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         _ => None,
     };
     let advice = advice.map(|advice| {
-        let size = options.knobs.names_a_size().then_some((full.film.width, full.film.height));
+        let size = options.parameters.names_a_size().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &advice, size), ..advice }
     });
-    let about_tests = measured.series.iter().any(|series| series.knob == Knob::Intersection);
+    let about_tests = measured.series.iter().any(|series| series.parameter == Parameter::Intersection);
     let numerics = match numerics {
         Some(numerics) if about_tests && !bench.stopped() => numerics(kit),
         _ => Vec::new(),
@@ -173,7 +173,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         reference_samples: right.samples,
         reference_error: right.own_error,
         measured: &measured,
-        front: front(&measured.points),
+        pareto_front: pareto_front(&measured.points),
         own: measured.points.iter().position(|point| point.setting == Setting::of(&small)),
         slopes: slopes(&measured),
         not_offered,
@@ -191,17 +191,17 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     Ok(!report.partial)
 }
 
-/// The ladders of all knobs that are to be turned, and those that buy nothing. It is an error to ask for one of those.
+/// The ladders of all parameters that are to be turned, and those that buy nothing. It is an error to ask for one of those.
 fn ladders(
     kit: &dyn Kit,
     bench: &Bench<'_>,
     scene: &Scene,
-    turned: &[Knob],
+    turned: &[Parameter],
 ) -> Result<(Vec<Ladder>, NotOffered)> {
     let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
         Ok(mut effects) => effects.remove(0),
         Err(KitError::NotWritten { place, .. }) => {
-            println!("what a scene calls for is not written yet ({place}), so every knob is offered");
+            println!("what a scene calls for is not written yet ({place}), so every parameter is offered");
             Effects::everything(scene)
         }
         Err(error) => return Err(error.into()),
@@ -214,12 +214,12 @@ fn ladders(
     let primitives = frame.map_or(0, |frame| frame.primitives);
     let called = Called { scene, effects: &effects, primitives };
     let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
-    for (_, knob) in Knob::NAMES {
-        match knob.ladders(&called) {
-            Ok(these) if turned.is_empty() || turned.contains(&knob) => ladders.extend(these),
+    for (_, parameter) in Parameter::NAMES {
+        match parameter.ladders(&called) {
+            Ok(these) if turned.is_empty() || turned.contains(&parameter) => ladders.extend(these),
             Ok(_) => {}
-            Err(why) if turned.contains(&knob) => bail!("{} buys nothing here: {why}", knob.name()),
-            Err(why) => not_offered.push((knob, why)),
+            Err(why) if turned.contains(&parameter) => bail!("{} buys nothing here: {why}", parameter.name()),
+            Err(why) => not_offered.push((parameter, why)),
         }
     }
     Ok((ladders, not_offered))
@@ -253,15 +253,15 @@ fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<
 /// Of all ladders of samples.
 fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
     let of_series = |series: &measure::Series| {
-        let samples: Vec<f64> = series.rungs.iter().filter_map(|(name, _)| name.parse().ok()).collect();
+        let samples: Vec<f64> = series.levels.iter().filter_map(|(name, _)| name.parse().ok()).collect();
         let round = |round: usize| {
             let error = |(_, index): &(String, usize)| measured.points[*index].rmse.get(round).copied();
-            series.rungs.iter().map(error).collect::<Option<Vec<f64>>>()
+            series.levels.iter().map(error).collect::<Option<Vec<f64>>>()
         };
         let rounds: Vec<Vec<f64>> = (0..measured.rounds as usize).filter_map(round).collect();
         Some((series.name.clone(), slope::slope(&samples, &rounds)?))
     };
-    let of_samples = |series: &&measure::Series| matches!(series.knob, Knob::Samples | Knob::Sampler);
+    let of_samples = |series: &&measure::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
 }
 

@@ -1,15 +1,15 @@
 //! What can be asked of `raykata cost`.
 
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::Choice;
-use crate::knobs::{Knobs, Threads};
+use crate::quality_options::{Knobs, Threads};
 use std::path::PathBuf;
 
 /// `raykata cost`.
 pub static SPEC: Spec = Spec {
     name: "raykata cost",
-    about: "Show which knob buys how much accuracy for how much time, and propose the best settings for a time or an \
+    about: "Show which parameter buys how much accuracy for how much time, and propose the best settings for a time or an \
             error.",
     arguments: &[Argument::optional("SCENE", "The scene, a TOML file; not with `--headline`.")],
     options: &[
@@ -20,8 +20,8 @@ pub static SPEC: Spec = Spec {
                  3840 × 2160 pixels.",
             ),
             Opt::value("--most", "N", "How many triangles the largest landscape has [default: 12000000]."),
-            Opt::value("--knob", "LIST", "The knobs to turn [default: all that the scene calls for].")
-                .choices(&names(&Knob::NAMES))
+            Opt::value("--parameter", "LIST", "The parameters to turn [default: all that the scene calls for].")
+                .choices(&names(&Parameter::NAMES))
                 .many(),
             Opt::value(
                 "--budget",
@@ -59,12 +59,12 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Which scene, which knobs, and how long.
+/// Which scene, which parameters, and how long.
 pub struct Options {
     /// None for the headline.
     pub(super) scene: Option<PathBuf>,
     pub(super) most: u64,
-    pub(super) turned: Vec<Knob>,
+    pub(super) turned: Vec<Parameter>,
     pub(super) kit: Choice,
     pub(super) budget: Option<f64>,
     pub(super) error: Option<f64>,
@@ -72,7 +72,7 @@ pub struct Options {
     pub(super) rounds: u32,
     pub(super) threads: Threads,
     pub(super) seed: u64,
-    pub(super) knobs: Knobs,
+    pub(super) parameters: Knobs,
     pub(super) out: Option<PathBuf>,
 }
 
@@ -92,7 +92,7 @@ impl Options {
         Ok(Options {
             scene,
             most: given.number("--most", 2..=16_000_000)?.unwrap_or(12_000_000),
-            turned: given.choices("--knob", &Knob::NAMES)?,
+            turned: given.choices("--parameter", &Parameter::NAMES)?,
             kit: Choice::read(given)?,
             budget: given.parsed("--budget", parse_seconds)?,
             error: given.parsed("--error", parse_error)?,
@@ -100,7 +100,7 @@ impl Options {
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
-            knobs: Knobs::read(given)?,
+            parameters: Knobs::read(given)?,
             out: given.path("--out"),
         })
     }

@@ -4,7 +4,7 @@ use super::Report;
 use super::advice::Advice;
 use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use super::measure::Series;
 use super::table::{about_hits, about_kit_times, goal, named, verdict, waste};
 use crate::html::{around, base64, element, escape};
@@ -47,19 +47,19 @@ fn page(report: &Report<'_>) -> Result<String> {
     for (_, plot) in plots(report) {
         body += &around("figure", "class=\"plot\"", &plot);
     }
-    if !report.front.is_empty() {
-        let words = "The broad yellow line is the front: no setting that was measured is both faster and more accurate. \
+    if !report.pareto_front.is_empty() {
+        let words = "The broad yellow line is the Pareto front: no setting that was measured is both faster and more accurate. \
                      What leaks is left out of it.";
         body += &around("p", "class=\"about\"", words);
     }
-    for series in report.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+    for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         body += &ladder(report, series)?;
     }
     body += &numerics(report);
     body += &element("h2", "Not measured");
     let mut left_out = String::new();
-    for (knob, why) in &report.not_offered {
-        left_out += &element("li", format!("{}: {why}", knob.name()));
+    for (parameter, why) in &report.not_offered {
+        left_out += &element("li", format!("{}: {why}", parameter.name()));
     }
     for words in &report.measured.left_out {
         left_out += &element("li", words);
@@ -97,14 +97,14 @@ fn head_of_row(words: &str) -> String {
 fn proposal(report: &Report<'_>, advice: &Advice) -> String {
     let values = advice.values.iter();
     let values: String =
-        values.map(|(knob, value)| row([head_of_row(knob.name()), element("td", value)])).collect();
+        values.map(|(parameter, value)| row([head_of_row(parameter.name()), element("td", value)])).collect();
     let mut text = element("h2", goal(report, advice)) + &around("table", "class=\"values\"", &values);
     text.extend(verdict(advice).iter().map(|line| element("p", line)));
     if !advice.steps.is_empty() {
         let mut steps = heads(&["turn", "to", "error", "seconds in full size"]);
         for step in &advice.steps {
             steps += &row([
-                element("td", step.knob.name()),
+                element("td", step.parameter.name()),
                 element("td", &step.to),
                 element("td", format!("{:.4}", step.error)),
                 element("td", format!("{:.2}", step.seconds)),
@@ -118,9 +118,9 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
 }
 
 fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
-    let geometric = series.knob.is_geometric();
+    let geometric = series.parameter.is_geometric();
     let name =
-        if series.knob == Knob::Sampler { format!("sampler: {}", series.name) } else { series.name.clone() };
+        if series.parameter == Parameter::Sampler { format!("sampler: {}", series.name) } else { series.name.clone() };
     let mut text = element("h2", name);
     if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
         let theory = expected_slope(report, name)
@@ -132,8 +132,8 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
     columns.extend(["ms", "rays a pixel", "tests a ray"]);
     columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
-    let rungs = series.rungs.iter().map(|(value, index)| rung(report, value, *index, geometric));
-    let table = heads(&columns) + &rungs.collect::<String>();
+    let levels = series.levels.iter().map(|(value, index)| level(report, value, *index, geometric));
+    let table = heads(&columns) + &levels.collect::<String>();
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
     if let Some(waste) = waste(report, series) {
         text += &around("p", "class=\"waste\"", &escape(waste));
@@ -141,17 +141,17 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     if let (true, Some(hits)) = (geometric, about_hits(report)) {
         text += &around("p", "class=\"about\"", &escape(format!("Wrong hits and leaks {hits}.")));
     }
-    if !geometric && series.knob != Knob::Sampler {
+    if !geometric && series.parameter != Parameter::Sampler {
         text += &pictures(report, series)?;
     }
     Ok(around("section", "", &text))
 }
 
-fn rung(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> String {
+fn level(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> String {
     let point = &report.measured.points[index];
     let rays = point.counts.rays();
     let tests = (point.counts.box_tests + point.counts.primitive_tests) as f64 / rays.max(1) as f64;
-    let unbeaten = report.front.contains(&index);
+    let unbeaten = report.pareto_front.contains(&index);
     let mark = if unbeaten { " •" } else { "" };
     let mut cells = vec![format!("{:.5}", point.error())];
     if !is_geometric {
@@ -172,15 +172,15 @@ fn rung(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> S
 
 /// The cheapest, the middle and the dearest, and where they are wrong, on one scale.
 fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
-    let last = series.rungs.len() - 1;
-    let mut shown_rungs = vec![0, last / 2, last];
-    shown_rungs.dedup();
-    let worst = &report.measured.points[series.rungs[0].1];
+    let last = series.levels.len() - 1;
+    let mut shown_levels = vec![0, last / 2, last];
+    shown_levels.dedup();
+    let worst = &report.measured.points[series.levels[0].1];
     // A pixel that is off by three times the mean of the cheapest is white.
     let most = 3.0 * worst.error();
     let mut figures = String::new();
-    for rung in shown_rungs {
-        let (value, index) = &series.rungs[rung];
+    for level in shown_levels {
+        let (value, index) = &series.levels[level];
         let film = &report.measured.points[*index].film;
         let picture = embedded(&shown(film)?)?;
         let heat = embedded(&heat(film, &report.right.film, most))?;

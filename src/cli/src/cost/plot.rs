@@ -11,7 +11,7 @@ pub struct Plot<'a> {
     /// Slopes to compare with, from the first point of the first line on, and what they are called.
     pub guides: Vec<(f64, String)>,
     /// Points that no other beats, from left to right.
-    pub front: Vec<(f64, f64)>,
+    pub pareto_front: Vec<(f64, f64)>,
     /// What cannot be told from 0: errors below are drawn on this line.
     pub floor: f64,
 }
@@ -84,7 +84,7 @@ pub fn svg(plot: &Plot<'_>) -> String {
         escaped(plot.title)
     );
     axes(&mut out, plot, &x, &y);
-    front(&mut out, &plot.front, &x, &y, plot.floor);
+    pareto_front(&mut out, &plot.pareto_front, &x, &y, plot.floor);
     guides(&mut out, plot, &x, &y);
     let mut labels = Vec::new();
     for (index, line) in plot.lines.iter().enumerate() {
@@ -143,7 +143,7 @@ fn axes(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
 }
 
 /// A broad step line: whatever lies above it is beaten.
-fn front(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
+fn pareto_front(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
     let mut path = String::new();
     let mut before = None;
     for &(time, error) in points {
@@ -263,8 +263,8 @@ mod tests {
 
     fn plot(lines: Vec<Line>) -> String {
         let guides = vec![(-0.5, "slope −1/2".to_owned())];
-        let front = vec![(0.001, 0.1), (0.004, 0.05)];
-        svg(&Plot { title: "a < b", x_axis: "seconds", y_axis: "error", lines, guides, front, floor: 1e-6 })
+        let pareto_front = vec![(0.001, 0.1), (0.004, 0.05)];
+        svg(&Plot { title: "a < b", x_axis: "seconds", y_axis: "error", lines, guides, pareto_front, floor: 1e-6 })
     }
 
     #[test]

@@ -1,10 +1,10 @@
-//! Where all knobs stand.
+//! Where all parameters stand.
 
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use raykata::effects::Effect;
 use raykata::scene::{Quality, Scene};
 
-/// A value of a knob: the scene with one thing changed.
+/// A value of a parameter: the scene with one thing changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     pub quality: Quality,
@@ -24,24 +24,24 @@ impl Setting {
         scene
     }
 
-    /// With one knob turned to where `to` has it.
-    pub fn turned(&self, knob: Knob, to: &Setting) -> Setting {
+    /// With one parameter turned to where `to` has it.
+    pub fn turned(&self, parameter: Parameter, to: &Setting) -> Setting {
         let (from, mut turned) = (&to.quality, self.clone());
         let quality = &mut turned.quality;
-        match knob {
-            Knob::Samples => quality.samples_per_pixel = from.samples_per_pixel,
-            Knob::Sampler => quality.sampler = from.sampler,
-            Knob::LightSamples => quality.light_samples = from.light_samples,
-            Knob::GlossySamples => quality.glossy_samples = from.glossy_samples,
-            Knob::Depth => quality.max_depth = from.max_depth,
-            Knob::MinContribution => quality.min_contribution = from.min_contribution,
-            Knob::SmoothNormals => turned.smooth = to.smooth,
-            Knob::Intersection => quality.triangle_method = from.triangle_method,
-            Knob::Precision => quality.precision = from.precision,
-            Knob::Accelerator => quality.accelerator = from.accelerator,
-            Knob::Split => quality.split = from.split,
-            Knob::LeafSize => quality.leaf_size = from.leaf_size,
-            Knob::GridResolution => quality.grid_resolution = from.grid_resolution,
+        match parameter {
+            Parameter::Samples => quality.samples_per_pixel = from.samples_per_pixel,
+            Parameter::Sampler => quality.sampler = from.sampler,
+            Parameter::LightSamples => quality.light_samples = from.light_samples,
+            Parameter::GlossySamples => quality.glossy_samples = from.glossy_samples,
+            Parameter::Depth => quality.max_depth = from.max_depth,
+            Parameter::MinContribution => quality.min_contribution = from.min_contribution,
+            Parameter::SmoothNormals => turned.smooth = to.smooth,
+            Parameter::Intersection => quality.triangle_method = from.triangle_method,
+            Parameter::Precision => quality.precision = from.precision,
+            Parameter::Accelerator => quality.accelerator = from.accelerator,
+            Parameter::Split => quality.split = from.split,
+            Parameter::LeafSize => quality.leaf_size = from.leaf_size,
+            Parameter::GridResolution => quality.grid_resolution = from.grid_resolution,
         }
         turned
     }

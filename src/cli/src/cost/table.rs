@@ -3,7 +3,7 @@
 use super::Report;
 use super::advice::{Advice, Goal};
 use super::files::expected_slope;
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use super::measure::Series;
 use crate::report::Thousands;
 
@@ -29,17 +29,17 @@ pub fn print(report: &Report<'_>) {
         "wrong hits",
         "leaks"
     );
-    for series in report.measured.series.iter().filter(|series| !series.rungs.is_empty()) {
+    for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         println!("{}{}", heading(series), slope(report, series));
-        for (name, index) in &series.rungs {
+        for (name, index) in &series.levels {
             let point = &report.measured.points[*index];
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
-            let hits = point.hits.filter(|_| series.knob.is_geometric());
+            let hits = point.hits.filter(|_| series.parameter.is_geometric());
             println!(
                 "  {:<28}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
                 named(report, name, *index),
-                if report.front.contains(index) { "•" } else { " " },
+                if report.pareto_front.contains(index) { "•" } else { " " },
                 point.error(),
                 point.errors.relative_mse,
                 point.errors.similarity,
@@ -89,9 +89,9 @@ pub fn named(report: &Report<'_>, name: &str, index: usize) -> String {
 }
 
 fn heading(series: &Series) -> String {
-    match series.knob {
-        Knob::Sampler => format!("sampler: {}, samples a pixel", series.name),
-        knob => knob.name().into(),
+    match series.parameter {
+        Parameter::Sampler => format!("sampler: {}, samples a pixel", series.name),
+        parameter => parameter.name().into(),
     }
 }
 
@@ -106,13 +106,13 @@ fn slope(report: &Report<'_>, series: &Series) -> String {
 /// Errors that differ by less are the same to anybody.
 const SAME: f64 = 0.02;
 
-/// From where on a knob takes time and gives nothing.
+/// From where on a parameter takes time and gives nothing.
 pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
-    if series.knob.is_geometric() {
+    if series.parameter.is_geometric() {
         return None;
     }
-    let point = |index: usize| &report.measured.points[series.rungs[index].1];
-    let last = series.rungs.len().checked_sub(1)?;
+    let point = |index: usize| &report.measured.points[series.levels[index].1];
+    let last = series.levels.len().checked_sub(1)?;
     let end = point(last);
     let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
     let times = end.seconds / point(enough).seconds;
@@ -121,8 +121,8 @@ pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
         times if times < 1.0 + SAME => "and takes no more time that could be measured".into(),
         times => format!("and takes up to {times:.2} times as long"),
     };
-    let (rung, same) = (&series.rungs[enough].0, 100.0 * SAME);
-    Some(format!("beyond {rung} it gives less than {same:.0} % more accuracy, {takes}"))
+    let (level, same) = (&series.levels[enough].0, 100.0 * SAME);
+    Some(format!("beyond {level} it gives less than {same:.0} % more accuracy, {takes}"))
 }
 
 fn numerics(report: &Report<'_>) {
@@ -158,8 +158,8 @@ pub fn about_kit_times(report: &Report<'_>) -> Option<&'static str> {
 
 fn print_advice(report: &Report<'_>, advice: &Advice) {
     println!("\n{}", goal(report, advice));
-    for (knob, value) in &advice.values {
-        println!("  {:<22}{value}", knob.name());
+    for (parameter, value) in &advice.values {
+        println!("  {:<22}{value}", parameter.name());
     }
     for line in verdict(advice) {
         println!("  {line}");
@@ -193,12 +193,12 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
             );
         }
         Goal::Error(target) if advice.expected_error > target => {
-            lines.push(format!("no rung of these ladders comes to {target}: this is the closest"));
+            lines.push(format!("no level of these ladders comes to {target}: this is the closest"));
         }
         _ => {}
     }
     let spent: Vec<&str> =
-        advice.steps.iter().map(|step| step.knob.name()).fold(Vec::new(), |mut names, name| {
+        advice.steps.iter().map(|step| step.parameter.name()).fold(Vec::new(), |mut names, name| {
             if !names.contains(&name) {
                 names.push(name);
             }
@@ -212,7 +212,7 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     for left in wasted {
         lines.push(format!(
             "not on {} beyond {}: one step more takes {:.2} times as long for {:.2} times the error",
-            left.knob.name(),
+            left.parameter.name(),
             left.at,
             left.time_factor,
             left.error_factor

@@ -5,7 +5,7 @@ mod why;
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
-use crate::knobs::Knobs;
+use crate::quality_options::Knobs;
 use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
 use anyhow::{Context, Result};
 use raykata::count::Counts;
@@ -43,7 +43,7 @@ pub struct Options {
     scene: PathBuf,
     kit: Choice,
     rounds: u32,
-    knobs: Knobs,
+    parameters: Knobs,
     subsets: bool,
 }
 
@@ -54,7 +54,7 @@ impl Options {
             scene: given.required(0)?.into(),
             kit: Choice::read(given)?,
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
-            knobs: Knobs::read(given)?,
+            parameters: Knobs::read(given)?,
             subsets: given.has("--subsets"),
         })
     }
@@ -76,7 +76,7 @@ impl Explained<'_> {
 /// Looks through the scene, measures, and prints.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    options.knobs.apply(&mut scene);
+    options.parameters.apply(&mut scene);
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = &*source.fresh();

@@ -110,14 +110,14 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     let grey = Vec3::splat(0.5);
-    let knobs = |max_depth, min_contribution| Quality { max_depth, min_contribution, ..Quality::default() };
+    let parameters = |max_depth, min_contribution| Quality { max_depth, min_contribution, ..Quality::default() };
     let mirror = Material { mirror: grey, ..Material::default() };
     let counts =
         |primary, shadow, reflection, transmission| RayCounts { primary, shadow, reflection, transmission };
     judge(
         trial,
         "one pixel, a mirror of 1/2, depth 3",
-        query(mirror.clone(), 2, knobs(3, 0.0)),
+        query(mirror.clone(), 2, parameters(3, 0.0)),
         counts(1, 8, 3, 0),
         |yours| match yours {
             RayCounts { reflection: 3, shadow: 2, .. } => {
@@ -132,7 +132,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, a mirror of 1/2, depth 100, down to 1/100",
-        query(mirror.clone(), 1, knobs(100, 0.01)),
+        query(mirror.clone(), 1, parameters(100, 0.01)),
         counts(1, 7, 6, 0),
         |yours| match yours.reflection {
             100 => "min_contribution is left out: only the depth ends this",
@@ -143,7 +143,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, a mirror of 1/2, depth 100, down to 1/8",
-        query(mirror.clone(), 1, knobs(100, 0.125)),
+        query(mirror.clone(), 1, parameters(100, 0.125)),
         counts(1, 4, 3, 0),
         |_| "a weight of just min_contribution is traced",
     )?;
@@ -151,7 +151,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, half mirror and half glass, depth 3",
-        query(both, 1, knobs(3, 0.0)),
+        query(both, 1, parameters(3, 0.0)),
         counts(1, 15, 7, 7),
         |_| "each hit sends two rays on, which send two on each",
     )?;
@@ -159,7 +159,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, a rough mirror of 1 with 4 samples, depth 100, down to 1/100",
-        query(rough, 1, Quality { glossy_samples: 4, ..knobs(100, 0.01) }),
+        query(rough, 1, Quality { glossy_samples: 4, ..parameters(100, 0.01) }),
         // Images weigh 1, 1/4, 1/16, 1/64, 1/256: four reach 1/100, with 4, 16, 64 and 256 rays.
         counts(1, 341, 340, 0),
         |yours| match yours.reflection {
@@ -173,7 +173,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, glass by Fresnel, depth 2",
-        query(glass, 1, knobs(2, 0.001)),
+        query(glass, 1, parameters(2, 0.001)),
         counts(1, 7, 3, 3),
         |_| "with fresnel, glass mirrors as well",
     )?;
@@ -181,14 +181,14 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, half mirror and half glass by Fresnel, depth 2, down to 3/4",
-        query(half, 1, knobs(2, 0.75)),
+        query(half, 1, parameters(2, 0.75)),
         counts(1, 7, 3, 3),
         |_| "with fresnel the mirror image weighs up to mirror + transmission, which is 1 here",
     )?;
     judge(
         trial,
         "one pixel, a mirror under 2 lights and glass under 1, depth 2",
-        mirror_and_glass(knobs(2, 0.0)),
+        mirror_and_glass(parameters(2, 0.0)),
         counts(1, 6, 2, 2),
         |yours| match yours {
             RayCounts { reflection: 3, transmission: 3, .. } => {
@@ -203,7 +203,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     judge(
         trial,
         "one pixel, a mirror, depth 0",
-        query(mirror, 1, knobs(0, 0.0)),
+        query(mirror, 1, parameters(0, 0.0)),
         counts(1, 1, 0, 0),
         |_| "no bounce at all",
     )

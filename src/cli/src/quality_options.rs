@@ -1,4 +1,4 @@
-//! The knobs of a scene on the command line, the same for all commands that render.
+//! The parameters of a scene on the command line, the same for all commands that render.
 
 use crate::args::{Given, Misuse, Opt, names};
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
@@ -127,7 +127,7 @@ impl Knobs {
         self.size.is_some()
     }
 
-    /// Turns the knobs of the scene that were named.
+    /// Turns the parameters of the scene that were named.
     pub fn apply(&self, scene: &mut Scene) {
         if let Some((width, height)) = self.size {
             (scene.film.width, scene.film.height) = (width, height);
@@ -148,7 +148,7 @@ impl Knobs {
     }
 }
 
-/// The arguments that turn the knobs of `own` to where `wanted` has them, as far as they differ.
+/// The arguments that turn the parameters of `own` to where `wanted` has them, as far as they differ.
 pub fn arguments(own: &Quality, wanted: &Quality) -> String {
     let values = |quality: &Quality| {
         let named = |value: serde_json::Result<serde_json::Value>| {
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_turn_every_knob() {
+    fn arguments_turn_every_parameter() {
         let mut scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
         let own = scene.quality;
         let wanted = Quality {

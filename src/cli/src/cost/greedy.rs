@@ -1,7 +1,7 @@
-//! The way up: from the cheapest value of every knob, always by the step that lowers the error most for its time.
+//! The way up: from the cheapest value of every parameter, always by the step that lowers the error most for its time.
 
 use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
-use super::ladder::Knob;
+use super::ladder::Parameter;
 use super::measure::{Bench, Measured, Point, Series};
 use super::reference::Reference;
 use super::setting::Setting;
@@ -39,12 +39,12 @@ impl Tried<'_> {
     }
 }
 
-/// A climb, as far as it has come.
-pub struct Climb<'a, 't> {
+/// A search, as far as it has come.
+pub struct GreedySearch<'a, 't> {
     tried: &'a mut Tried<'t>,
     measured: &'a Measured,
     ladders: Vec<&'a Series>,
-    /// The rung of each ladder.
+    /// The level of each ladder.
     at: Vec<usize>,
     goal: Goal,
     full: f64,
@@ -55,15 +55,15 @@ pub struct Climb<'a, 't> {
 
 /// A step that could be taken.
 struct Candidate {
-    /// Which ladder, and to which rung.
+    /// Which ladder, and to which level.
     ladder: usize,
-    rung: usize,
+    level: usize,
     point: Point,
     /// How much error it saves for its time.
     worth: f64,
 }
 
-impl<'a, 't> Climb<'a, 't> {
+impl<'a, 't> GreedySearch<'a, 't> {
     /// At the foot of all ladders, everything else as in `start`. `None` if even that takes too long.
     pub fn new(
         tried: &'a mut Tried<'t>,
@@ -72,15 +72,15 @@ impl<'a, 't> Climb<'a, 't> {
         start: Setting,
         goal: Goal,
         full: f64,
-    ) -> Result<Option<Climb<'a, 't>>> {
+    ) -> Result<Option<GreedySearch<'a, 't>>> {
         let foot = ladders.iter().fold(start, |setting, series| {
-            setting.turned(series.knob, &measured.points[series.rungs[0].1].setting)
+            setting.turned(series.parameter, &measured.points[series.levels[0].1].setting)
         });
-        let bar = bar_of_steps(ladders.iter().map(|series| series.rungs.len()).sum());
+        let bar = bar_of_steps(ladders.iter().map(|series| series.levels.len()).sum());
         bar.set_message("looking for the best settings");
         let Some(now) = tried.point(&foot)? else { return Ok(None) };
         let at = vec![0; ladders.len()];
-        Ok(Some(Climb { tried, measured, ladders, at, goal, full, now, steps: Vec::new(), bar }))
+        Ok(Some(GreedySearch { tried, measured, ladders, at, goal, full, now, steps: Vec::new(), bar }))
     }
 
     /// Goes on until the goal is reached or no step helps. `false` if nobody wants it any more.
@@ -90,10 +90,10 @@ impl<'a, 't> Climb<'a, 't> {
             if self.tried.bench.stopped() {
                 return Ok(false);
             }
-            let Some(Candidate { ladder, rung, point, .. }) = best else { break };
-            self.at[ladder] = rung;
-            let (name, _) = &self.ladders[ladder].rungs[rung];
-            self.go_to(point, self.ladders[ladder].knob, name.clone());
+            let Some(Candidate { ladder, level, point, .. }) = best else { break };
+            self.at[ladder] = level;
+            let (name, _) = &self.ladders[ladder].levels[level];
+            self.go_to(point, self.ladders[ladder].parameter, name.clone());
             self.bar.inc(1);
         }
         self.bar.finish_and_clear();
@@ -111,32 +111,32 @@ impl<'a, 't> Climb<'a, 't> {
         }
     }
 
-    fn go_to(&mut self, point: Point, knob: Knob, to: String) {
+    fn go_to(&mut self, point: Point, parameter: Parameter, to: String) {
         let seconds = seconds_in_full(&point, self.full);
-        self.steps.push(Step { knob, to, error: point.error(), seconds });
+        self.steps.push(Step { parameter, to, error: point.error(), seconds });
         self.now = point;
     }
 
-    /// Where the next rung of a ladder leads.
-    fn turned_to(&self, ladder: usize, rung: usize) -> Setting {
+    /// Where the next level of a ladder leads.
+    fn turned_to(&self, ladder: usize, level: usize) -> Setting {
         let series = self.ladders[ladder];
-        let to = &self.measured.points[series.rungs[rung].1].setting;
-        self.now.setting.turned(series.knob, to)
+        let to = &self.measured.points[series.levels[level].1].setting;
+        self.now.setting.turned(series.parameter, to)
     }
 
     fn best_step(&mut self) -> Result<Option<Candidate>> {
         let mut best: Option<Candidate> = None;
         for ladder in 0..self.ladders.len() {
-            // The next rung and the one after it: some knobs help only when they are turned far enough.
-            for rung in (self.at[ladder] + 1..self.ladders[ladder].rungs.len()).take(2) {
-                let Some(point) = self.tried.point(&self.turned_to(ladder, rung))? else { continue };
+            // The next level and the one after it: some parameters help only when they are turned far enough.
+            for level in (self.at[ladder] + 1..self.ladders[ladder].levels.len()).take(2) {
+                let Some(point) = self.tried.point(&self.turned_to(ladder, level))? else { continue };
                 let gain = (self.now.error() / point.error().max(1e-12)).ln();
                 // A step that takes no time that can be measured would be worth anything.
                 let time = (point.seconds - self.now.seconds).max(0.01 * self.now.seconds);
                 let worth = gain / time;
                 let helps = self.fits(&point) && point.error() * AS_GOOD < self.now.error();
                 if helps && best.as_ref().is_none_or(|best| worth > best.worth) {
-                    best = Some(Candidate { ladder, rung, point, worth });
+                    best = Some(Candidate { ladder, level, point, worth });
                 }
             }
         }
@@ -146,7 +146,7 @@ impl<'a, 't> Climb<'a, 't> {
     /// Rungs are a factor of two apart; what is left of a budget goes to as many samples as it pays for.
     pub fn spend_the_rest(&mut self) -> Result<()> {
         let Goal::Seconds(budget) = self.goal else { return Ok(()) };
-        if !self.ladders.iter().any(|series| series.knob == Knob::Samples) {
+        if !self.ladders.iter().any(|series| series.parameter == Parameter::Samples) {
             return Ok(());
         }
         let samples = |point: &Point| point.setting.quality.samples_per_pixel;
@@ -163,7 +163,7 @@ impl<'a, 't> Climb<'a, 't> {
             let Some(point) = self.tried.point(&more)? else { break };
             if self.fits(&point) {
                 if point.error() < self.now.error() {
-                    self.go_to(point, Knob::Samples, pays_for.min(most).to_string());
+                    self.go_to(point, Parameter::Samples, pays_for.min(most).to_string());
                 }
                 break;
             }
@@ -173,24 +173,24 @@ impl<'a, 't> Climb<'a, 't> {
         Ok(())
     }
 
-    /// What one more step of each knob would do.
+    /// What one more step of each parameter would do.
     pub fn one_step_more(&mut self) -> Result<Vec<Left>> {
         let mut left = Vec::new();
         for ladder in 0..self.ladders.len() {
             let (series, at) = (self.ladders[ladder], self.at[ladder]);
-            if at + 1 == series.rungs.len() {
+            if at + 1 == series.levels.len() {
                 continue;
             }
             let more = self.turned_to(ladder, at + 1);
             let here = &self.now.setting;
-            // Samples may have been turned to between two rungs, or to the next.
+            // Samples may have been turned to between two levels, or to the next.
             if more.quality.samples_per_pixel < here.quality.samples_per_pixel || more == *here {
                 continue;
             }
             if let Some(more) = self.tried.point(&more)? {
                 left.push(Left {
-                    knob: series.knob,
-                    at: series.rungs[at].0.clone(),
+                    parameter: series.parameter,
+                    at: series.levels[at].0.clone(),
                     time_factor: more.seconds / self.now.seconds.max(1e-9),
                     error_factor: more.error() / self.now.error().max(1e-12),
                 });
@@ -199,11 +199,11 @@ impl<'a, 't> Climb<'a, 't> {
         Ok(left)
     }
 
-    /// Where each knob stands.
-    pub fn values(&self) -> Vec<(Knob, String)> {
-        let value = |(series, &rung): (&&Series, &usize)| match series.knob {
-            Knob::Samples => (series.knob, self.now.setting.quality.samples_per_pixel.to_string()),
-            knob => (knob, series.rungs[rung].0.clone()),
+    /// Where each parameter stands.
+    pub fn values(&self) -> Vec<(Parameter, String)> {
+        let value = |(series, &level): (&&Series, &usize)| match series.parameter {
+            Parameter::Samples => (series.parameter, self.now.setting.quality.samples_per_pixel.to_string()),
+            parameter => (parameter, series.levels[level].0.clone()),
         };
         self.ladders.iter().zip(&self.at).map(value).collect()
     }
