@@ -7,7 +7,7 @@
 //! yours to say, with [`children`]; the tracer follows them and adds up what they find, each times its weight.
 
 use glam::Vec3;
-use raykata::kit::{Bounce, SecondaryRay, Limits, Surface};
+use raykata::kit::{Bounce, Limits, SecondaryRay, Surface};
 use raykata::material::{Fresnel, Material};
 use raykata::ray::Ray;
 

@@ -86,9 +86,10 @@ pub fn span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let mut part = range(ray);
     for axis in 0..3 {
-        for (height, rate) in
-            [(origin[axis] - cell.min[axis], direction[axis]), (cell.max[axis] - origin[axis], -direction[axis])]
-        {
+        for (height, rate) in [
+            (origin[axis] - cell.min[axis], direction[axis]),
+            (cell.max[axis] - origin[axis], -direction[axis]),
+        ] {
             part = part_above(height, rate, ROUNDING * height.abs(), part)?;
         }
     }

@@ -183,7 +183,8 @@ fn search(
         KdNode::Leaf { first, count } => look_into(tree.primitives(first, count), probe, ray, best),
         KdNode::Inner { axis, at, left, right } => {
             let axis = usize::from(axis);
-            let (height, rate) = (f64::from(ray.origin[axis]) - f64::from(at), f64::from(ray.direction[axis]));
+            let (height, rate) =
+                (f64::from(ray.origin[axis]) - f64::from(at), f64::from(ray.direction[axis]));
             let room = ROUNDING * height.abs();
             let above = part_above(height, rate, room, part).map(|part| (right, part));
             let below = part_above(-height, -rate, room, part).map(|part| (left, part));

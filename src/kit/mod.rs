@@ -10,8 +10,8 @@ pub mod door;
 mod effects_analysis;
 mod example;
 mod functions;
-mod list;
 pub mod kit_error;
+mod list;
 mod partitions;
 mod recursion;
 mod scene_graph;
@@ -26,7 +26,7 @@ pub mod types;
 
 pub use adapters::{Linked, StudentKit};
 pub use distribution::{
-    SphereSampleQuery, FILTER_RADIUS, PhongLobeQuery, LensQuery, RectangleQuery, TimeQuery, WeightedColor,
+    FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
     Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, Partitions, Recursion, Request,
@@ -44,10 +44,10 @@ pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,
 };
-pub use recursion::{Bounce, SecondaryRay, ScatterQuery, FresnelQuery, Limits, RefractQuery};
+pub use recursion::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
 pub use scene_graph::{
-    BoundingSphereQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery, SolidHit,
-    SolidQuery,
+    BoundingSphereQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery,
+    SolidHit, SolidQuery,
 };
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneQuery, RootQuery, SphereQuery};

@@ -198,7 +198,8 @@ impl<'a> PacketProbe<'a> {
 
     #[track_caller]
     fn table(&self, ray: &Ray) -> &'a Table {
-        let same = |one: &Ray| (one.origin, one.direction, one.t_min) == (ray.origin, ray.direction, ray.t_min);
+        let same =
+            |one: &Ray| (one.origin, one.direction, one.t_min) == (ray.origin, ray.direction, ray.t_min);
         match self.query.rays.iter().position(same) {
             Some(index) => &self.query.tables[index],
             None => panic!("a ray that is not of the packet: only t_max may change"),

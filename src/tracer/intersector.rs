@@ -35,7 +35,8 @@ impl<F: StudentFunctions> Intersector<F> {
             let primitives = primitives.iter().filter(|_| bounded);
             primitives.map(|primitive| bounds_of::<F>(&world, mesh_bounds, primitive)).collect()
         };
-        let of_meshes: Vec<Vec<Aabb>> = world.shared_meshes.iter().map(|mesh| bounds(&mesh.primitives, &[])).collect();
+        let of_meshes: Vec<Vec<Aabb>> =
+            world.shared_meshes.iter().map(|mesh| bounds(&mesh.primitives, &[])).collect();
         let around = |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| F::union(&all, one));
         let around: Vec<Aabb> = of_meshes.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
@@ -45,7 +46,8 @@ impl<F: StudentFunctions> Intersector<F> {
         let structure = over(&of_scene, &world.primitives, graph);
         let meshes = world.shared_meshes.iter().zip(&of_meshes);
         let mesh_structures = meshes.map(|(mesh, bounds)| over(bounds, &mesh.primitives, None)).collect();
-        let scene = Structured { world, structure, mesh_structures, tests: plan.tests, savings: quality.savings };
+        let scene =
+            Structured { world, structure, mesh_structures, tests: plan.tests, savings: quality.savings };
         Intersector { scene, accelerator: plan.accelerator, functions: PhantomData }
     }
 

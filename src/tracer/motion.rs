@@ -2,7 +2,7 @@
 
 use crate::kit::StudentFunctions;
 use crate::shape::{Plane, Sphere, Triangle};
-use crate::world::{InfinitePlane, Geometry, Primitive, World};
+use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 
 /// The geometry of `primitive` at shutter time `time`, `0..=1`, interpolated linearly between its two ends;

@@ -53,7 +53,8 @@ fn circles(sphere: &Sphere) -> Vec<[Vec3; 2]> {
     let circle = |axis: usize| {
         let at = move |i: usize| {
             let (sin, cos) = (TAU * i as f32 / CORNERS as f32).sin_cos();
-            sphere.center + sphere.radius * (cos * Vec3::AXES[(axis + 1) % 3] + sin * Vec3::AXES[(axis + 2) % 3])
+            sphere.center
+                + sphere.radius * (cos * Vec3::AXES[(axis + 1) % 3] + sin * Vec3::AXES[(axis + 2) % 3])
         };
         (0..CORNERS).map(move |i| [at(i), at(i + 1)])
     };

@@ -172,7 +172,8 @@ impl Plan {
                 material.glossy = false;
             }
         }
-        let motion = [Function::temporal_slot, Function::time_in_shutter, Function::lerp, Function::motion_bounds];
+        let motion =
+            [Function::temporal_slot, Function::time_in_shutter, Function::lerp, Function::motion_bounds];
         if !written.has_all(&motion) {
             self.note_if(
                 scene.shown().iter().any(|shown| shown.moves),

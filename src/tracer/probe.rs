@@ -132,7 +132,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         let instance = &self.world.instances[instance as usize];
         let ray = F::ray_to_object(ray, &instance.placement.to_object);
         let mesh = instance.shared_mesh as usize;
-        let (structure, primitives) = (&self.scene.mesh_structures[mesh], &self.world.shared_meshes[mesh].primitives);
+        let (structure, primitives) =
+            (&self.scene.mesh_structures[mesh], &self.world.shared_meshes[mesh].primitives);
         let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
         let mut probe =
             SceneProbe::<F, T>::over(self.scene, structure, primitives, &ray, self.tally, &mut notes);

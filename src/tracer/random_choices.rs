@@ -1,7 +1,7 @@
 //! Random choices on the path of a ray, by the functions of stage 6: a point of an area light, a direction
 //! from a rough surface.
 
-use crate::kit::{Bounce, SecondaryRay, LightSample, StudentFunctions, Surface};
+use crate::kit::{Bounce, LightSample, SecondaryRay, StudentFunctions, Surface};
 use crate::material::{AreaShape, Emitter, Light};
 use crate::random::{Points, Purpose};
 
@@ -16,7 +16,9 @@ pub fn sample_area_light<F: StudentFunctions>(
     let u = F::jittered(&points.stratum(Purpose::Light(index as u32), part, parts));
     let at = surface.point;
     let sample = match shape {
-        AreaShape::Rectangle { corner, edges } => light.sample_at(F::sample_rectangle(*corner, *edges, u), at),
+        AreaShape::Rectangle { corner, edges } => {
+            light.sample_at(F::sample_rectangle(*corner, *edges, u), at)
+        }
         AreaShape::Disk(disk) => light.sample_at(F::sample_light_disk(disk, u), at),
         AreaShape::Sphere(sphere) => light.sample_toward_sphere(sphere, F::sample_sphere(sphere, at, u), at),
     };

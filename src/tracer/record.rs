@@ -35,7 +35,15 @@ pub struct Rays<'a> {
 impl Rays<'_> {
     fn push(&mut self, path: &Path, hit: Option<(f32, String)>) -> usize {
         let Path { ray, weight, depth, kind, parent, .. } = *path;
-        self.rays.push(TracedRay { kind, parent, depth, weight, origin: ray.origin, direction: ray.direction, hit });
+        self.rays.push(TracedRay {
+            kind,
+            parent,
+            depth,
+            weight,
+            origin: ray.origin,
+            direction: ray.direction,
+            hit,
+        });
         self.rays.len() - 1
     }
 }

@@ -5,7 +5,7 @@ use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale};
 use super::{
-    InfinitePlane, Geometry, Instance, SharedMesh, Primitive, Slot, Solid, SolidShape, World, WorldFunctions,
+    Geometry, InfinitePlane, Instance, Primitive, SharedMesh, Slot, Solid, SolidShape, World, WorldFunctions,
     what_is_not_simulated,
 };
 use crate::effects::Effects;

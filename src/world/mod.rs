@@ -5,9 +5,9 @@
 //! their shape, each in a space of its own, and a mesh with several instances is kept once. Without stage 8,
 //! and where they move, these shapes are made of triangles.
 
+mod area_lights;
 mod facets;
 mod flatten;
-mod area_lights;
 mod meshes;
 mod solids;
 mod transforms;

@@ -8,7 +8,7 @@ use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
 use glam::{Vec2, Vec3, vec2};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, SphereSampleQuery, Door, PhongLobeQuery, Kit, Request, StudentKit, Transport};
+use raykata::kit::{Answer, Door, Kit, PhongLobeQuery, Request, SphereSampleQuery, StudentKit, Transport};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -189,19 +189,26 @@ const WRONG: &[Wrong] = &[
     }),
     ("rectangle: u²", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x * u.x, u.y))),
     ("rectangle: u^1.1", "places_on_a_rectangle_are_even", |r| rectangle(r, |u| vec2(u.x.powf(1.1), u.y))),
-    ("sphere: θ even", "directions_to_a_sphere_are_even", |r| sphere(r, |rim, u| (u * rim.min(1.0).asin()).cos())),
+    ("sphere: θ even", "directions_to_a_sphere_are_even", |r| {
+        sphere(r, |rim, u| (u * rim.min(1.0).asin()).cos())
+    }),
     ("sphere: a flat disk in its middle", "directions_to_a_sphere_are_even", |r| {
         sphere(r, |rim, u| (1.0 / (1.0 + u * rim * rim)).sqrt())
     }),
-    ("sphere: sin² even", "directions_to_a_sphere_are_even", |r| sphere(r, |rim, u| (1.0 - u * rim * rim).sqrt())),
+    ("sphere: sin² even", "directions_to_a_sphere_are_even", |r| {
+        sphere(r, |rim, u| (1.0 - u * rim * rim).sqrt())
+    }),
     ("sphere: far, 1 - cos θ rounded", "a_far_sphere_is_still_a_sphere", |r| {
         sphere(r, |rim, u| 1.0 - u * (1.0 - (1.0 - rim * rim).sqrt()))
     }),
-    ("sphere: inside, θ even", "from_inside_a_sphere_it_is_everywhere", |r| sphere(r, |_, u| (PI * u).cos())),
+    ("sphere: inside, θ even", "from_inside_a_sphere_it_is_everywhere", |r| {
+        sphere(r, |_, u| (PI * u).cos())
+    }),
     ("sphere: inside, half of it", "from_inside_a_sphere_it_is_everywhere", |r| sphere(r, |_, u| u)),
     ("sphere: half of the rim", "half_a_sphere_makes_half_a_shadow", |r| {
         let Request::SampleSphere(queries) = r else { return None };
-        let halved = |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
+        let halved =
+            |query: &SphereSampleQuery| SphereSampleQuery { u: vec2(query.u.x, 0.5 * query.u.y), ..*query };
         Some(
             Request::SampleSphere(each(queries, halved))
                 .answer(&*solutions::Kit.door(), &raykata::frame::Unwatched),
@@ -222,7 +229,9 @@ const WRONG: &[Wrong] = &[
     ("glossy: little, 1 - cos θ rounded", "slightly_rough_is_not_a_few_angles", |r| {
         lobe(r, |rough, u| u.powf(1.0 / (2.0 / (rough * rough) - 1.0)))
     }),
-    ("glossy: always diffuse, √u", "phong_lobe_falls_with_the_power_of_the_cosine", |r| lobe(r, |_, u| u.sqrt())),
+    ("glossy: always diffuse, √u", "phong_lobe_falls_with_the_power_of_the_cosine", |r| {
+        lobe(r, |_, u| u.sqrt())
+    }),
     ("jitter: u²", "jittered_samples_cover_the_pixel_evenly", |r| cells(r, |u| u * u)),
     ("jitter: always the middle of the cell", "jittered_samples_cover_the_pixel_evenly", |r| {
         cells(r, |_| Vec2::splat(0.5))

@@ -132,7 +132,8 @@ fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
         let ray = &solutions::Kit.door().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
         let along = ray.direction.dot(scene.camera.towards);
         ray.origin
-            + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along * ray.direction
+            + (distance - (ray.origin - scene.camera.position).dot(scene.camera.towards)) / along
+                * ray.direction
     };
     (0..64).map(place).collect()
 }

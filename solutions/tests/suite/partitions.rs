@@ -223,9 +223,10 @@ fn entry(ray: &Ray, cell: &Cell) -> Option<f64> {
     let mut part = (f64::from(ray.t_min), f64::from(ray.t_max));
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     for axis in 0..3 {
-        for (height, rate) in
-            [(origin[axis] - cell.min[axis], direction[axis]), (cell.max[axis] - origin[axis], -direction[axis])]
-        {
+        for (height, rate) in [
+            (origin[axis] - cell.min[axis], direction[axis]),
+            (cell.max[axis] - origin[axis], -direction[axis]),
+        ] {
             part = stage9_cells::part_above(height, rate, 0.0, part)?;
         }
     }

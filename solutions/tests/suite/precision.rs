@@ -117,7 +117,8 @@ shape = { sphere = { center = [0.3, 0.1, -0.2], radius = 1 } }
         let pixel = |index: u32| [index % 48, index / 48].map(|place| (place as f32 + 0.5) / 48.0);
         let is_wrong = |index: &u32| {
             let [x, y] = pixel(*index);
-            let hit = verdict(&camera.ray(x, y), Body::Sphere(sphere)).is_some_and(|verdict| verdict.is_hit());
+            let hit =
+                verdict(&camera.ray(x, y), Body::Sphere(sphere)).is_some_and(|verdict| verdict.is_hit());
             hit != (frame.film.pixels[*index as usize] == Vec3::ZERO)
         };
         (0..48 * 48).filter(is_wrong).count()

@@ -89,7 +89,8 @@ pub fn run(options: &Options) -> Result<()> {
     println!("{:>15}  {:>14}  {:>14}  {:>9}", "picture", "reflected rays", "refracted rays", "seconds");
     for (column, (what, scene)) in pictures.into_iter().enumerate() {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
-        let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
+        let rendering =
+            kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         let (counts, seconds) = (rendering.counts, rendering.render_seconds);
         println!(
             "{what:>15}  {:>14}  {:>14}  {seconds:>9.3}",

@@ -36,11 +36,11 @@ impl Broken {
         expected: impl std::fmt::Debug,
         source: &'static str,
     ) -> Self {
-        Broken::describe(input, format!("{yours:?}"), format!("{expected:?}"), source)
+        Broken::with_texts(input, format!("{yours:?}"), format!("{expected:?}"), source)
     }
 
     /// The same with words in place of values.
-    pub fn describe(
+    pub fn with_texts(
         input: impl Into<String>,
         yours: impl Into<String>,
         expected: impl Into<String>,
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn the_longest_message_has_twelve_lines() {
         let long = "a line\n".repeat(30);
-        let broken = Broken::describe(&long, &long, &long, "brute force").looks_like(Some(&long));
+        let broken = Broken::with_texts(&long, &long, &long, "brute force").looks_like(Some(&long));
         let entry = Entry { stage: 3, ..Entry::default() };
         let message = broken.message("some_check", &entry);
         assert!(message.lines().count() <= 12, "{message}");

@@ -42,5 +42,5 @@ pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
         .find(|(_, (yours, theirs))| yours.trim_end() != theirs.trim_end());
     let (line, (yours, theirs)) = difference.unwrap_or((0, ("", "")));
     let input = format!("{input}\nline {} of tests/golden/{name}.snap", line + 1);
-    Err(Broken::describe(input, yours.trim(), theirs.trim(), "the golden text"))
+    Err(Broken::with_texts(input, yours.trim(), theirs.trim(), "the golden text"))
 }

@@ -52,18 +52,21 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
     let yours = film.to_bytes(gamma());
     if !golden_texts::is_sealed() && std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         let written = film.write_png(&golden_file, gamma());
-        return written
-            .map_err(|error| Broken::describe(name, "cannot be written", error.to_string(), "the file system"));
+        return written.map_err(|error| {
+            Broken::with_texts(name, "cannot be written", error.to_string(), "the file system")
+        });
     }
     let input = format!("the picture tests/golden/{name}.png");
     let golden = match image::open(&golden_file) {
         Ok(golden) => golden.to_rgb8(),
-        Err(error) => return Err(Broken::describe(input, "a picture", error.to_string(), "the golden picture")),
+        Err(error) => {
+            return Err(Broken::with_texts(input, "a picture", error.to_string(), "the golden picture"));
+        }
     };
     if (golden.width(), golden.height()) != (film.width, film.height) {
         let size = |width: u32, height: u32| format!("{width} × {height} pixels");
         let (yours, theirs) = (size(film.width, film.height), size(golden.width(), golden.height()));
-        return Err(Broken::describe(input, yours, theirs, "the golden picture"));
+        return Err(Broken::with_texts(input, yours, theirs, "the golden picture"));
     }
     let off: Vec<u8> = yours
         .rgb
@@ -86,7 +89,7 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
         0 => String::new(),
         n => format!(", and {n} are not numbers"),
     };
-    let broken = Broken::describe(
+    let broken = Broken::with_texts(
         format!("{input}\n{written}the ray of the worst pixel: {}", rays[worst].paste()),
         format!(
             "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",

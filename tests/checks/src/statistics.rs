@@ -88,8 +88,12 @@ pub fn covers_evenly(
     );
     let yours =
         format!("{} with {} in {} and {} in {}", counts[worst], axes[0], range(column), axes[1], range(row));
-    let broken =
-        Broken::describe(input, yours, format!("about {expected:.0}"), "chi-square, 1 false alarm in 10 million");
+    let broken = Broken::with_texts(
+        input,
+        yours,
+        format!("about {expected:.0}"),
+        "chi-square, 1 false alarm in 10 million",
+    );
     let diagnosis = diagnosis(&counts);
     Err(broken.looks_like(match diagnosis.is_empty() {
         true => pattern(&counts, axes),
@@ -122,7 +126,7 @@ pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> O
     }
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let input = format!("{what}: the mean over {} pairs u", values.len());
-    let broken = Broken::describe(
+    let broken = Broken::with_texts(
         input,
         format!("{mean:.5}"),
         format!("{expected:.5}"),

@@ -218,7 +218,7 @@ fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Op
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
         Err(KitError::Panicked { message, place }) => {
             let panic = format!("a panic at {place}: {message}");
-            Some(Broken::describe(input(), panic, "an answer", "the definition"))
+            Some(Broken::with_texts(input(), panic, "an answer", "the definition"))
         }
         Err(error) => kit_error::unwind(error),
     }

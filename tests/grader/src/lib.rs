@@ -16,9 +16,9 @@ pub mod generate;
 #[cfg(target_os = "linux")]
 pub mod grade;
 pub mod handout;
-pub mod sandbox;
 pub mod mutants;
 pub mod pictures;
+pub mod sandbox;
 pub mod sync;
 
 pub use raykata_cli::{kits, queue, report, worker};

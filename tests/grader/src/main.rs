@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use grader::kits::root;
-use grader::{cases, corpus, gaps, gauntlet, generate, handout, sandbox, mutants, sync};
+use grader::{cases, corpus, gaps, gauntlet, generate, handout, mutants, sandbox, sync};
 #[cfg(target_os = "linux")]
 use grader::{export, grade};
 use raykata_cli::args::{Given, Misuse, Read, Spec, did_you_mean, entry};

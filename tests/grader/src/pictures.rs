@@ -169,7 +169,8 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
 fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads: 1, count: true };
     let normals = RenderJob { view: View::Normals, count: false, ..job.clone() };
-    let normals = kit_error::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
+    let normals =
+        kit_error::catch(|| kit.render(&normals, &Unwatched)).ok().flatten().map(|frame| bits(&frame));
     let frame = kit_error::catch(|| kit.render(&job, &Unwatched));
     let seen = frame.as_ref().ok().and_then(Option::as_ref);
     let made_of = seen.map(|frame| (frame.primitives, frame.structure.map(|size| (size.nodes, size.levels))));

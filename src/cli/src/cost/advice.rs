@@ -94,7 +94,8 @@ pub fn advise(
         .iter()
         .filter(|series| !series.levels.is_empty() && !is_chosen_once(series.parameter))
         .collect();
-    let Some(mut search) = GreedySearch::new(&mut tried, measured, turned_by_steps, start, goal, full)? else {
+    let Some(mut search) = GreedySearch::new(&mut tried, measured, turned_by_steps, start, goal, full)?
+    else {
         return Ok(None);
     };
     if !search.go_up()? {

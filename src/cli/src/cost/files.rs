@@ -5,7 +5,7 @@ use super::ladder::Parameter;
 use super::measure::Series;
 use super::plot::{Line, Plot, svg};
 use super::slope::theory;
-use super::{Summary, Report};
+use super::{Report, Summary};
 use crate::html::csv_line;
 use anyhow::{Context, Result};
 use raykata::film::write_atomically;
@@ -78,8 +78,10 @@ fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
 /// File names and pictures: all parameters, and the samplers if they were compared.
 pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let series = &report.measured.series;
-    let parameters: Vec<&Series> =
-        series.iter().filter(|one| one.parameter != Parameter::Sampler && !one.parameter.is_geometric()).collect();
+    let parameters: Vec<&Series> = series
+        .iter()
+        .filter(|one| one.parameter != Parameter::Sampler && !one.parameter.is_geometric())
+        .collect();
     let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
     let mut plots = Vec::new();
     if !parameters.is_empty() {
@@ -119,7 +121,8 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
         Line { name, points: one.levels.iter().map(place).collect() }
     };
     let samplers_only = series.iter().all(|one| one.parameter == Parameter::Sampler);
-    let pareto_front = report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
+    let pareto_front =
+        report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
         x_axis: "seconds a picture, logarithmic",

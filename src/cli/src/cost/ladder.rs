@@ -123,7 +123,12 @@ impl Parameter {
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
         let ladder = |levels: Vec<(String, Quality)>| {
             let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
-            Ladder { parameter: self, name: self.name().into(), levels: levels.collect(), left_out: Vec::new() }
+            Ladder {
+                parameter: self,
+                name: self.name().into(),
+                levels: levels.collect(),
+                left_out: Vec::new(),
+            }
         };
         let numbers = |values: Vec<u32>, set: fn(&mut Quality, u32)| {
             let with = |value: u32| {
@@ -290,12 +295,22 @@ mod tests {
         let effects = Effects::default();
         let called = Called { scene: &scene, effects: &effects, primitives: 1 };
         let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();
-        for parameter in [Parameter::Samples, Parameter::Sampler, Parameter::Precision, Parameter::Accelerator, Parameter::Split] {
+        for parameter in [
+            Parameter::Samples,
+            Parameter::Sampler,
+            Parameter::Precision,
+            Parameter::Accelerator,
+            Parameter::Split,
+        ] {
             assert!(offered(parameter), "{parameter:?}");
         }
-        for parameter in
-            [Parameter::LightSamples, Parameter::GlossySamples, Parameter::Depth, Parameter::Intersection, Parameter::GridResolution]
-        {
+        for parameter in [
+            Parameter::LightSamples,
+            Parameter::GlossySamples,
+            Parameter::Depth,
+            Parameter::Intersection,
+            Parameter::GridResolution,
+        ] {
             assert!(!offered(parameter), "{parameter:?}");
         }
     }

@@ -2,7 +2,7 @@
 
 use super::error::{Errors, errors};
 use super::hits::Verdicts;
-use super::ladder::{Parameter, Ladder};
+use super::ladder::{Ladder, Parameter};
 use super::reference::Reference;
 use super::setting::Setting;
 use crate::report::{FrameBar, bar_of_steps, quartiles};

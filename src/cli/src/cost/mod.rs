@@ -7,9 +7,9 @@
 
 mod advice;
 mod called;
-mod greedy;
 mod error;
 mod files;
+mod greedy;
 mod headline;
 mod hits;
 mod ladder;
@@ -30,7 +30,7 @@ use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
 use called::Called;
 pub use hits::Verdicts;
-use ladder::{Parameter, Ladder};
+use ladder::{Ladder, Parameter};
 use measure::{Bench, Measured, pareto_front};
 pub use options::{Options, SPEC};
 use raykata::effects::Effects;
@@ -261,7 +261,8 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
         let rounds: Vec<Vec<f64>> = (0..measured.rounds as usize).filter_map(round).collect();
         Some((series.name.clone(), slope::slope(&samples, &rounds)?))
     };
-    let of_samples = |series: &&measure::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
+    let of_samples =
+        |series: &&measure::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
 }
 

@@ -20,9 +20,13 @@ pub static SPEC: Spec = Spec {
                  3840 × 2160 pixels.",
             ),
             Opt::value("--most", "N", "How many triangles the largest landscape has [default: 12000000]."),
-            Opt::value("--parameter", "LIST", "The parameters to turn [default: all that the scene calls for].")
-                .choices(&names(&Parameter::NAMES))
-                .many(),
+            Opt::value(
+                "--parameter",
+                "LIST",
+                "The parameters to turn [default: all that the scene calls for].",
+            )
+            .choices(&names(&Parameter::NAMES))
+            .many(),
             Opt::value(
                 "--budget",
                 "TIME",

@@ -119,8 +119,11 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
 
 fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let geometric = series.parameter.is_geometric();
-    let name =
-        if series.parameter == Parameter::Sampler { format!("sampler: {}", series.name) } else { series.name.clone() };
+    let name = if series.parameter == Parameter::Sampler {
+        format!("sampler: {}", series.name)
+    } else {
+        series.name.clone()
+    };
     let mut text = element("h2", name);
     if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
         let theory = expected_slope(report, name)

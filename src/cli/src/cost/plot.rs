@@ -264,7 +264,15 @@ mod tests {
     fn plot(lines: Vec<Line>) -> String {
         let guides = vec![(-0.5, "slope −1/2".to_owned())];
         let pareto_front = vec![(0.001, 0.1), (0.004, 0.05)];
-        svg(&Plot { title: "a < b", x_axis: "seconds", y_axis: "error", lines, guides, pareto_front, floor: 1e-6 })
+        svg(&Plot {
+            title: "a < b",
+            x_axis: "seconds",
+            y_axis: "error",
+            lines,
+            guides,
+            pareto_front,
+            floor: 1e-6,
+        })
     }
 
     #[test]

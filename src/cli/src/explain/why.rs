@@ -19,7 +19,9 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
         (0..scene.materials.len()).filter(|&index| wants(index)).map(|index| material(scene, index)).collect()
     };
     match effect {
-        Effect::Shadows => lights(&|light| effects.lights[light].samples > 0 && effects.lights[light].shadows),
+        Effect::Shadows => {
+            lights(&|light| effects.lights[light].samples > 0 && effects.lights[light].shadows)
+        }
         Effect::AreaLights => lights(&|light| effects.lights[light].area),
         Effect::Mirrors => materials(&|index| effects.materials[index].mirror),
         Effect::Transmission => materials(&|index| effects.materials[index].transmission),

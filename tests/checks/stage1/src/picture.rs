@@ -12,7 +12,7 @@ pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> Outcome {
     let rays = picture::rays(Vec3::new(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
     let on_floor =
         trial.kit.plane(&rays.iter().map(|&ray| PlaneQuery { ray, plane: floor }).collect::<Vec<_>>());
-    let to_sphere: Vec<SphereQuery> = rays.iter().map(|&ray| SphereQuery { ray, sphere: sphere }).collect();
+    let to_sphere: Vec<SphereQuery> = rays.iter().map(|&ray| SphereQuery { ray, sphere }).collect();
     let on_sphere = trial.kit.sphere_geometric(&to_sphere);
     let points: Vec<(Sphere, Vec3)> =
         rays.iter().zip(&on_sphere).map(|(ray, t)| (sphere, ray.at(t.unwrap_or(0.0)))).collect();

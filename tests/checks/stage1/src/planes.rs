@@ -38,16 +38,21 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
             }
             _ => "",
         };
-        let broken =
-            Broken::describe(query.call("plane"), format!("{yours:?}"), expected.words(), "double precision");
+        let broken = Broken::with_texts(
+            query.call("plane"),
+            format!("{yours:?}"),
+            expected.words(),
+            "double precision",
+        );
         Err(broken.looks_like(known(diagnosis)))
     })
 }
 
 pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    let inputs = (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
-        PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
-    });
+    let inputs =
+        (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
+            PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
+        });
     trial.forall(4000, inputs, |queries| judge_planes(trial, queries))?;
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let flat = PlaneQuery { ray: Ray::new(Vec3::Y, Vec3::new(1.0, -2f32.powi(-14), 0.0)), plane: floor };
@@ -73,8 +78,13 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
         if yours.is_some() {
             let diagnosis =
                 "n·d = 0 makes t infinite or NaN, and a start in the plane makes t = 0: none of them counts";
-            return Err(Broken::describe(query.call("plane"), format!("{yours:?}"), "None", "the definition")
-                .looks_like(Some(diagnosis)));
+            return Err(Broken::with_texts(
+                query.call("plane"),
+                format!("{yours:?}"),
+                "None",
+                "the definition",
+            )
+            .looks_like(Some(diagnosis)));
         }
     }
     Ok(())

@@ -29,7 +29,7 @@ impl Method {
             if expected.accepts(yours) {
                 return Ok(());
             }
-            let broken = Broken::describe(
+            let broken = Broken::with_texts(
                 query.call(self.name),
                 format!("{yours:?}"),
                 expected.words(),

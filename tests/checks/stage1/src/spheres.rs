@@ -155,7 +155,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
     for (query, yours) in [above, below].iter().zip((method.ask)(trial.kit, &[above, below])) {
         // A step of height moves the root by sqrt(2u): 3.5e-4 to either side of 5.
         if yours.is_some_and(|t| !((t - 5.0).abs() < 1e-3)) {
-            return Err(Broken::describe(
+            return Err(Broken::with_texts(
                 query.call(method.name),
                 format!("{yours:?}"),
                 "None, or 5 ± 0.001",

@@ -69,7 +69,7 @@ pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let expected = "Some: the ray meets the box";
-        Err(Broken::describe(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
+        Err(Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), expected, "exactly")
             .looks_like(Some(Loss::of(query).describe())))
     };
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
@@ -94,7 +94,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let roundings = format!("None: the ray passes by {:.0} roundings", exact.margin);
-        Err(Broken::describe(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
+        Err(Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
             .looks_like(Some(
                 "a hit where there is none: more room than 64 roundings, and each costs a visit",
             )))
@@ -120,7 +120,7 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome
             return Ok(());
         };
         match yours {
-            Some((enter, _)) if enter > t => Err(Broken::describe(
+            Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),
                 format!("enters at {enter}"),
                 format!("at {t} or before: there it meets a triangle in the box"),
@@ -144,7 +144,7 @@ pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
     );
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let broken = |expected: &str, diagnosis: &'static str| {
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 query.call("conservative_slab"),
                 format!("{yours:?}"),
                 expected,

@@ -65,7 +65,7 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> Outcome {
         let Some(worst) = wrong.iter().max_by(|p, q| p.margin.total_cmp(&q.margin)) else { continue };
         let yours = format!("{:?}", worst.yours.map(|hit| hit.t));
         let expected = format!("{:?}, {}", worst.exact, describe(worst.margin));
-        let broken = Broken::describe(worst.query.call("triangle_in_double"), yours, expected, "exactly");
+        let broken = Broken::with_texts(worst.query.call("triangle_in_double"), yours, expected, "exactly");
         return Err(broken.looks_like(known(diagnosis(trial, &wrong, worst))));
     }
     Ok(())
@@ -189,7 +189,7 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
         let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
         let expected =
             format!("{exact:?}, or a neighbour: this is {:.1} steps of the last digit off", off.abs());
-        let broken = Broken::describe(
+        let broken = Broken::with_texts(
             query.call("triangle_in_double"),
             format!("{:?}", yours.map(|hit| hit.t)),
             expected,
@@ -210,7 +210,7 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
             Some(hit) if nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
                 let input = query.call("triangle_in_double");
                 let yours = format!("{hit:?}");
-                let broken = Broken::describe(input, yours, "finite numbers, or None", "the definition");
+                let broken = Broken::with_texts(input, yours, "finite numbers, or None", "the definition");
                 Err(broken.looks_like(Some("NaN is no hit: ask for what is true of a hit, which NaN fails")))
             }
             _ => Ok(()),
@@ -231,10 +231,11 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
     }));
     let judge = |query: &SphereQuery, yours: Option<f32>| {
         let SphereQuery { ray, sphere } = query;
-        let nan = ray.origin.is_nan() || ray.direction.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
+        let nan =
+            ray.origin.is_nan() || ray.direction.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
         let broken = |expected: &str, diagnosis: &'static str| {
             let input = query.call("sphere_in_double");
-            Err(Broken::describe(input, format!("{yours:?}"), expected, "the definition")
+            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition")
                 .looks_like(Some(diagnosis)))
         };
         match yours {

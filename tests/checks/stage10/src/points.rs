@@ -54,7 +54,7 @@ pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> Outco
                 }
                 () => "a fixed offset is too small here: move by the error of the point, error · |n|",
             };
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 describe(query),
                 format!("{height:.3e} off the point"),
                 format!("{bound:.3e} or more, on the side of the direction"),
@@ -75,7 +75,7 @@ pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> Outcome 
                 return Ok(());
             }
             let diagnosis = "a fixed offset is too large here: what touches the surface is not seen";
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 describe(query),
                 format!("{height:.3e} off the point"),
                 format!("at most {most:.3e}"),

@@ -127,7 +127,8 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
         _ => "",
     };
     let expected = format!("{exact:?}, {}", describe(margin(query) / U));
-    let broken = Broken::describe(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
+    let broken =
+        Broken::with_texts(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
     Err(broken.looks_like(known(diagnosis)))
 }
 
@@ -151,7 +152,8 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     let mut queries: Vec<SphereQuery> = (0..4000).map(|_| through(&mut random)).collect();
     // Near a tangent both roots are as uncertain as the root of a difference that is nearly 0.
     queries.retain(|query| {
-        let (f, d) = (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.direction.as_dvec3());
+        let (f, d) =
+            (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.direction.as_dvec3());
         let aside = f.cross(d).length() / d.length();
         aside < 0.96 * f64::from(query.sphere.radius)
     });
@@ -186,6 +188,6 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     };
     let expected = format!("Some({rounded:?}), or a neighbour");
     let broken =
-        Broken::describe(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
+        Broken::with_texts(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
     Err(broken.looks_like(known(diagnosis)))
 }

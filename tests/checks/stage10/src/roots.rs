@@ -86,8 +86,13 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
             let (value, _) = discriminant(*query);
             let p = f64::from(-query[1] / (2.0 * query[0]));
             let broken = |expected: String, diagnosis: &'static str| {
-                Err(Broken::describe(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
-                    .looks_like(Some(diagnosis)))
+                Err(Broken::with_texts(
+                    describe(query),
+                    format!("{yours:?}"),
+                    expected,
+                    "whole numbers, exactly",
+                )
+                .looks_like(Some(diagnosis)))
             };
             match (value, yours) {
                 (value, None) if value < 0.0 => Ok(()),
@@ -115,7 +120,7 @@ pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> Outcome 
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let refused = query[0] == 0.0 || !query.iter().all(|x| x.is_finite());
         let broken = |expected: &str, diagnosis: &'static str| {
-            Err(Broken::describe(describe(query), format!("{yours:?}"), expected, "the definition")
+            Err(Broken::with_texts(describe(query), format!("{yours:?}"), expected, "the definition")
                 .looks_like(known(diagnosis)))
         };
         match yours {

@@ -76,7 +76,7 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
                 ("needle", None) => "t has lost all digits on a needle: take it from the plane",
                 _ => "a miss where there is a hit, and not for a rounding",
             };
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 query.call("watertight"),
                 format!("{:?}", yours.map(|hit| hit.t)),
                 format!("{:?}, {margin:.0} roundings from anything else", exact.t),
@@ -148,9 +148,8 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                      way for both, and count 0 as inside"
                 }
             };
-            return Err(
-                Broken::describe(input, "no hit", "a hit", "the mesh is closed").looks_like(Some(diagnosis))
-            );
+            return Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
+                .looks_like(Some(diagnosis)));
         }
     }
     Ok(())
@@ -207,7 +206,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
             .collect();
         for ((query, yours), plain) in scaled.iter().zip(trial.kit.watertight(&scaled)).zip(&plain) {
             if yours != *plain {
-                let broken = Broken::describe(
+                let broken = Broken::with_texts(
                     query.call("watertight"),
                     format!("{yours:?}"),
                     format!("{plain:?}, as without the factor 2^{exponent}"),

@@ -113,7 +113,7 @@ pub(super) fn judge_normals(
     if normals.len() != mesh.positions.len() {
         let (yours, expected) =
             (format!("{} normals", normals.len()), format!("{} normals", mesh.positions.len()));
-        return Err(Broken::describe(input, yours, expected, "one a vertex"));
+        return Err(Broken::with_texts(input, yours, expected, "one a vertex"));
     }
     for (vertex, &yours) in normals.iter().enumerate() {
         if let Some(expected) = accept(vertex, yours) {

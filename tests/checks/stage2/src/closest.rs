@@ -65,7 +65,7 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome
             if tests == n {
                 Ok(())
             } else {
-                Err(Broken::describe(input, describe(tests), describe(n), "each primitive once"))
+                Err(Broken::with_texts(input, describe(tests), describe(n), "each primitive once"))
             }
         })
     })

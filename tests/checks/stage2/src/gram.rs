@@ -38,7 +38,9 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
                         (f64::from(yours) - other).abs() <= 1e-6 * other.abs() && *other != exact
                     });
                     let swapped = other.map(|(other, ..)| format!("{name} and {other} look swapped"));
-                    return Err(Broken::describe(input, describe, expected, "double precision").looks_like(swapped));
+                    return Err(
+                        Broken::with_texts(input, describe, expected, "double precision").looks_like(swapped)
+                    );
                 }
             }
             let d = -u.as_dvec3().cross(v.as_dvec3()).length_squared();
@@ -48,8 +50,12 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
             if yours.d <= 0.0 && (f64::from(yours.d) - d).abs() <= tolerance {
                 return Ok(());
             }
-            let broken =
-                Broken::describe(input, format!("D = {:?}", yours.d), format!("D = {d:e}"), "double precision");
+            let broken = Broken::with_texts(
+                input,
+                format!("D = {:?}", yours.d),
+                format!("D = {d:e}"),
+                "double precision",
+            );
             if (f64::from(yours.d) + d).abs() <= tolerance {
                 return Err(broken.looks_like(Some("the sign of D is wrong: it is UV² - UU·VV = -|u × v|²")));
             }

@@ -180,7 +180,7 @@ pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
                 if yours == expected {
                     return Ok(());
                 }
-                let broken = Broken::describe(
+                let broken = Broken::with_texts(
                     query.call(method.name),
                     describe(yours),
                     describe(expected),
@@ -258,7 +258,7 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
     let huge = with(-1e20 * Vec3::ONE, 1e20 * Vec3::X, 1e20 * Vec3::Y);
     for yours in (method.ask)(trial.kit, &[huge]).into_iter().flatten() {
         if !(yours.t.is_finite() && yours.beta.is_finite() && yours.gamma.is_finite()) {
-            return Err(Broken::describe(
+            return Err(Broken::with_texts(
                 huge.call(method.name),
                 describe(Some(yours)),
                 "None, or finite numbers",

@@ -34,8 +34,12 @@ impl Method {
             if expected.accepts(yours) {
                 return Ok(());
             }
-            let broken =
-                Broken::describe(query.call(self.name), describe(yours), expected.words(), "double precision");
+            let broken = Broken::with_texts(
+                query.call(self.name),
+                describe(yours),
+                expected.words(),
+                "double precision",
+            );
             Err(broken.looks_like(triangle_diagnosis(self.name, query, yours, &expected)))
         })
     }
@@ -48,8 +52,12 @@ impl Method {
         let queries: Vec<TriangleQuery> = cases.iter().map(|case| case.0).collect();
         for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
             if yours != *expected {
-                let broken =
-                    Broken::describe(query.call(self.name), describe(yours), describe(*expected), "exact arithmetic");
+                let broken = Broken::with_texts(
+                    query.call(self.name),
+                    describe(yours),
+                    describe(*expected),
+                    "exact arithmetic",
+                );
                 return Err(broken.looks_like(known(diagnosis)));
             }
         }
@@ -113,7 +121,8 @@ fn slide_determinant_explains(
     yours: Option<TriangleHit>,
     expected: &double::TriangleExpected,
 ) -> bool {
-    let [x, y, z] = [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.direction];
+    let [x, y, z] =
+        [query.triangle.a - query.triangle.b, query.triangle.a - query.triangle.c, query.ray.direction];
     let s = query.triangle.a - query.ray.origin;
     let slide = x.x * (y.y * z.z - z.y * y.z) + y.x * (z.y * s.z - s.y * z.z) + z.x * (s.y * y.z - y.y * s.z);
     let right = x.dot(y.cross(z));

@@ -18,7 +18,8 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Out
             None => Ok(()),
             Some((yours, expected)) => {
                 let diagnosis = build_diagnosis(&yours);
-                let broken = Broken::describe(query.call("build"), yours, expected, "what makes a hierarchy");
+                let broken =
+                    Broken::with_texts(query.call("build"), yours, expected, "what makes a hierarchy");
                 Err(broken.looks_like(known(diagnosis)))
             }
         }
@@ -65,7 +66,8 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
                         false => "a split put everything on one side: fall back on one that divides",
                     };
                     let panic = format!("a panic at {place}: {message}");
-                    let broken = Broken::describe(query.call("build"), panic, "a tree", "what makes a hierarchy");
+                    let broken =
+                        Broken::with_texts(query.call("build"), panic, "a tree", "what makes a hierarchy");
                     return Err(broken.looks_like(Some(diagnosis)));
                 }
                 Err(error) => kit_error::unwind(error),
@@ -130,7 +132,7 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
         return Ok(());
     }
     let describe = |depth: usize, nodes: usize| format!("depth {depth}, {nodes} nodes");
-    Err(Broken::describe(
+    Err(Broken::with_texts(
         "build of 512 boxes, ObjectMedian, leaf_size 1",
         describe(depth, nodes),
         describe(10, 1023),

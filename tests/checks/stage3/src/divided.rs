@@ -41,20 +41,20 @@ pub(super) fn judge_splits(
         ids.sort_unstable();
         if ids != (0..n as u32).collect::<Vec<_>>() {
             let all = format!("the primitives 0..{n} in some order");
-            let broken = Broken::describe(input, format!("{order:?}"), all, "nothing may be lost");
+            let broken = Broken::with_texts(input, format!("{order:?}"), all, "nothing may be lost");
             return Err(broken.looks_like(Some("a primitive was overwritten: swap the two")));
         }
         let Some(middle) = middle else {
             return match law(&query.primitives, 0) {
                 None => Ok(()),
                 Some((_, expected, diagnosis)) => {
-                    Err(Broken::describe(input, "None, a leaf", expected, "brute force")
+                    Err(Broken::with_texts(input, "None, a leaf", expected, "brute force")
                         .looks_like(known(diagnosis)))
                 }
             };
         };
         if middle == 0 || middle >= n {
-            let broken = Broken::describe(
+            let broken = Broken::with_texts(
                 input,
                 format!("{middle} left, {} right", n - middle.min(n)),
                 "something on both sides",
@@ -67,7 +67,7 @@ pub(super) fn judge_splits(
         match law(&ordered, middle) {
             None => Ok(()),
             Some((yours, expected, diagnosis)) => {
-                Err(Broken::describe(input, yours, expected, "brute force").looks_like(known(diagnosis)))
+                Err(Broken::with_texts(input, yours, expected, "brute force").looks_like(known(diagnosis)))
             }
         }
     })

@@ -40,7 +40,11 @@ pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
                 direction
             };
             let t_max = if t_max == 0 { f32::INFINITY } else { 3.0 * t_max as f32 };
-            tree::search_query(&bvh, &spheres, &Ray::new(origin, direction).with_range(t_min as f32 / 2.0, t_max))
+            tree::search_query(
+                &bvh,
+                &spheres,
+                &Ray::new(origin, direction).with_range(t_min as f32 / 2.0, t_max),
+            )
         },
     )
 }
@@ -144,7 +148,7 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
             if visits <= met {
                 return Ok(());
             }
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 describe_search(query),
                 describe(visits),
                 format!("at most {met}: the ray meets no more boxes"),
@@ -195,7 +199,7 @@ pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {
             let describe = |n: u64| format!("{n} primitives asked about after the first hit");
             match answer.tests_after_hit {
                 0 => Ok(()),
-                n => Err(Broken::describe(describe_search(query), describe(n), describe(0), "counted")
+                n => Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
                     .looks_like(Some("the search goes on after a hit: one is enough"))),
             }
         })

@@ -34,7 +34,8 @@ pub(super) fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery], diagnosis: &
             true => format!("Some(({near}, {far}))"),
             false => "None".into(),
         };
-        let broken = Broken::describe(query.call("slab"), format!("{yours:?}"), describe, "double precision");
+        let broken =
+            Broken::with_texts(query.call("slab"), format!("{yours:?}"), describe, "double precision");
         Err(broken.looks_like(known(slab_diagnosis(query, yours, diagnosis))))
     })
 }
@@ -86,12 +87,13 @@ fn misses_by_one_axis(query: &SlabQuery) -> bool {
 }
 
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
-    let inputs = (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, direction, bounds, at)| {
-        // Half of the rays are aimed at the box.
-        let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
-        let direction = if at.x > 0.0 && target != origin { target - origin } else { direction };
-        SlabQuery { ray: Ray::new(origin, direction), bounds }
-    });
+    let inputs =
+        (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, direction, bounds, at)| {
+            // Half of the rays are aimed at the box.
+            let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
+            let direction = if at.x > 0.0 && target != origin { target - origin } else { direction };
+            SlabQuery { ray: Ray::new(origin, direction), bounds }
+        });
     // First what every formula gets right that minds signs and axes: random rays shrink to rays along an axis.
     let drawn = [
         (vec3(-2.0, -1.5, -1.0), vec3(1.0, 1.0, 0.75)),
@@ -108,10 +110,11 @@ pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
 pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> Outcome {
     let middle = SlabQuery { ray: Ray::new(Vec3::splat(0.5), vec3(1.0, 0.5, -0.25)), bounds: UNIT_BOX };
     judge_slabs(trial, &[middle], "").into_iter().collect::<Outcome>()?;
-    let inputs = (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, direction)| {
-        let at = vec3(x as f32, y as f32, z as f32) / 8.0;
-        SlabQuery { ray: Ray::new(bounds.min + at * (bounds.max - bounds.min), direction), bounds }
-    });
+    let inputs =
+        (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, direction)| {
+            let at = vec3(x as f32, y as f32, z as f32) / 8.0;
+            SlabQuery { ray: Ray::new(bounds.min + at * (bounds.max - bounds.min), direction), bounds }
+        });
     trial.forall(2000, inputs, |queries| {
         judge_slabs(trial, queries, "the ray starts inside, or on a face: a closed box is entered at t_min")
     })
@@ -130,7 +133,8 @@ pub(super) fn judge_slabs_exactly(
         let sound = yours.is_none_or(|(enter, leave)| enter <= leave);
         if yours.is_some() != *hit || !sound {
             let expected = if *hit { "a hit" } else { "None" };
-            let broken = Broken::describe(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
+            let broken =
+                Broken::with_texts(query.call("slab"), format!("{yours:?}"), expected, "exact arithmetic");
             return Err(broken.looks_like(Some(diagnosis)));
         }
     }
@@ -159,8 +163,9 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
         }
     }
     // First without -0.0: what fails there does not fail for its sign.
-    let negative_zero =
-        |case: &(Ray, Aabb, bool)| case.0.direction.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative());
+    let negative_zero = |case: &(Ray, Aabb, bool)| {
+        case.0.direction.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative())
+    };
     let (negative, positive): (Vec<_>, Vec<_>) = cases.into_iter().partition(negative_zero);
     judge_slabs_exactly(
         trial,
@@ -258,12 +263,11 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
     trial.forall(3000, inputs, |queries| {
         compare(queries, trial.kit.slab(queries), |query, yours| match yours {
             Some(_) => Ok(()),
-            None => {
-                Err(Broken::describe(query.call("slab"), "None", "a hit", "exact arithmetic").looks_like(Some(
+            None => Err(Broken::with_texts(query.call("slab"), "None", "a hit", "exact arithmetic")
+                .looks_like(Some(
                     "1/d, the difference and the product are rounded, so far may fall just short of near: \
                      make far a little longer, (1 + 2 γ₃) times",
-                )))
-            }
+                ))),
         })
     })
 }

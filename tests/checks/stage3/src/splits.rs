@@ -97,7 +97,7 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ou
         Err(KitError::Panicked { message, place }) => {
             let input = "SurfaceArea of six boxes along a line, five in one point, six equal ones";
             let panic = format!("a panic at {place}: {message}");
-            Err(Broken::describe(input, panic, "an answer", "the definition").looks_like(Some(
+            Err(Broken::with_texts(input, panic, "an answer", "the definition").looks_like(Some(
                 "0/0 makes every cost NaN, and no cut is the best: compare costs without dividing by A(P)",
             )))
         }

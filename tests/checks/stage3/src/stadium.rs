@@ -82,7 +82,7 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
         format!("expected cost {yours:.3} a ray"),
         format!("at most {:.3} (object median: {median:.3})", 1.05 * best),
     );
-    Err(Broken::describe(
+    Err(Broken::with_texts(
         "build of the 200 boxes of a stadium, SurfaceArea, leaf_size 4",
         yours,
         best,
@@ -111,7 +111,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
         if yours > most {
             let describe = |n: u64| format!("{n} nodes opened and primitives tested");
             let input = format!("180 rays through a stadium of 200 spheres, tree by {split:?}, leaf_size 4");
-            let broken = Broken::describe(
+            let broken = Broken::with_texts(
                 input,
                 describe(yours),
                 format!("at most {}", describe(most)),
@@ -146,7 +146,7 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
     };
     let input = "a ray along a row of 64 spheres, of which it hits the first";
     let most = format!("at most {}", describe(needed));
-    Err(Broken::describe(input, describe(yours), most, "counted").looks_like(Some(diagnosis)))
+    Err(Broken::with_texts(input, describe(yours), most, "counted").looks_like(Some(diagnosis)))
 }
 
 pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
@@ -166,8 +166,9 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
         _ => "the farther child is entered first, or a box is not tested again after a nearer hit was found",
     };
     let describe = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
-    let (yours, most) = (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
-    Err(Broken::describe(
+    let (yours, most) =
+        (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
+    Err(Broken::with_texts(
         format!("{} rays through a stadium", queries.len()),
         yours,
         format!("at most {most}"),

@@ -65,8 +65,11 @@ pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {
             (inside > 0.0).then(|| (aside - inside.sqrt() * ray.direction).normalize())
         })
         .collect();
-    let queries: Vec<ShadeQuery> =
-        rays.iter().zip(&points).map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.direction)).collect();
+    let queries: Vec<ShadeQuery> = rays
+        .iter()
+        .zip(&points)
+        .map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.direction))
+        .collect();
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
     // The points are given, so only light on the horizon may round either way: a few of 4800 pixels.

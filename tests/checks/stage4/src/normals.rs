@@ -8,7 +8,9 @@ use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
 
-pub(super) fn paste_normal_query((geometric, interpolated, direction): &(Vec3, Option<Vec3>, Vec3)) -> String {
+pub(super) fn paste_normal_query(
+    (geometric, interpolated, direction): &(Vec3, Option<Vec3>, Vec3),
+) -> String {
     let interpolated = interpolated.map_or("None".into(), |n| format!("Some({})", n.paste()));
     format!("shading_normal({}, {interpolated}, {})", geometric.paste(), direction.paste())
 }

@@ -227,7 +227,7 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
                 () => return Ok(()),
             };
             let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-            Err(Broken::describe(query.call("shade"), describe(&traced), describe(&needed), "counted")
+            Err(Broken::with_texts(query.call("shade"), describe(&traced), describe(&needed), "counted")
                 .looks_like(Some(diagnosis)))
         })
     })

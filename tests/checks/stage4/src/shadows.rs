@@ -33,7 +33,7 @@ pub(super) fn judge_shadow_rays(
     law: impl Fn(&ShadowQuery, &raykata::ray::Ray) -> Option<(String, String, &'static str)>,
 ) -> Vec<Outcome> {
     compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
-        None => Err(Broken::describe(
+        None => Err(Broken::with_texts(
             query.call("shadow_ray"),
             "None",
             "a ray: the light is in front of the surface",
@@ -42,7 +42,7 @@ pub(super) fn judge_shadow_rays(
         Some(ray) => match law(query, &ray) {
             None => Ok(()),
             Some((yours, expected, diagnosis)) => {
-                Err(Broken::describe(query.call("shadow_ray"), yours, expected, "closed form")
+                Err(Broken::with_texts(query.call("shadow_ray"), yours, expected, "closed form")
                     .looks_like(known(diagnosis)))
             }
         },
@@ -165,7 +165,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, behind, |queries| {
         compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
             None => Ok(()),
-            Some(ray) => Err(Broken::describe(
+            Some(ray) => Err(Broken::with_texts(
                 query.call("shadow_ray"),
                 format!("a ray along {}", ray.direction),
                 "None",
@@ -185,7 +185,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
     along_flat.surface.shading_normal = vec3(0.6, 0.8, 0.0);
     for query in [along, along_smooth, along_flat] {
         if trial.kit.shadow_ray(&[query])[0].is_some() {
-            return Err(Broken::describe(query.call("shadow_ray"), "a ray", "None", "the definition")
+            return Err(Broken::with_texts(query.call("shadow_ray"), "a ray", "None", "the definition")
                 .looks_like(Some(
                     "the light shines exactly along the surface: its cosine is 0, so it adds nothing",
                 )));
@@ -195,7 +195,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
     let dark = ShadowQuery { light: LightSample { radiance: Vec3::ZERO, ..lit.light }, ..lit };
     match trial.kit.shadow_ray(&[dark])[0] {
         None => Ok(()),
-        Some(_) => Err(Broken::describe(dark.call("shadow_ray"), "a ray", "None", "the definition")
+        Some(_) => Err(Broken::with_texts(dark.call("shadow_ray"), "a ray", "None", "the definition")
             .looks_like(Some("a light that is switched off needs no ray"))),
     }
 }

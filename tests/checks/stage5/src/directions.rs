@@ -11,7 +11,9 @@ use raykata::kit::RefractQuery;
 
 /// A direction and a normal on the side that it comes from.
 pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
-    (unit(), unit()).prop_map(|(direction, normal)| (direction, if normal.dot(direction) > 0.0 { -normal } else { normal }))
+    (unit(), unit()).prop_map(|(direction, normal)| {
+        (direction, if normal.dot(direction) > 0.0 { -normal } else { normal })
+    })
 }
 
 pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
@@ -54,13 +56,14 @@ pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> O
     let mut direction = vec3(0.3, -0.7, 0.2).normalize();
     for bounce in 0..1000 {
         let normal = normals[bounce % 2];
-        direction = trial.kit.reflect(&[(direction, if normal.dot(direction) > 0.0 { -normal } else { normal })])[0];
+        direction =
+            trial.kit.reflect(&[(direction, if normal.dot(direction) > 0.0 { -normal } else { normal })])[0];
     }
     let off = (direction.as_dvec3().length() - 1.0).abs();
     if off < 1e-6 {
         return Ok(());
     }
-    let broken = Broken::describe(
+    let broken = Broken::with_texts(
         "mirror, 1000 times",
         format!("|d| - 1 = {off:.1e}"),
         "less than 1e-6",

@@ -3,23 +3,23 @@
 //! `directions` · `fresnel` · `children` (which rays go on) · `weights` (whose decides) · `leaving` (from where) ·
 //! `trees` (what becomes of them, counted)
 
-mod scatter;
 mod directions;
 mod fresnel;
+mod scatter;
 mod spawn;
 mod trees;
 mod weights;
 
-use scatter::{
-    scatter_are_not_traced_in_vain, scatter_leave_glass_as_they_entered,
-    scatter_totally_reflected_are_not_refracted, scatter_weigh_what_the_surface_says,
-};
 use directions::{
     reflect_keeps_the_angle, reflect_stays_of_unit_length_in_a_corridor,
     refract_beyond_the_critical_angle_is_nothing, refract_goes_straight_where_it_must, refract_obeys_snell,
     refract_survives_rounded_directions,
 };
 use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees_with_double_precision};
+use scatter::{
+    scatter_are_not_traced_in_vain, scatter_leave_glass_as_they_entered,
+    scatter_totally_reflected_are_not_refracted, scatter_weigh_what_the_surface_says,
+};
 use spawn::rays_that_go_on_leave_their_surface;
 use trees::{
     facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,

@@ -9,7 +9,7 @@ use checks::judge::{compare, known};
 use checks::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::{Bounce, SecondaryRay, ScatterQuery, FresnelQuery, Limits, RefractQuery};
+use raykata::kit::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
 /// No limit that a check does not ask for.
@@ -149,7 +149,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
         };
         let [reflected, transmitted] = expected.map(|weight| weight.as_vec3());
         let expected = format!("Reflection of weight {reflected}, Transmission of weight {transmitted}");
-        Err(Broken::describe(paste(query), describe(&yours), expected, "the formula in double precision")
+        Err(Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
             .looks_like(known(diagnosis)))
     })
 }
@@ -173,7 +173,7 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
         let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
         super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
         let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
-            let broken = Broken::describe(paste(&enter), describe(&inside), "a refracted ray", "glass");
+            let broken = Broken::with_texts(paste(&enter), describe(&inside), "a refracted ray", "glass");
             return Err(broken.looks_like(Some(ENTERING)));
         };
         let bent = super::directions::snell(&snell).0.map(|direction| direction.as_vec3());
@@ -184,11 +184,11 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
         }
         let leave = ScatterQuery { direction: inside.direction, entering: false, ..enter };
         let outside = trial.kit.scatter(std::slice::from_ref(&leave)).remove(0);
-        let direction = find(&outside, Bounce::Transmission).map(|child| child.direction);
-        if !direction.is_some_and(|direction| (direction - direction).length() < 1e-5) {
-            let broken = Broken::new(paste(&leave), direction, Some(direction), "out as it came in");
-            return Err(broken.looks_like(Some(match direction {
-                Some(direction) if direction.dot(leave.normal) > 0.0 => {
+        let out = find(&outside, Bounce::Transmission).map(|child| child.direction);
+        if !out.is_some_and(|out| (out - direction).length() < 1e-5) {
+            let broken = Broken::new(paste(&leave), out, Some(direction), "out as it came in");
+            return Err(broken.looks_like(Some(match out {
+                Some(out) if out.dot(leave.normal) > 0.0 => {
                     "back into the glass: the normal is on the ray's side already, so it must not be turned"
                 }
                 _ => "leaving the glass, n1 is the glass and n2 the air",
@@ -222,7 +222,8 @@ pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> 
         let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
         if refracted || !sound || (reflected - mirrored).abs() > 1e-5 {
             let expected = format!("Reflection of weight {mirrored}, and no Transmission");
-            let broken = Broken::describe(paste(&query), describe(&yours), expected, "total internal reflection");
+            let broken =
+                Broken::with_texts(paste(&query), describe(&yours), expected, "total internal reflection");
             return Err(broken
                 .looks_like(Some("beyond the critical angle no ray goes through, and the share F is 1")));
         }
@@ -246,8 +247,12 @@ pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
             if yours.is_empty() {
                 return Ok(());
             }
-            let broken =
-                Broken::describe(paste(query), describe(&yours), "no rays", "what counts nothing shows nothing");
+            let broken = Broken::with_texts(
+                paste(query),
+                describe(&yours),
+                "no rays",
+                "what counts nothing shows nothing",
+            );
             Err(broken.looks_like(Some("a child of weight zero: test the child's own weight")))
         })
     })

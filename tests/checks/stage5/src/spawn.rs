@@ -40,8 +40,10 @@ fn at_any_scale() -> impl Strategy<Value = Leaving> + Clone {
 
 fn describe((surface, child): &Leaving) -> String {
     let direction = child.direction.paste();
-    let child =
-        format!("&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}", child.bounce);
+    let child = format!(
+        "&SecondaryRay {{ bounce: Bounce::{:?}, direction: {direction}, weight: Vec3::ONE }}",
+        child.bounce
+    );
     format!("spawn_ray({}, {child})", surface.paste())
 }
 
@@ -58,7 +60,7 @@ pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome 
 fn judge(query: &Leaving, ray: Ray) -> Outcome {
     let (surface, child) = query;
     let broken = |yours: String, expected: String, diagnosis: &'static str| {
-        Err(Broken::describe(describe(query), yours, expected, "closed form").looks_like(known(diagnosis)))
+        Err(Broken::with_texts(describe(query), yours, expected, "closed form").looks_like(known(diagnosis)))
     };
     let direction = ray.direction.as_dvec3();
     if !((direction.normalize() - child.direction.as_dvec3()).length() < 1e-5) {

@@ -4,7 +4,7 @@ use super::scatter::{FAR, paste};
 use checks::broken::{Broken, Outcome};
 use checks::{Trial, golden};
 use glam::{Vec3, vec3};
-use raykata::kit::{Bounce, ScatterQuery, Limits};
+use raykata::kit::{Bounce, Limits, ScatterQuery};
 use raykata::material::{Fresnel, Material};
 
 /// A tree with more rays than this does not end.
@@ -59,7 +59,7 @@ fn judge(
     let describe =
         |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "a tree without end".into() };
     let input = format!("a closed room, every ray followed, from\n{}", paste(&first));
-    Err(Broken::describe(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
+    Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
 }
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {

@@ -6,7 +6,7 @@ use checks::broken::{Broken, Outcome};
 use checks::judge::compare;
 use glam::Vec3;
 use proptest::prelude::*;
-use raykata::kit::{Bounce, SecondaryRay, ScatterQuery, Limits};
+use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
 /// X8: it is the child's own weight that counts, not that of its parent, and each child's by itself.
@@ -69,6 +69,11 @@ fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
     let kind = ["Reflection", "Transmission"][off];
     let verdict =
         |traced: bool| format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" });
-    Err(Broken::describe(paste(query), verdict(found[off]), verdict(counts[off]), "its own weight and the limit")
-        .looks_like(Some(diagnosis)))
+    Err(Broken::with_texts(
+        paste(query),
+        verdict(found[off]),
+        verdict(counts[off]),
+        "its own weight and the limit",
+    )
+    .looks_like(Some(diagnosis)))
 }

@@ -6,7 +6,7 @@ use checks::broken::{Broken, Outcome};
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
 use glam::{DVec3, Vec2, Vec3, vec3};
-use raykata::kit::{SphereSampleQuery, RectangleQuery};
+use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::{Disk, Sphere};
 
 pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
@@ -102,15 +102,15 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
     let (x, y) = axis.any_orthonormal_pair();
     let mut shares = Vec::new();
     for (query, direction) in queries.iter().zip(trial.kit.sample_sphere(&queries)) {
-        let direction = direction.as_dvec3();
+        let toward = direction.as_dvec3();
         // 1 - cos θ from the sine, which keeps the digits of small angles.
-        let sine_squared = direction.cross(axis).length_squared();
-        let cosine = direction.dot(axis);
+        let sine_squared = toward.cross(axis).length_squared();
+        let cosine = toward.dot(axis);
         let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
         let share = below_one / widest;
         // The direction is rounded: 1e-7 of an angle of √(2 · widest).
         let slack = 4e-7 / widest.sqrt();
-        let unit = (direction.length() - 1.0).abs() < 1e-5;
+        let unit = (toward.length() - 1.0).abs() < 1e-5;
         if !(unit && share <= 1.0 + slack) {
             let input = format!(
                 "sample_sphere(&Sphere {{ center: {}, radius: {} }}, {}, {})",
@@ -127,7 +127,7 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
             };
             return Err(broken.looks_like(Some(diagnosis)));
         }
-        shares.push((share, direction.dot(y).atan2(direction.dot(x)) / std::f64::consts::TAU + 0.5));
+        shares.push((share, toward.dot(y).atan2(toward.dot(x)) / std::f64::consts::TAU + 0.5));
     }
     Ok(shares)
 }
@@ -188,12 +188,16 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> Outcom
 /// The share of a sphere that is seen past the straight edge of a wall.
 pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
     let sphere = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
-    let queries: Vec<SphereSampleQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { sphere, from: Vec3::ZERO, u }).collect();
+    let queries: Vec<SphereSampleQuery> = pairs(trial.seed, SAMPLES)
+        .into_iter()
+        .map(|u| SphereSampleQuery { sphere, from: Vec3::ZERO, u })
+        .collect();
     let directions = trial.kit.sample_sphere(&queries);
     for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
-        let seen: Vec<f64> =
-            directions.iter().map(|direction| f64::from(u8::from(direction.as_dvec3().dot(normal) > 0.0))).collect();
+        let seen: Vec<f64> = directions
+            .iter()
+            .map(|direction| f64::from(u8::from(direction.as_dvec3().dot(normal) > 0.0)))
+            .collect();
         has_mean(
             "sample_sphere past a wall that hides just half of the sphere",
             &seen,

@@ -38,7 +38,8 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
     for (u, place) in u.iter().zip(&places) {
         // A radius of 1 and a few roundings.
         if !(place.length() <= 1.0 + 1e-6) {
-            let broken = Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
+            let broken =
+                Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
             return Err(broken.looks_like(Some("outside the disk: corners of the square are not on it")));
         }
     }
@@ -113,8 +114,8 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
             if yours == query.pinhole {
                 return Ok(());
             }
-            let near =
-                (yours.direction - query.pinhole.direction).length() < 1e-5 && yours.origin == query.pinhole.origin;
+            let near = (yours.direction - query.pinhole.direction).length() < 1e-5
+                && yours.origin == query.pinhole.origin;
             let diagnosis = match () {
                 () if near => "almost: computed anew, the direction is a rounding off; return the pinhole's",
                 () if yours.direction.is_nan() => "NaN",
@@ -146,7 +147,8 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
             let distance = f64::from(query.lens.focal_distance);
             let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
             let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
-            let aims = |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
+            let aims =
+                |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
             let diagnosis = match () {
                 () if yours.is_nan_anywhere() => "NaN",
                 () if aims(distance * direction - start) => {
@@ -164,7 +166,7 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
                 }
                 () => "",
             };
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 paste(query),
                 format!("a ray that misses by {:.2e}", (found - expected).length()),
                 format!("a ray through camera.position + {:?}", expected.as_vec3()),

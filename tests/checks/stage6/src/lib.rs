@@ -10,12 +10,12 @@ mod motion;
 mod pixels;
 mod rough;
 
-use checks::generate::unit;
-use glam::Vec3;
 use area_lights::{
     a_far_sphere_is_still_a_sphere, directions_to_a_sphere_are_even, from_inside_a_sphere_it_is_everywhere,
     half_a_sphere_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_light_are_even,
 };
+use checks::generate::unit;
+use glam::Vec3;
 use lens::{
     lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens, lens_without_width_is_a_pinhole,
     places_on_the_disk_are_even, places_on_the_disk_are_places, plane_of_focus_is_sharp,
@@ -25,14 +25,14 @@ use motion::{
     temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
 };
 use pixels::{
-    filter_pixel_is_the_weighted_mean, filter_pixel_of_nothing_is_black, each_sampler_has_its_places,
+    each_sampler_has_its_places, filter_pixel_is_the_weighted_mean, filter_pixel_of_nothing_is_black,
     gaussian_weight_is_a_bell_that_ends, jittered_samples_cover_the_pixel_evenly,
     jittered_samples_stay_in_their_cells,
 };
 use proptest::prelude::Strategy;
 use rough::{
-    phong_lobe_falls_with_the_power_of_the_cosine, phong_lobe_stays_on_its_side, slightly_rough_is_not_a_few_angles,
-    smooth_surfaces_stay_sharp,
+    phong_lobe_falls_with_the_power_of_the_cosine, phong_lobe_stays_on_its_side,
+    slightly_rough_is_not_a_few_angles, smooth_surfaces_stay_sharp,
 };
 
 /// A direction off a surface, and the normal on its side.

@@ -27,7 +27,7 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
                 let input =
                     format!("temporal_slot(x, y) for x in {left}..{}, y in {top}..{}", left + 4, top + 4);
                 let yours = format!("a panic at {place}: {message}");
-                let broken = Broken::describe(input, yours, "each of 1..=16 once", "the definition");
+                let broken = Broken::with_texts(input, yours, "each of 1..=16 once", "the definition");
                 return Err(broken.looks_like((left > 0).then_some(repeat)));
             }
             Err(error) => kit_error::unwind(error),

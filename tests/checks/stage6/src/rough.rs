@@ -48,15 +48,15 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
     let (x, y) = ideal.any_orthonormal_pair();
     let mut shares = Vec::new();
     for (query, direction) in queries.iter().zip(trial.kit.sample_phong_lobe(&queries)) {
-        let direction = direction.as_dvec3();
-        if !((direction.length() - 1.0).abs() < 1e-5) {
+        let around = direction.as_dvec3();
+        if !((around.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
             return Err(broken.looks_like(direction.is_nan().then_some("NaN: the root of a number below 0?")));
         }
         // cosⁿ⁺¹ θ is even in 0..1; ln cos θ from the sine, which keeps the digits of small angles.
-        let sine_squared = direction.cross(ideal).length_squared().min(1.0);
+        let sine_squared = around.cross(ideal).length_squared().min(1.0);
         let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
-        shares.push((share, direction.dot(y).atan2(direction.dot(x)) / std::f64::consts::TAU + 0.5));
+        shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
     }
     Ok(shares)
 }

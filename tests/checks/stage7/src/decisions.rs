@@ -1,6 +1,6 @@
 //! What lights and materials call for.
 
-use super::scenes::{sphere_light, light};
+use super::scenes::{light, sphere_light};
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -18,7 +18,13 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
     let nothing = LightEffects::default();
     let silent = Light { shadows: false, ..light(Vec3::ONE, 1.0) };
     let cases = [
-        ("a white light", light(Vec3::ONE, 1.0), quality(4), one, "a light without extent shines from 1 place"),
+        (
+            "a white light",
+            light(Vec3::ONE, 1.0),
+            quality(4),
+            one,
+            "a light without extent shines from 1 place",
+        ),
         (
             "a light that casts no shadows",
             silent,
@@ -33,7 +39,13 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
             nothing,
             "it gives no light: it takes nothing",
         ),
-        ("a black light", light(Vec3::ZERO, 3.0), quality(1), nothing, "black light is none: it takes nothing"),
+        (
+            "a black light",
+            light(Vec3::ZERO, 3.0),
+            quality(1),
+            nothing,
+            "black light is none: it takes nothing",
+        ),
         ("a faint red light", light(vec3(1e-6, 0.0, 0.0), 1.0), quality(1), one, "faint light is light"),
         (
             "a sphere of light",
@@ -56,7 +68,13 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
             one,
             "it shines from its middle",
         ),
-        ("a black sphere", sphere_light(Vec3::ZERO), quality(16), nothing, "it gives no light: it takes nothing"),
+        (
+            "a black sphere",
+            sphere_light(Vec3::ZERO),
+            quality(16),
+            nothing,
+            "it gives no light: it takes nothing",
+        ),
     ];
     let queries: Vec<LightQuery> = cases
         .iter()
@@ -119,10 +137,10 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
         (specular(faint), 1, lit(&[2, 3])),
         (Material { specular: green, ..diffuse(red) }, 1, lit(&[0, 1, 3])),
         (ambient(white), 1, nothing()),
-        (reflect(red), 1, mirrors()),
-        (reflect(blue), 2, mirrors()),
-        (reflect(faint), 1, mirrors()),
-        (reflect(white), 0, nothing()),
+        (mirror(red), 1, mirrors()),
+        (mirror(blue), 2, mirrors()),
+        (mirror(faint), 1, mirrors()),
+        (mirror(white), 0, nothing()),
         (glass(green, none), 1, passes()),
         (glass(faint, none), 2, passes()),
         (glass(white, none), 0, nothing()),

@@ -130,7 +130,7 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
         (0..12).all(|i| apart(yours[i], shown(pixels[i])) < NEAR_A_MISTAKE)
     };
     // The mean of a pixel and those beside it, as it is seen where four or two of them meet.
-    let between = |x: i64, y: i64| {
+    let shifted = |x: i64, y: i64| {
         all(&|[column, row]| {
             let corners = [[0, 0], [x, 0], [0, y], [x, y]];
             corners.map(|[x, y]| color([column + x, row + y])).into_iter().sum::<DVec3>() / 4.0
@@ -156,10 +156,10 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
         {
             "gamma: the pixels of the image are linear light already"
         }
-        () if signs.iter().any(|&x| signs.iter().any(|&y| lerp(x, y))) => {
+        () if signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y))) => {
             "half a pixel off: the colour of a pixel belongs to its middle"
         }
-        () if signs.iter().any(|&one| lerp(one, 0) || lerp(0, one)) => {
+        () if signs.iter().any(|&one| shifted(one, 0) || shifted(0, one)) => {
             "half a pixel off along one axis: the colour of a pixel belongs to its middle"
         }
         () if apart(yours[0], corner_to_corner) < NEAR_A_MISTAKE => {
@@ -330,7 +330,7 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
                 Ok(color) => color,
                 Err(KitError::Panicked { message, place }) => {
                     let yours = format!("a panic at {place}: {message}");
-                    let broken = Broken::describe(input, yours, "a colour", "the definition");
+                    let broken = Broken::with_texts(input, yours, "a colour", "the definition");
                     let overflow = message.contains("overflow");
                     return Err(broken
                         .looks_like(overflow.then_some(

@@ -51,7 +51,7 @@ fn judge(
         }
         Err(KitError::Panicked { message, place }) => {
             let overflow = message.contains("overflow");
-            let broken = Broken::describe(
+            let broken = Broken::with_texts(
                 input,
                 format!("a panic at {place}: {message}"),
                 format!("{expected:?}"),
@@ -110,7 +110,8 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     let grey = Vec3::splat(0.5);
-    let parameters = |max_depth, min_contribution| Quality { max_depth, min_contribution, ..Quality::default() };
+    let parameters =
+        |max_depth, min_contribution| Quality { max_depth, min_contribution, ..Quality::default() };
     let mirror = Material { mirror: grey, ..Material::default() };
     let counts =
         |primary, shadow, reflection, transmission| RayCounts { primary, shadow, reflection, transmission };

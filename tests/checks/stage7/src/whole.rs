@@ -39,13 +39,20 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
             effects.lens, effects.motion, effects.indirect_light
         ),
     };
-    let broken = Broken::describe(format!("effects of {what}"), part(&yours), part(expected), "the definition");
+    let broken =
+        Broken::with_texts(format!("effects of {what}"), part(&yours), part(expected), "the definition");
     Err(broken.looks_like(known(diagnosis)))
 }
 
 pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome {
     let scene = one_sphere(Material::default());
-    judge(trial, "a dull sphere under a light", scene.clone(), &plain(), "no shape is of the default material")?;
+    judge(
+        trial,
+        "a dull sphere under a light",
+        scene.clone(),
+        &plain(),
+        "no shape is of the default material",
+    )?;
     let indirect = Scene { indirect_light: true, ..scene };
     let as_it_says = "indirect_light is as the scene says";
     let expected = Effects { indirect_light: true, ..plain() };
@@ -72,7 +79,13 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
 
     // The same mirror on a node that no root leads to.
     scene.nodes.push(super::scenes::sphere(2));
-    judge(trial, "a dull sphere, and a mirror sphere that is not in the scene", scene.clone(), &expected, shown)?;
+    judge(
+        trial,
+        "a dull sphere, and a mirror sphere that is not in the scene",
+        scene.clone(),
+        &expected,
+        shown,
+    )?;
 
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
@@ -173,7 +186,8 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
                     format!("{} {effect}", if calls { "calls for" } else { "does not call for" })
                 };
                 let input = format!("effects of a scene with just these: {}", names.join(", "));
-                let broken = Broken::describe(input, says(!expected), says(expected), "how the scene was made");
+                let broken =
+                    Broken::with_texts(input, says(!expected), says(expected), "how the scene was made");
                 return Err(broken.looks_like(Some(clue(effect, expected))));
             }
         }

@@ -28,7 +28,7 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
         } else {
             "the radius is the largest distance of a point from the centre: no other measure holds all of them"
         };
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             format!("bounding_sphere(&{})", list(points)),
             format!("radius {:?} around {}, which leaves {outside} outside", sphere.radius, sphere.center),
             "a sphere with all points in it",
@@ -40,7 +40,8 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
     let far = clouds().prop_map(|points| {
         points.into_iter().map(|point| 0.1 * point + Vec3::new(148_376.0, 1_234.0, -223_423.0)).collect()
     });
-    trial.forall(300, far, |queries: &[Vec<Vec3>]| compare(queries, trial.kit.bounding_sphere(queries), judge))
+    trial
+        .forall(300, far, |queries: &[Vec<Vec3>]| compare(queries, trial.kit.bounding_sphere(queries), judge))
 }
 
 pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
@@ -53,7 +54,7 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
             if sphere.radius <= most {
                 return Ok(());
             }
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 format!("bounding_sphere(&{})", list(points)),
                 format!("radius {:?}", sphere.radius),
                 format!("{most} at most, twice that of the smallest sphere"),
@@ -76,7 +77,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
         let broken = |expected: String, diagnosis: &'static str| {
             let input = call("enter_bounding_sphere", &[&ray, &sphere]);
-            Err(Broken::describe(input, format!("{yours:?}"), expected, "exact arithmetic")
+            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "exact arithmetic")
                 .looks_like(Some(diagnosis)))
         };
         if starts_inside(smaller) {

@@ -64,7 +64,7 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
                 () => "two corners are not enough: a rotation may turn any of the eight into the farthest",
             };
             let axis = ["x", "y", "z"][row];
-            return Err(Broken::describe(
+            return Err(Broken::with_texts(
                 describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, or more"),
@@ -90,7 +90,7 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
             }
             let axis = ["x", "y", "z"][row];
             let diagnosis = "larger than the roundings ask for: a ray visits what it need not";
-            return Err(Broken::describe(
+            return Err(Broken::with_texts(
                 describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, and {room:.1e} on either side at most"),

@@ -98,7 +98,7 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
     let (left, right) = (queries(&left), queries(&right));
     let pairs: Vec<_> = trial.kit.polygon(&left).into_iter().zip(trial.kit.polygon(&right)).collect();
     compare(&left, pairs, |query, answers| match answers {
-        (None, None) => Err(Broken::describe(
+        (None, None) => Err(Broken::with_texts(
             format!("{}\nand its neighbour across the edge", input(query)),
             "None, twice",
             "a hit of one of them at least",

@@ -114,7 +114,7 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
         let named = |hit: Option<PrimitiveHit>| {
             hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
         };
-        Err(Broken::describe(describe(query), named(found), named(expected), "brute force")
+        Err(Broken::with_texts(describe(query), named(found), named(expected), "brute force")
             .looks_like(known(diagnosis)))
     };
     compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
@@ -138,7 +138,7 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ou
             () if asked.len() > all.len() => "a primitive was asked twice",
             () => "without `skip` nothing is left out",
         };
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             describe(query),
             format!("{n_boxes} volumes and the primitives {asked:?}"),
             format!("no volume and the primitives {all:?}"),
@@ -182,7 +182,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
             }
             () => "something was left out that the ray may meet",
         };
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             describe(query),
             format!("{n_boxes} volumes, primitives {asked:?}"),
             format!("{boxes} volumes, primitives {expected:?}"),
@@ -215,7 +215,7 @@ fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)
         if yours.asked == *expected {
             return Ok(());
         }
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             describe(query),
             format!("asked the primitives {:?}", yours.asked),
             format!("{expected:?}"),

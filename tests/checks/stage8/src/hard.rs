@@ -29,7 +29,7 @@ pub(super) fn judge_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Out
             return Ok(());
         }
         let diagnosis = if right { "a hit whose normal is no unit vector" } else { diagnosis };
-        Err(Broken::describe(input(query), format!("{t:?}"), format!("{expected:?}"), "closed form")
+        Err(Broken::with_texts(input(query), format!("{t:?}"), format!("{expected:?}"), "closed form")
             .looks_like(known(diagnosis)))
     })
     .into_iter()
@@ -69,7 +69,7 @@ pub(super) fn judge_leaving<S: Solid>(
 ) -> Outcome {
     compare(queries, S::ask(trial.kit, queries), |query, yours| match yours {
         Some(hit) if leave.contains(&hit.t) => Ok(()),
-        _ => Err(Broken::describe(
+        _ => Err(Broken::with_texts(
             input(query),
             format!("{:?}", yours.map(|hit| hit.t)),
             format!("Some t between {} and {}", leave.start, leave.end),

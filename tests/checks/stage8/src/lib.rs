@@ -17,7 +17,8 @@ mod subdivision;
 mod surfaces;
 
 use bounding_spheres::{
-    sphere_holds_all_points, sphere_is_small, enter_bounding_sphere_finds_what_is_met, enter_bounding_sphere_passes_what_is_missed,
+    enter_bounding_sphere_finds_what_is_met, enter_bounding_sphere_passes_what_is_missed,
+    sphere_holds_all_points, sphere_is_small,
 };
 use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
 use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};

@@ -102,8 +102,13 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
         }
         let exact = query.solid.meet(&query.ray).and_then(|meeting| meeting.t);
         let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
-        Err(Broken::describe(input(query), describe(yours.map(|hit| hit.t)), describe(exact), "exact arithmetic")
-            .looks_like(known(diagnosis(query, yours, exact))))
+        Err(Broken::with_texts(
+            input(query),
+            describe(yours.map(|hit| hit.t)),
+            describe(exact),
+            "exact arithmetic",
+        )
+        .looks_like(known(diagnosis(query, yours, exact))))
     })
 }
 
@@ -134,7 +139,9 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
         (None, Some(_)) => "a part of the surface is missing: an end, or a side",
         (Some(_), None) if S::FLAT => "a point of its plane, but beside it",
         (Some(_), None) => "a point beside the solid: beyond an end, or outside of the round",
-        (Some(t), Some(right)) if near(t * ray.direction.length(), right) || near(t / ray.direction.length(), right) => {
+        (Some(t), Some(right))
+            if near(t * ray.direction.length(), right) || near(t / ray.direction.length(), right) =>
+        {
             "t must count lengths of direction"
         }
         (Some(t), Some(_)) if last().is_some_and(|last| near(t, last)) => {
@@ -186,7 +193,7 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 () if unit => "not the normal of this part of the surface",
                 () => "neither of unit length nor at right angles to the surface",
             };
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 input(query),
                 format!("normal {} at t = {:?}", hit.normal, hit.t),
                 "a unit vector out of the surface there",
@@ -238,7 +245,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
             if same {
                 return Ok(());
             }
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 input(query),
                 describe(scaled.map(|hit| hit.t)),
                 describe(t),
@@ -276,7 +283,7 @@ fn nonsense<S: Solid>(trial: &Trial<'_>) -> Outcome {
     }
     compare(&queries, S::ask(trial.kit, &queries), |query, yours| match yours {
         None => Ok(()),
-        Some(hit) => Err(Broken::describe(input(query), format!("{hit:?}"), "None", "the definition")
+        Some(hit) => Err(Broken::with_texts(input(query), format!("{hit:?}"), "None", "the definition")
             .looks_like(Some("such a ray or shape cannot be hit; compare so that NaN fails"))),
     })
     .into_iter()

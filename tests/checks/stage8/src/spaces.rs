@@ -27,13 +27,17 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Out
     let to_object = Affine3A::from_mat3(Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z));
     let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)), to_object };
     judge_points(trial, &[turned]).into_iter().collect::<Outcome>()?;
-    let inputs = (point(4), direction(), transform())
-        .prop_map(|(origin, direction, to_object)| ObjectRayQuery { ray: Ray::new(origin, direction), to_object });
+    let inputs = (point(4), direction(), transform()).prop_map(|(origin, direction, to_object)| {
+        ObjectRayQuery { ray: Ray::new(origin, direction), to_object }
+    });
     trial.forall(2000, inputs, |queries| judge_points(trial, queries))?;
     // An object that stands far away: what is left of the origin after the subtraction must have its digits.
     let far = (rough_point(4.0), direction()).prop_map(|(offset, direction)| {
         let place = Vec3::new(148_376.0, 1_234.0, -223_423.0);
-        ObjectRayQuery { ray: Ray::new(place + offset, direction), to_object: Affine3A::from_translation(-place) }
+        ObjectRayQuery {
+            ray: Ray::new(place + offset, direction),
+            to_object: Affine3A::from_translation(-place),
+        }
     });
     trial.forall(500, far, |queries| judge_points(trial, queries))
 }
@@ -42,8 +46,10 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.ray_to_object(queries), |query, yours| {
         let ObjectRayQuery { ray, to_object } = query;
         let exact = to_object.as_daffine3();
-        let (origin, direction) =
-            (exact.transform_point3(ray.origin.as_dvec3()), exact.transform_vector3(ray.direction.as_dvec3()));
+        let (origin, direction) = (
+            exact.transform_point3(ray.origin.as_dvec3()),
+            exact.transform_vector3(ray.direction.as_dvec3()),
+        );
         let sizes = |v: Vec3, and: DVec3| {
             let columns = [exact.matrix3.x_axis, exact.matrix3.y_axis, exact.matrix3.z_axis].map(DVec3::abs);
             let v = v.as_dvec3().abs();
@@ -54,7 +60,8 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
             ((yours.as_dvec3() - right).abs()).cmple(6.0 * checks::double::U * size).all()
         };
         let right_origin = close(yours.origin, origin, sizes(ray.origin, exact.translation));
-        let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO)) || is_along(yours.direction, direction); // its length is another check's
+        let right_dir = close(yours.direction, direction, sizes(ray.direction, DVec3::ZERO))
+            || is_along(yours.direction, direction); // its length is another check's
         if right_origin && right_dir {
             return Ok(());
         }
@@ -84,7 +91,7 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
         };
         let input = call("ray_to_object", &[ray, to_object]);
         let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             input,
             describe(yours.origin, yours.direction),
             describe(origin.as_vec3(), direction.as_vec3()),
@@ -137,7 +144,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
         let describe = |length: f64, ray: &Ray| {
             format!("length {length:.6}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
         };
-        Err(Broken::describe(
+        Err(Broken::with_texts(
             call("ray_to_object", &[ray, to_object]),
             describe(f64::from(yours.direction.length()), &yours),
             describe(exact, ray),
@@ -222,7 +229,7 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             let exact = path.iter().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
             let input = format!("placement(&{})", list(path));
             let Some(yours) = yours else {
-                let broken = Broken::describe(input, "None", "Some", "each transform can be undone");
+                let broken = Broken::with_texts(input, "None", "Some", "each transform can be undone");
                 return Err(broken.looks_like(Some("a determinant below 0 is a mirror, and not singular")));
             };
             let near = |yours: &Affine3A, right: &DAffine3| {
@@ -254,7 +261,7 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
             let (got, right) =
                 if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
             let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
-            Err(Broken::describe(
+            Err(Broken::with_texts(
                 input,
                 describe(got.as_daffine3().to_cols_array().to_vec()),
                 describe(right.to_cols_array().to_vec()),
@@ -272,7 +279,7 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outc
     let paths = vec![vec![flat], vec![turn, line], vec![flat, turn, turn]];
     let judge = |path: &Vec<Affine3A>, yours: Option<raykata::graph::Placement>| match yours {
         None => Ok(()),
-        Some(_) => Err(Broken::describe(
+        Some(_) => Err(Broken::with_texts(
             format!("placement(&{})", list(path)),
             "Some",
             "None",
@@ -286,7 +293,11 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outc
         vec![Affine3A::from_scale(Vec3::splat(1e-4)), Affine3A::from_scale(Vec3::new(1e-3, 1e3, -1.0))];
     match trial.kit.placement(std::slice::from_ref(&small))[0] {
         Some(_) => Ok(()),
-        None => Err(Broken::describe(format!("placement(&{})", list(&small)), "None", "Some", "the definition")
-            .looks_like(Some("a fixed limit for the determinant: it is small because the object is small"))),
+        None => {
+            Err(Broken::with_texts(format!("placement(&{})", list(&small)), "None", "Some", "the definition")
+                .looks_like(Some(
+                    "a fixed limit for the determinant: it is small because the object is small",
+                )))
+        }
     }
 }

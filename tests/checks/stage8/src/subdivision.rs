@@ -97,7 +97,7 @@ fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) ->
     let pairs: Vec<_> = meshes.iter().zip(trial.kit.loop_subdivide(&queries)).collect();
     pairs.iter().try_for_each(|((name, mesh), yours)| {
         law(mesh, yours).map_err(|(got, expected, diagnosis)| {
-            Broken::describe(format!("loop_subdivide of {name}"), got, expected, "the rule")
+            Broken::with_texts(format!("loop_subdivide of {name}"), got, expected, "the rule")
                 .looks_like(known(diagnosis))
         })
     })
@@ -304,7 +304,11 @@ impl<'a> Step<'a> {
             () if fresh.all(|vertex| self.takes_of_others(vertex, &around)) => FROM_BEFORE,
             () => "3/8 of both ends and 1/8 of both third corners",
         };
-        Err((format!("no new vertex for the edge {p} {q}"), format!("one with {}", describe(&shares)), diagnosis))
+        Err((
+            format!("no new vertex for the edge {p} {q}"),
+            format!("one with {}", describe(&shares)),
+            diagnosis,
+        ))
     }
 
     /// Judges the vertices of a border, or those that are not.

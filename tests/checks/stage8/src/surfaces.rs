@@ -104,8 +104,10 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<Outcome> {
         };
         match near(right) {
             true => Ok(()),
-            false => Err(Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
-                .looks_like(known(diagnosis))),
+            false => {
+                Err(Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
+                    .looks_like(known(diagnosis)))
+            }
         }
     })
 }

@@ -2,7 +2,7 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
+use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::bsp;
 use checks::Trial;
 use checks::broken::Outcome;
@@ -48,8 +48,11 @@ fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, say
 /// Trap A7: the plane lies behind the ray, beyond its end, or is never met.
 pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
     let says = "trap A7: where the plane is behind the ray or beyond its end, the ray is on one side all the way, and that side must be searched";
-    let scene =
-        Scene::new(vec![sphere(-4.0, -4.0, 0.0, 1.0), sphere(4.0, 4.0, 0.0, 1.0), sphere(-4.0, 2.0, 0.0, 1.0)]);
+    let scene = Scene::new(vec![
+        sphere(-4.0, -4.0, 0.0, 1.0),
+        sphere(4.0, 4.0, 0.0, 1.0),
+        sphere(-4.0, 2.0, 0.0, 1.0),
+    ]);
     let tree = two_leaves(diagonal(), &[0, 2], &[1]);
     let cases = [
         ("the plane is behind the ray", Ray::new(vec3(1.0, 1.0, 0.0), vec3(1.0, 1.0, 0.0))),
@@ -73,8 +76,11 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
 /// Rays in the plane and from it, and polygons that lie in it.
 pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
     let says = "a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
-    let spheres =
-        Scene::new(vec![sphere(3.0, -3.0, 0.0, 0.5), sphere(-3.0, 3.0, 0.0, 0.5), sphere(0.0, 0.0, 4.0, 0.5)]);
+    let spheres = Scene::new(vec![
+        sphere(3.0, -3.0, 0.0, 0.5),
+        sphere(-3.0, 3.0, 0.0, 0.5),
+        sphere(0.0, 0.0, 4.0, 0.5),
+    ]);
     let tile = |z: f32| {
         Thing::Tile(Triangle {
             a: vec3(4.0, -4.0, z - 4.0),
@@ -144,7 +150,13 @@ pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial
     let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
     for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
-        judge_visits("BSP tree over 64 spheres", &query.ray, &parts::of_bsp(&cells, &query.ray), &yours, true)?;
+        judge_visits(
+            "BSP tree over 64 spheres",
+            &query.ray,
+            &parts::of_bsp(&cells, &query.ray),
+            &yours,
+            true,
+        )?;
     }
     Ok(())
 }

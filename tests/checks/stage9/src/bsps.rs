@@ -170,6 +170,11 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     };
     let yours = format!("up to {fullest} sheets a leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
-    Err(Broken::describe(input, yours, format!("2 a leaf, at most {} references, 8 levels", 2 * n), "counted")
-        .looks_like(Some(diagnosis)))
+    Err(Broken::with_texts(
+        input,
+        yours,
+        format!("2 a leaf, at most {} references, 8 levels", 2 * n),
+        "counted",
+    )
+    .looks_like(Some(diagnosis)))
 }

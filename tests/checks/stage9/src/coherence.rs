@@ -1,6 +1,6 @@
 //! The last hit, and packets of rays: the same answers for less.
 
-use super::scenes::{Scene, sphere, closest, rays, scenes};
+use super::scenes::{Scene, closest, rays, scenes, sphere};
 use checks::broken::{Broken, Outcome};
 use checks::generate::unit;
 use checks::judge::{compare, known};
@@ -85,7 +85,7 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
         [_, 1] => "the search is left out: something nearer may have come",
         _ => "",
     };
-    Err(Broken::describe(
+    Err(Broken::with_texts(
         "a ray along 32 spheres in a row, and the next ray, which hits the same one",
         describe(counts),
         describe([32, 2]),
@@ -128,7 +128,7 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
             let input = format!("{} rays, {} nodes", query.rays.len(), query.bvh.nodes.len());
             if yours.hits.len() != query.rays.len() {
                 let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
-                let broken = Broken::describe(input, yours, expected, "one a ray");
+                let broken = Broken::with_texts(input, yours, expected, "one a ray");
                 return Err(broken.looks_like(Some("a packet has eight rays at most: take the rest in further packets")));
             }
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
@@ -192,7 +192,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         // The rays go together, so a few may go into the farther child first.
         if needless > yours.opened.len() / 4 {
             let describe = format!("{needless} of {} nodes opened without need", yours.opened.len());
-            return Err(Broken::describe("8 rays side by side through 64 spheres", describe, "few", "counted").looks_like(Some(
+            return Err(Broken::with_texts("8 rays side by side through 64 spheres", describe, "few", "counted").looks_like(Some(
                 "nodes are opened that no ray enters before its hit: shorten each ray by its hits, and take the nearer child first",
             )));
         }
@@ -212,13 +212,17 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
     let describe = |n: u64| format!("{n} nodes opened");
     let input = format!("{what} 64 spheres");
     if let Some(pair) = again {
-        let broken =
-            Broken::describe(input, format!("node {} is opened again", pair[0]), "once a packet", "counted");
+        let broken = Broken::with_texts(
+            input,
+            format!("node {} is opened again", pair[0]),
+            "once a packet",
+            "counted",
+        );
         return Err(broken
             .looks_like(Some("the rays go one after the other: open a node once, for all that enter it")));
     }
     if yours.opened.len() as u64 > most {
-        let broken = Broken::describe(
+        let broken = Broken::with_texts(
             input,
             describe(yours.opened.len() as u64),
             format!("at most {}", describe(most)),

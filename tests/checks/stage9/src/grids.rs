@@ -2,7 +2,7 @@
 
 use super::lists::{bounds_fault, is_far_off, some_boxes};
 use super::parts;
-use super::scenes::{Scene, Thing, sphere, rays, wall};
+use super::scenes::{Scene, Thing, rays, sphere, wall};
 use super::searches::{Searcher, agrees, grid_queries, judge, judge_visits};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
@@ -32,7 +32,7 @@ fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<Outcome> {
         None => Ok(()),
         Some((yours, expected, diagnosis)) => {
             let input = format!("build(&{}, {})", checks::paste::list(&query.bounds), query.resolution);
-            Err(Broken::describe(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
+            Err(Broken::with_texts(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
         }
     })
 }
@@ -128,7 +128,13 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
     for query in grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1)) {
         let ray = query.ray;
         let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
-        judge_visits("grid over a row of 32 spheres", &ray, &parts::of_grid(&query.cells, &ray), &yours, true)?;
+        judge_visits(
+            "grid over a row of 32 spheres",
+            &ray,
+            &parts::of_grid(&query.cells, &ray),
+            &yours,
+            true,
+        )?;
     }
     Ok(())
 }
@@ -142,7 +148,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
             query.cells.resolution,
             query.ray.paste()
         );
-        Err(Broken::describe(input, yours, expected, "every cell asked, in double precision")
+        Err(Broken::with_texts(input, yours, expected, "every cell asked, in double precision")
             .looks_like(known(diagnosis)))
     };
     // A cell that the ray goes through well inside must be visited; one that it touches may be.
@@ -201,8 +207,12 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
             };
             let input =
                 format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
-            let broken =
-                Broken::describe(input, describe(&yours.visits), describe(&expected), "planes in double precision");
+            let broken = Broken::with_texts(
+                input,
+                describe(&yours.visits),
+                describe(&expected),
+                "planes in double precision",
+            );
             return Err(broken.looks_like(Some(
                 "trap A8: tMax += tDelta adds up a rounding a step: work out t from the number of the cell, in double",
             )));
@@ -214,8 +224,9 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
 /// The cells along a ray that rises along x and y, from sorted planes.
 fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
-    let t =
-        |axis: usize, i: u32| (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis]);
+    let t = |axis: usize, i: u32| {
+        (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis])
+    };
     let begin = t(0, 0).max(t(1, 0));
     let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
     let mut cell = UVec3::ZERO;

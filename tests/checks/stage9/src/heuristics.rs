@@ -51,7 +51,7 @@ fn refuse(
     expected: &str,
     diagnosis: &'static str,
 ) -> Outcome {
-    Err(Broken::describe(format!("build of {what}, leaf_size 2"), describe(cut), expected, "the heuristic")
+    Err(Broken::with_texts(format!("build of {what}, leaf_size 2"), describe(cut), expected, "the heuristic")
         .looks_like(Some(diagnosis)))
 }
 
@@ -186,11 +186,12 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
     };
     let all = cubes(crowd(0.0).chain(crowd(18.0)));
     let what = "two crowds of 27 boxes in opposite corners of a cube of 20";
-    let describe = |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
+    let describe =
+        |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
     let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);
     // 99.8 % of the cube is empty; after four cuts a crowd is still in a cell of a tenth of its side at most twice over.
     if on < 0.9 {
-        return Err(Broken::describe(
+        return Err(Broken::with_texts(
             format!("build of {what}, cut_off_empty_space alone, leaf_size 2"),
             describe(on),
             "at least 90 %",
@@ -204,7 +205,7 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
     if off >= early {
         let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
         let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
-        return Err(Broken::describe(input, yours, "more with it than without", "the heuristic")
+        return Err(Broken::with_texts(input, yours, "more with it than without", "the heuristic")
             .looks_like(Some("the margins are cut off although that is switched off")));
     }
     Ok(())

@@ -2,8 +2,8 @@
 
 use super::lists::{Fault, ended, endless, judge_references, lists_fault, some_boxes};
 use super::parts;
-use super::scenes::{Scene, Thing, sphere, closest, wall};
-use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
+use super::scenes::{Scene, Thing, closest, sphere, wall};
+use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::kd_tree;
 use checks::Trial;
 use checks::broken::Outcome;
@@ -199,8 +199,11 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
     for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])] {
         let tree = two_leaves(bounds, 1.0, left, right);
         // Two spheres whose middles lie in the plane, and walls in it.
-        let spheres =
-            Scene::new(vec![sphere(1.0, 5.0, 0.0, 0.5), sphere(1.0, 0.0, 5.0, 0.5), sphere(1.0, -5.0, 0.0, 0.5)]);
+        let spheres = Scene::new(vec![
+            sphere(1.0, 5.0, 0.0, 0.5),
+            sphere(1.0, 0.0, 5.0, 0.5),
+            sphere(1.0, -5.0, 0.0, 0.5),
+        ]);
         for zero in [0.0, -0.0] {
             for (y, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0)] {
                 let ray = Ray::new(vec3(1.0, 0.0, 0.0), vec3(zero, y, z));
@@ -215,8 +218,11 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
             }
         }
         // From a point of the plane to what touches it on either side.
-        let beside =
-            Scene::new(vec![sphere(-3.0, 0.5, 0.0, 0.5), sphere(-5.0, -0.5, 0.5, 1.0), sphere(5.0, 0.5, 0.0, 0.5)]);
+        let beside = Scene::new(vec![
+            sphere(-3.0, 0.5, 0.0, 0.5),
+            sphere(-5.0, -0.5, 0.5, 1.0),
+            sphere(5.0, 0.5, 0.0, 0.5),
+        ]);
         let sides = two_leaves(bounds, 1.0, &[0, 1], &[2]);
         for direction in [vec3(-8.0, 1.0, 0.0), vec3(-8.0, -1.0, 0.5), vec3(8.0, 1.0, 0.0)] {
             ask(

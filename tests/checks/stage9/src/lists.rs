@@ -55,7 +55,7 @@ pub(super) fn judge_tree(
         (false, _) => fault(),
     };
     fault.map_or(Ok(()), |(yours, expected, diagnosis)| {
-        Err(Broken::describe(describe(), yours, expected, source).looks_like(known(diagnosis)))
+        Err(Broken::with_texts(describe(), yours, expected, source).looks_like(known(diagnosis)))
     })
 }
 
@@ -68,7 +68,7 @@ pub(super) fn ended<T>(
 ) -> Result<T, Broken> {
     kit_error::catch(build).map_err(|error| match error {
         KitError::Panicked { message, .. } => {
-            Broken::describe(input, message, "a tree", source).looks_like(Some(says))
+            Broken::with_texts(input, message, "a tree", source).looks_like(Some(says))
         }
         error => kit_error::unwind(error),
     })
@@ -80,7 +80,8 @@ pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'
     if yours.len() <= most {
         return Ok(());
     }
-    let broken = Broken::describe(input, describe(yours.len()), format!("at most {}", describe(most)), "counted");
+    let broken =
+        Broken::with_texts(input, describe(yours.len()), format!("at most {}", describe(most)), "counted");
     Err(broken.looks_like(Some(says)))
 }
 

@@ -3,7 +3,7 @@
 use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Searcher, agrees, spheres_and_rays, judge, judge_visits, queries};
+use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -77,7 +77,7 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
     };
     let yours = format!("up to {most} primitives a leaf, {depth} levels, {n} nodes");
     let expected = "2 a leaf, more levels where boxes are dense, and none divided that holds 2";
-    Err(Broken::describe(
+    Err(Broken::with_texts(
         "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
         yours,
         expected,
@@ -146,7 +146,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
         Ok(answers) => answers,
         Err(kit_error::KitError::Panicked { message, .. }) => {
             let input = format!("{} over 26 spheres, rays along axes and diagonals", searcher.name());
-            return Err(Broken::describe(input, message, "an answer", "brute force").looks_like(Some(says)));
+            return Err(Broken::with_texts(input, message, "an answer", "brute force").looks_like(Some(says)));
         }
         Err(error) => kit_error::unwind(error),
     };

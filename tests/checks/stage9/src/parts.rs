@@ -78,7 +78,8 @@ pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray) -> Parts {
 }
 
 fn on_side(ray: &Ray, plane: &CutPlane, side: f64, (t, t_end): (f64, f64)) -> (f64, f64) {
-    let (height, rate) = (side * plane.distance(ray.origin), side * plane.normal.dot(ray.direction.as_dvec3()));
+    let (height, rate) =
+        (side * plane.distance(ray.origin), side * plane.normal.dot(ray.direction.as_dvec3()));
     let room = (-16f64).exp2() * (1.0 + height.abs());
     match rate {
         0.0 if height >= -room => (t, t_end),

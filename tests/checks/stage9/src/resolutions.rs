@@ -93,8 +93,13 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
                 () => "too many cells",
             };
             let expected = format!("about {wanted} cells that are nearly cubes");
-            Err(Broken::describe(describe(query), format!("{yours}, {n} cells"), expected, "the definition")
-                .looks_like(Some(diagnosis)))
+            Err(Broken::with_texts(
+                describe(query),
+                format!("{yours}, {n} cells"),
+                expected,
+                "the definition",
+            )
+            .looks_like(Some(diagnosis)))
         })
     })
 }

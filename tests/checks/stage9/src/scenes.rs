@@ -148,7 +148,8 @@ pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
 pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
     let cluster = |scale: f32, offset: Vec3| -> Vec<Thing> {
         let place = |i: i32| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
-        let thing = |i: i32| Thing::Sphere(Sphere { center: scale * place(i) + offset, radius: 0.375 * scale });
+        let thing =
+            |i: i32| Thing::Sphere(Sphere { center: scale * place(i) + offset, radius: 0.375 * scale });
         (0..48).map(thing).collect()
     };
     let looks = |scale: f32, offset: Vec3| -> Vec<Ray> {

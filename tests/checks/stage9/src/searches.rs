@@ -1,6 +1,6 @@
 //! The five searches of cells, asked and judged alike.
 
-use super::scenes::{Scene, Thing, sphere, closest, odd_scenes, scenes};
+use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -179,19 +179,20 @@ pub(super) fn judge_visits(
     let input = || format!("{what}\n{}", ray.paste());
     for visit in &yours.visits {
         let Some((_, enter, _)) = parts.iter().find(|(node, ..)| node == visit) else {
-            let broken = Broken::describe(input(), format!("a visit to {visit}"), "none", "the ray passes it by");
+            let broken =
+                Broken::with_texts(input(), format!("a visit to {visit}"), "none", "the ray passes it by");
             return Err(broken.looks_like(Some("a cell was visited that the ray does not enter")));
         };
         if *enter > end + room * end.abs() {
             let yours = format!("a visit to {visit}, which begins at t = {enter:.4}");
             let expected = format!("none beyond the hit at t = {end}");
-            let broken = Broken::describe(input(), yours, expected, "counted");
+            let broken = Broken::with_texts(input(), yours, expected, "counted");
             return Err(broken.looks_like(Some(
                 "the search goes on behind the best hit: nearest cells first, and stop where they begin behind it",
             )));
         }
         if fewest && yours.visits.iter().filter(|other| *other == visit).count() > 1 {
-            let broken = Broken::describe(input(), format!("{visit} is visited again"), "once", "counted");
+            let broken = Broken::with_texts(input(), format!("{visit} is visited again"), "once", "counted");
             return Err(broken.looks_like(Some("a cell is visited several times")));
         }
     }

@@ -2,11 +2,11 @@
 //! that looks for a leak in the reference.
 
 pub mod agreement;
-mod secondary_rays;
 mod long;
 mod methods;
 mod printed;
 mod scenes;
+mod secondary_rays;
 
 use crate::kits::{Need, Source, Which};
 use crate::report::Thousands;

@@ -2,7 +2,7 @@
 //! that were built once. Cargo is not asked, so no two submissions ever share what cargo would take for fresh.
 
 use super::result::Outcome;
-use crate::sandbox::{self, Ended, How, Sandbox, Purpose, Confinement};
+use crate::sandbox::{self, Confinement, Ended, How, Purpose, Sandbox};
 use crate::sync::stage_of;
 use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};

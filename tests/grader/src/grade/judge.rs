@@ -3,9 +3,9 @@
 use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
-use crate::sandbox::{Sandbox, Purpose, Confinement};
 use crate::kits::{Need, Source, Which};
 use crate::queue;
+use crate::sandbox::{Confinement, Purpose, Sandbox};
 use crate::worker::{self, Worker};
 use all_checks::STAGES;
 use anyhow::{Result, ensure};

@@ -5,35 +5,35 @@
 //! writes the grade down, `report` tells everybody.
 
 pub mod attacks;
-mod grader;
 mod forge;
+mod grader;
 mod judge;
 mod lint;
 mod one;
+mod options;
 mod rehearsal;
 pub mod report;
 pub mod result;
-mod sanity;
 mod run_attacks;
+mod sanity;
 mod store;
 mod submission;
-mod options;
 
 pub use grader::{Grader, lint_if_asked};
 pub use one::{Options as OneOptions, SPEC as ONE, run as one};
+pub(crate) use options::{draw_seed, stages};
 pub use rehearsal::{Options as RehearsalOptions, SPEC as REHEARSE, run as rehearse};
 pub use run_attacks::{Options as AttackOptions, SPEC as ATTACKS, run as attack};
-pub(crate) use options::{draw_seed, stages};
 
 use crate::queue;
 use anyhow::{Context, Result, ensure};
+use options::GradingOptions;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use result::Graded;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use store::Store;
 use submission::Submission;
-use options::GradingOptions;
 
 /// `grader grade`.
 pub static SPEC: Spec = Spec {

@@ -1,8 +1,8 @@
 //! `grader grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
 
+use super::options::GradingOptions;
 use super::report;
 use super::result::{Graded, Session};
-use super::options::GradingOptions;
 use anyhow::{Context, Result, anyhow};
 use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};

@@ -1,7 +1,7 @@
 //! On what terms submissions are graded, and the grader that keeps to them.
 
-use super::grader::Grader;
 use super::forge::{self, Forge};
+use super::grader::Grader;
 use super::judge::Judge;
 use super::result::Session;
 use crate::sandbox::{self, Confinement};

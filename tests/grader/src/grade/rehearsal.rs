@@ -3,9 +3,9 @@
 
 use super::Options as GradeOptions;
 use super::attacks::{self, Attack, Place};
+use super::options::{GradingOptions, Stages};
 use super::result::{Class, Graded, Outcome};
 use super::store::Store;
-use super::options::{Stages, GradingOptions};
 use crate::corpus::entry::{self, Claim, Entry};
 use crate::corpus::records::Matrix;
 use crate::sync::{answer, stage_of};
@@ -112,7 +112,10 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         jobs: options.jobs,
         shard: None,
         resume: false,
-        grading: GradingOptions { stages: Some(Stages(STAGES_OF_CLASS.to_vec())), ..GradingOptions::default() },
+        grading: GradingOptions {
+            stages: Some(Stages(STAGES_OF_CLASS.to_vec())),
+            ..GradingOptions::default()
+        },
     }
 }
 

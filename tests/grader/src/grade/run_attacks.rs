@@ -1,12 +1,12 @@
 //! `grader attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
 
 use super::attacks::{self, Tried};
-use super::grader::Grader;
 use super::forge::Forge;
+use super::grader::Grader;
 use super::judge::Judge;
 use super::result::Outcome;
-use crate::sandbox::{self, Confinement};
 use crate::report::bar_of_steps;
+use crate::sandbox::{self, Confinement};
 use anyhow::Result;
 use raykata_cli::args::{Argument, Given, Opt, Spec};
 use std::collections::BTreeMap;

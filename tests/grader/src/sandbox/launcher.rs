@@ -1,7 +1,7 @@
 //! Takes rights away from this process and becomes the program. Single-threaded, and safe code: nothing happens
 //! between a fork and an exec.
 
-use super::{Limits, Purpose, Confinement, files, filter};
+use super::{Confinement, Limits, Purpose, files, filter};
 use anyhow::{Context, Result, bail, ensure};
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, setrlimit};

@@ -145,7 +145,9 @@ impl Confinement {
 
     #[cfg(target_os = "linux")]
     fn of_word(word: &std::ffi::OsStr) -> Option<Confinement> {
-        [Confinement::Full, Confinement::LimitsOnly].into_iter().find(|confinement| word == confinement.word())
+        [Confinement::Full, Confinement::LimitsOnly]
+            .into_iter()
+            .find(|confinement| word == confinement.word())
     }
 }
 
@@ -181,7 +183,9 @@ impl Sandbox {
     pub fn command(&self, program: &Path) -> Command {
         let limits = &self.limits;
         let mut command = Command::new(launcher());
-        command.args([LAUNCH, self.confinement.word(), self.purpose.word()]).arg(std::process::id().to_string());
+        command
+            .args([LAUNCH, self.confinement.word(), self.purpose.word()])
+            .arg(std::process::id().to_string());
         for limit in
             [limits.cpu_seconds, limits.memory_bytes, limits.file_bytes, limits.open_files, limits.processes]
         {

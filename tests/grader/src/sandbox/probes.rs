@@ -1,6 +1,6 @@
 //! What a sandboxed program should not be able to do, tried. The program that tries is this one, so no compiler is needed.
 
-use super::{Ended, How, Sandbox, PROBE, Purpose, run, this_program};
+use super::{Ended, How, PROBE, Purpose, Sandbox, run, this_program};
 use anyhow::{Context, Result, bail, ensure};
 use std::fmt;
 use std::io::{self, Write};

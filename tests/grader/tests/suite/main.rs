@@ -10,12 +10,12 @@ mod export;
 #[cfg(target_os = "linux")]
 mod grade;
 mod handout;
-#[cfg(target_os = "linux")]
-mod sandbox;
-#[cfg(target_os = "linux")]
-mod sandboxed_workers;
 mod one_build;
 mod paste;
 mod pictures;
 mod program_runs;
+#[cfg(target_os = "linux")]
+mod sandbox;
+#[cfg(target_os = "linux")]
+mod sandboxed_workers;
 mod sync;

@@ -1,6 +1,8 @@
 //! What runs in a sandbox stays in it.
 
-use grader::sandbox::{self, Ended, How, Sandbox, Limits, Purpose, Confinement, got_through, run, this_program};
+use grader::sandbox::{
+    self, Confinement, Ended, How, Limits, Purpose, Sandbox, got_through, run, this_program,
+};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -154,7 +156,11 @@ fn what_cannot_be_sandboxed_does_not_run() {
     let missing = Sandbox { readable: vec!["/no/such/folder".into()], ..Sandbox::new(Purpose::Worker) };
     let ended = probe(&missing, "environment");
     assert_eq!(ended.how, How::Exited(sandbox::NOT_LAUNCHED));
-    assert!(said(&ended).contains("the sandbox: /no/such/folder cannot be made accessible"), "{}", said(&ended));
+    assert!(
+        said(&ended).contains("the sandbox: /no/such/folder cannot be made accessible"),
+        "{}",
+        said(&ended)
+    );
     let writes = Sandbox { writable: vec!["/tmp".into()], ..Sandbox::new(Purpose::Worker) };
     assert!(said(&probe(&writes, "environment")).contains("a worker writes nothing"));
     let command = Sandbox::new(Purpose::Worker).command(Path::new("/no/such/program"));
@@ -171,8 +177,11 @@ fn compile(purpose: Purpose, scratch: &Path, source: &str, arguments: &[&str]) -
     let file = scratch.join("source.rs");
     std::fs::write(&file, source).expect("written");
     let toolchain = toolchain();
-    let sandbox =
-        Sandbox { readable: vec![toolchain.clone()], writable: vec![scratch.into()], ..Sandbox::new(purpose) };
+    let sandbox = Sandbox {
+        readable: vec![toolchain.clone()],
+        writable: vec![scratch.into()],
+        ..Sandbox::new(purpose)
+    };
     let mut command = sandbox.command(&toolchain.join("bin/rustc"));
     command.arg(file).args(["--edition", "2024"]).args(arguments);
     run(command, b"", PATIENCE, CAP).expect("it runs")

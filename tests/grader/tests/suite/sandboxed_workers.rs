@@ -4,8 +4,8 @@
 mod asking;
 
 use asking::{ask, how_it_crashed, query};
-use grader::sandbox::{Sandbox, Purpose};
 use grader::kits::{self, Need, Program, Source, Which};
+use grader::sandbox::{Purpose, Sandbox};
 use grader::worker::Worker;
 use raykata::frame::{Unwatched, Watch};
 use raykata::kit::{Door, Frames, KitError, RenderJob, Shapes, SphereQuery, View, kit_error};
@@ -58,7 +58,8 @@ fn each_death_is_told_in_words_and_the_next_call_is_answered() {
     assert_eq!(crash(&door, -10.0), "it took more memory than the 1 GiB it was given");
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     assert!(
-        crash(&sandboxed("/no/such/worker", 1), 10.0).contains("cannot be started: the sandbox: /no/such/worker")
+        crash(&sandboxed("/no/such/worker", 1), 10.0)
+            .contains("cannot be started: the sandbox: /no/such/worker")
     );
 }
 

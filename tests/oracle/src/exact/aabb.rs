@@ -143,7 +143,8 @@ impl Question for Segment<'_> {
         let root = RootBits { p: frame.place.bits() + 1, a: frame.direction.bits(), disc: 0 };
         let ends = [self.ray.t_min, self.ray.t_max].into_iter().filter(|end| end.is_finite());
         let rational = |(n, d): (u32, u32)| (root.p + d).max(root.a + n) + 1;
-        ends.map(|end| rational(frame.fraction_bits(f64::from(end)))).fold(root.bits_to_compare(root), u32::max)
+        ends.map(|end| rational(frame.fraction_bits(f64::from(end))))
+            .fold(root.bits_to_compare(root), u32::max)
     }
 
     #[inline(always)]

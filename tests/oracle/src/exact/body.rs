@@ -81,7 +81,8 @@ impl Body {
 
     /// Bits of the largest root, and of all other integers made on the way to it.
     fn bits(&self, frame: &Frame) -> (RootBits, u32) {
-        let (place, direction, normal) = (frame.place.bits() + 1, frame.direction.bits(), frame.normal.bits());
+        let (place, direction, normal) =
+            (frame.place.bits() + 1, frame.direction.bits(), frame.normal.bits());
         match self {
             Body::Triangle(_) => triangle::bits(place, direction),
             Body::Plane(_) | Body::Disk(_) => {
@@ -138,7 +139,11 @@ fn joint_frame(ray: &Ray, one: &Body, other: &Body, fine: bool) -> Frame {
     }
     places[21..].copy_from_slice(&[r, r2]);
     let normals = [n.to_array(), n2.to_array()];
-    Frame { place: scale(&places), direction: scale(&ray.direction.to_array()), normal: scale(normals.as_flattened()) }
+    Frame {
+        place: scale(&places),
+        direction: scale(&ray.direction.to_array()),
+        normal: scale(normals.as_flattened()),
+    }
 }
 
 /// A plane, or of it what lies within `radius` of its point.

@@ -71,8 +71,7 @@ impl Question for Both<'_> {
     }
 
     fn ask<R: Ring>(&self, frame: &Frame) -> Option<Roots> {
-        let Span::Lerp([Some(near), ..], [Some(far), ..]) = span::<R>(self.ray, self.sphere, frame)?
-        else {
+        let Span::Lerp([Some(near), ..], [Some(far), ..]) = span::<R>(self.ray, self.sphere, frame)? else {
             return Some(Roots { discriminant: -1, near_counts: false, far_counts: false });
         };
         let counts = |root| in_range(root, self.ray.t_min, self.ray.t_max, frame);

@@ -205,7 +205,8 @@ mod tests {
     fn the_answers_of_the_reference_are_written_down() {
         let known = known("face_forward").unwrap();
         assert!(known.len() > 500, "{}", known.len());
-        let stub = "use glam::Vec3;\npub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 { todo!() }\n";
+        let stub =
+            "use glam::Vec3;\npub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 { todo!() }\n";
         let text = by_heart(stub, &["face_forward".into()]).unwrap();
         assert!(text.contains("static KNOWN") && !text.contains("todo!"));
         assert!(by_heart(stub, &["plan".into()]).unwrap_err().to_string().contains("`plan`"));

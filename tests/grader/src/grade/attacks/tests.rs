@@ -173,7 +173,10 @@ fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given
     let normal =
         graded(|name| if name.starts_with("sphere_normal") { Outcome::TooLong } else { Outcome::Passed });
     assert_eq!(message("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);
-    assert_eq!(message("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal), [""; 0]);
+    assert_eq!(
+        message("earned = { at_least_all_but = [\"sphere_normal_*\", \"plane_*\"] }", &normal),
+        [""; 0]
+    );
     let both = message("earned = { all_but = [\"sphere_normal_*\", \"face_*\"] }", &normal);
     assert!(both.len() == 1 && both[0].contains("face_forward_turns") && both[0].contains("not earned"));
     let none = message("earned = { at_least_all_but = [\"plane_*\"] }", &normal);

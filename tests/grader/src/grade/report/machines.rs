@@ -102,7 +102,9 @@ pub fn classroom(graded: &Graded) -> Value {
     let mut tests: Vec<Value> = graded
         .checks
         .iter()
-        .map(|check| classroom_test(&title(check), status(check.outcome), &messages::message(check), check.earned))
+        .map(|check| {
+            classroom_test(&title(check), status(check.outcome), &messages::message(check), check.earned)
+        })
         .collect();
     if graded.checks.is_empty() {
         tests.push(classroom_test("submission", "error", &graded.trouble, 0));

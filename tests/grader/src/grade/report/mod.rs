@@ -8,6 +8,7 @@ mod class_page;
 pub mod clean;
 mod junit;
 mod machines;
+mod messages;
 mod names;
 mod page;
 mod student_page;
@@ -15,7 +16,6 @@ mod tables;
 mod tally;
 #[cfg(test)]
 mod tests;
-mod messages;
 
 pub use clean::{clean, clean_line};
 pub use machines::{classroom, classroom_output, gradescope};

@@ -179,7 +179,10 @@ fn spheres_and_planes() {
         Some(if f64::from(3f32.sqrt()).powi(2) < 3.0 { Ordering::Greater } else { Ordering::Less })
     );
     assert_eq!(order(&along_x(-5.0, 0.0), sphere([0.5, 0.0, 0.0], 1.5), unit), Some(Ordering::Equal));
-    assert_eq!(order(&along_x(-5.0, 0.25), unit, sphere([0.0; 3], 1.0f32.next_up())), Some(Ordering::Greater));
+    assert_eq!(
+        order(&along_x(-5.0, 0.25), unit, sphere([0.0; 3], 1.0f32.next_up())),
+        Some(Ordering::Greater)
+    );
 
     // pl/parallel and pl/in-plane.
     let floor = Body::Plane(Plane { point: Vec3::ZERO, normal: vec3(0.0, 3.0, 0.0) });
