@@ -48,9 +48,9 @@ fn two_runs_have_the_same_errors_and_counts() {
         assert!(output.status.success(), "{}", said(&output));
         (said(&output), without_times(&folder.path().join(out)))
     };
-    let knobs = ["--knob", "samples,sampler,light-samples", "--reference", "128"];
-    let (told, one) = run("one", &knobs);
-    let (_, other) = run("other", &[&knobs[..], &["--threads", "1"]].concat());
+    let parameters = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
+    let (told, one) = run("one", &parameters);
+    let (_, other) = run("other", &[&parameters[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
     assert!(told.contains("glossy samples: not offered, for nothing is rough and mirrors"), "{told}");
@@ -68,7 +68,7 @@ fn two_runs_have_the_same_errors_and_counts() {
     // The reference was kept, and a longer one goes on with it.
     let kept: Vec<_> = fs::read_dir(folder.path().join("out/references")).unwrap().collect();
     assert_eq!(kept.len(), 1);
-    let (_, longer) = run("longer", &["--knob", "samples", "--reference", "192"]);
+    let (_, longer) = run("longer", &["--parameter", "samples", "--reference", "192"]);
     assert_eq!(longer.0["reference_samples"], 192);
     assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 1);
 }
@@ -77,7 +77,7 @@ fn two_runs_have_the_same_errors_and_counts() {
 fn a_proposal_is_tried_out() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = [
-        &["scenes/stage5.toml", "--knob", "samples,depth", "--error", "0.03", "--reference", "128"][..],
+        &["scenes/stage5.toml", "--parameter", "samples,depth", "--error", "0.03", "--reference", "128"][..],
         &QUICK,
     ];
     let output = cost(folder.path(), &arguments.concat());
@@ -96,7 +96,7 @@ fn a_proposal_is_tried_out() {
 fn hits_are_judged_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let judged = |method: &str| {
-        let arguments = ["scenes/stage2.toml", "--knob", "split", "--triangles", method, "--out", method];
+        let arguments = ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
         let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
         assert!(output.status.success(), "{}", said(&output));
         let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
@@ -120,7 +120,7 @@ fn hits_are_judged_exactly() {
 #[test]
 fn what_buys_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
-    let output = cost(folder.path(), &["scenes/stage1.toml", "--knob", "depth"]);
+    let output = cost(folder.path(), &["scenes/stage1.toml", "--parameter", "depth"]);
     assert_eq!(output.status.code(), Some(1));
     assert_eq!(said(&output), "error: depth buys nothing here: nothing mirrors or lets light through\n");
     for (arguments, says) in [
@@ -143,7 +143,7 @@ fn what_is_stopped_leaves_a_report() {
     let scenes = raykata_cli::kits::root().unwrap().join("scenes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
     command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    command.args(["--size", "16x12", "--rounds", "1000", "--reference", "128", "--knob", "samples,sampler"]);
+    command.args(["--size", "16x12", "--rounds", "1000", "--reference", "128", "--parameter", "samples,sampler"]);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");

@@ -114,7 +114,7 @@ const MISTAKES: [(RayCounts, &str); 10] = [
 
 fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
     let input = format!(
-        "rays_of_hits(&{:?},\n&{:?},\ngloss_samples {})",
+        "rays_of_hits(&{:?},\n&{:?},\nglossy_samples {})",
         query.hits, query.effects.materials, query.quality.glossy_samples
     );
     Broken::new(input, yours, expected, source)

@@ -111,7 +111,7 @@ fn bodies_are_right_or_wrong_as_a_step_says() {
     assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let discriminant ="));
     let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_forward\"\ntext = \"if true @right@ else @wrong@\"";
     let both = shapes_of(step);
-    assert!(both.contains("if normal.dot(dir) > 0.0 { -normal } else { normal }"));
+    assert!(both.contains("if normal.dot(direction) > 0.0 { -normal } else { normal }"));
     assert!(both.contains("else { Vec3::splat(-7.25) }"), "{both}");
 }
 
