@@ -96,7 +96,8 @@ fn a_proposal_is_tried_out() {
 fn hits_are_judged_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let judged = |method: &str| {
-        let arguments = ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
+        let arguments =
+            ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
         let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
         assert!(output.status.success(), "{}", said(&output));
         let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
@@ -143,7 +144,16 @@ fn what_is_stopped_leaves_a_report() {
     let scenes = raykata_cli::kits::root().unwrap().join("scenes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
     command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    command.args(["--size", "16x12", "--rounds", "1000", "--reference", "128", "--parameter", "samples,sampler"]);
+    command.args([
+        "--size",
+        "16x12",
+        "--rounds",
+        "1000",
+        "--reference",
+        "128",
+        "--parameter",
+        "samples,sampler",
+    ]);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");

@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use diffy::DiffOptions;
 use raykata::film::write_atomically;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
@@ -30,7 +31,13 @@ pub static SPEC: Spec = Spec {
              part.",
         )
         .many(),
-        Opt::value("--word", "OLD=NEW", "A word that is spelled in another way now, as OLD=NEW.").many(),
+        Opt::value("--word", "OLD=NEW", "An identifier that has another name now, as OLD=NEW.").many(),
+        Opt::value(
+            "--renames",
+            "FILE",
+            "A TOML file with more of both: a table `words` of lines OLD = \"NEW\", and a table `files` of lines \
+             \"OLD\" = [\"NEW\"]. tests/corpus/renames.toml lists the names that changed in the kit.",
+        ),
         Opt::value(
             "--corpus",
             "FOLDER",
@@ -52,13 +59,42 @@ pub struct Options {
 impl Options {
     /// As they were given.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
+        let renames = match given.path("--renames") {
+            Some(file) => Renames::read(&file).map_err(|error| Misuse::new(format!("{error:#}")))?,
+            None => Renames::default(),
+        };
+        let mut moved = given.repeated("--moved", pair)?;
+        let mut words = given.repeated("--word", pair)?;
+        for (old, parts) in renames.files {
+            moved.extend(parts.into_iter().map(|new| (old.clone(), new)));
+        }
+        words.extend(renames.words);
+        // A function goes before a name of the same spelling.
+        words.sort_by_key(|(old, _)| !old.ends_with('('));
         Ok(Options {
             from: given.required(0)?.to_string_lossy().into_owned(),
-            moved: given.repeated("--moved", pair)?,
-            words: given.repeated("--word", pair)?,
+            moved,
+            words,
             corpus: given.path("--corpus").unwrap_or_else(|| "tests/corpus".into()),
             check: given.has("--check"),
         })
+    }
+}
+
+/// Files that have moved and identifiers that have other names now, as a file lists them.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Renames {
+    #[serde(default)]
+    words: BTreeMap<String, String>,
+    #[serde(default)]
+    files: BTreeMap<String, Vec<String>>,
+}
+
+impl Renames {
+    fn read(file: &Path) -> Result<Renames> {
+        let text = fs::read_to_string(file).with_context(|| file.display().to_string())?;
+        toml::from_str(&text).with_context(|| file.display().to_string())
     }
 }
 
@@ -177,8 +213,12 @@ fn carry(
             why.push(format!("there is no {place}"));
             continue;
         };
-        match diffy::merge(&before, &now, &after) {
-            Ok(changed) if changed != now => {
+        let merged = match diffy::merge(&before, &now, &after) {
+            Ok(merged) => Some(merged),
+            Err(conflicts) => without_comment_conflicts(&conflicts),
+        };
+        match merged {
+            Some(changed) if changed != now => {
                 let mut options = DiffOptions::new();
                 options.set_original_filename(format!("a/{place}"));
                 options.set_modified_filename(format!("b/{place}"));
@@ -190,14 +230,38 @@ fn carry(
                 );
                 return Ok(Carried::Anew(format!("{header}{patch}")));
             }
-            Ok(_) => why.push(format!("{place} has the change already")),
-            Err(_) => why.push(format!("{place} is different where it changes something")),
+            Some(_) => why.push(format!("{place} has the change already")),
+            None => why.push(format!("{place} is different where it changes something")),
         }
     }
     Ok(Carried::Lost(why.join("; ")))
 }
 
-/// The text with words replaced; a word is what Rust takes for a name.
+/// The merged text, if in each conflict our side differs from the original in comments only: there the patch decides.
+fn without_comment_conflicts(conflicts: &str) -> Option<String> {
+    let code = |lines: &[&str]| -> Vec<String> {
+        let code = lines.iter().map(|line| line.trim()).filter(|line| !line.starts_with("//"));
+        code.map(str::to_owned).collect()
+    };
+    let (mut merged, mut lines) = (String::new(), conflicts.split_inclusive('\n'));
+    while let Some(line) = lines.next() {
+        if !line.starts_with("<<<<<<< ") {
+            merged += line;
+            continue;
+        }
+        let mut until =
+            |mark: &str| -> Vec<&str> { lines.by_ref().take_while(|line| !line.starts_with(mark)).collect() };
+        let (ours, original, theirs) = (until("||||||| "), until("======="), until(">>>>>>> "));
+        if code(&ours) != code(&original) {
+            return None;
+        }
+        merged.extend(theirs);
+    }
+    Some(merged)
+}
+
+/// The text with names replaced. A word is what Rust takes for a name; one that ends with `(` in the table is a function,
+/// and only its definition and its calls are replaced.
 fn spelled(text: &str, words: &[(String, String)]) -> String {
     if words.is_empty() {
         return text.to_owned();
@@ -208,7 +272,12 @@ fn spelled(text: &str, words: &[(String, String)]) -> String {
     while let Some(letter) = rest.chars().next() {
         let end = rest.find(|next| in_word(next) != in_word(letter)).unwrap_or(rest.len());
         let (word, after) = rest.split_at(end);
-        spelled += words.iter().find(|(old, _)| old == word).map_or(word, |(_, new)| new);
+        let new = words.iter().find_map(|(old, new)| match old.strip_suffix('(') {
+            Some(old) if old == word && after.starts_with('(') => Some(new.trim_end_matches('(')),
+            None if old == word => Some(new.as_str()),
+            _ => None,
+        });
+        spelled += new.unwrap_or(word);
         rest = after;
     }
     spelled
@@ -265,9 +334,18 @@ mod tests {
     #[test]
     fn words_that_are_spelled_in_another_way_are_no_difference() {
         let now = OLD.replace("two", "2").replace("four", "4");
-        let words = [("two", "2"), ("four", "4"), ("on", "off")];
+        let words = [("two", "2"), ("four", "4"), ("on", "off"), ("three(", "drei(")];
         let text = applied(carried(&[], &words, &[("src/a.rs", &now)]), "src/a.rs", &now);
         assert_eq!(text, now.replace("three", "drei"));
+    }
+
+    #[test]
+    fn a_comment_beside_a_change_is_no_difference() {
+        let now = OLD.replace("three", "// Say three.\nthree");
+        let text = applied(carried(&[], &[], &[("src/a.rs", &now)]), "src/a.rs", &now);
+        assert!(text.contains("two\n") && text.contains("drei\nfour") && !text.contains("\nthree"), "{text}");
+        let other = OLD.replace("three", "// Say three.\nthree or more");
+        assert!(matches!(carried(&[], &[], &[("src/a.rs", &other)]), Carried::Lost(_)));
     }
 
     #[test]
