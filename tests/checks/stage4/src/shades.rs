@@ -203,8 +203,8 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
     });
     trial.forall(2000, queries, |queries| {
         compare(queries, trial.kit.shade(queries), |query, yours| {
-            // A light needs a ray if its contribution is above the tolerance of colours, because a cosine to the power of
-            // 32 may be 0 in single precision.
+            // A light needs a ray if its contribution is above the tolerance of colours, because a cosine to the power
+            // of 32 may be 0 in single precision.
             let cosine = |light: usize| query.lights[light].direction.dot(query.surface.shading_normal);
             let shows = |light: usize| share(query, light).max_element() > tolerance(DVec3::ZERO);
             let needed: Vec<usize> =

@@ -109,7 +109,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
     .collect()
 }
 
-/// The height of the ray's start above the point, along the normal, and the bound on the point's error along the normal.
+/// The height of the ray's start above the point, and the bound on the point's error, both along the normal.
 pub(super) fn start_height(query: &ShadowQuery, ray: &raykata::ray::Ray) -> (f64, f64) {
     let normal = query.surface.geometric_normal.as_dvec3();
     let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
@@ -130,13 +130,13 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
             let (height, bound) = start_height(query, ray);
             let diagnosis = match () {
                 () if height == 0.0 => {
-                    "your ray starts on the rounded point: about half of such rays hit their own surface (shadow acne)"
+                    "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
                 }
                 () if height < 0.0 => "your ray starts below the surface: move to the viewer’s side",
                 () if goes_along_the_light(query, ray) => {
                     "you move the origin along the ray: move it along the geometric normal"
                 }
-                () => "your offset is too small here: move the origin by error·|n| or more",
+                () => "your offset is too small: move by error·|n|, then each coordinate one float outwards",
             };
             // One per cent of slack for the rounding of the bound itself.
             (height < 0.99 * bound).then(|| {
@@ -157,7 +157,7 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> Outcome {
                 (
                     format!("starts {height:.3e} above the point"),
                     format!("at most {most:.3e}"),
-                    "your offset is too large here: an object that nearly touches the surface casts no shadow on it",
+                    "your offset is too large here: the ray misses objects that nearly touch the surface",
                 )
             })
         })
