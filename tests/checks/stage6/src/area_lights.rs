@@ -143,7 +143,7 @@ pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
         if rings[7] == 0 {
             "you never sample the rim of the sphere, where sin θ = radius / distance"
         } else if 2 * rings[0] > 3 * rings[7] {
-            "too many directions near the centre: make cos θ uniform, not θ"
+            "too many directions near the centre: make cos θ uniform"
         } else if 2 * rings[7] > 3 * rings[0] {
             "too many directions near the rim"
         } else {

@@ -22,7 +22,7 @@ pub(super) fn polar(place: Vec2) -> (f64, f64) {
 pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
     let rings = columns(counts);
     if rings[7] == 0 {
-        "you fill only the inner part of the disk: is a radius used as a diameter?"
+        "you fill only the inner part of the disk: points must reach up to its radius"
     } else if rings[0] > 2 * rings[7] {
         "too many points near the centre: use √u as the radius, because area grows with its square"
     } else if rings[7] > 2 * rings[0] {
