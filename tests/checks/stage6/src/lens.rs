@@ -143,7 +143,8 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
     let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
-            // The tolerance covers a few roundings of the direction, relative to the distance. A wide lens enlarges them.
+            // The tolerance covers a few roundings of the direction, relative to the distance. A wide lens enlarges
+            // them.
             let off = (found - expected).length() / expected.length();
             if off < 1e-5 {
                 return Ok(());
