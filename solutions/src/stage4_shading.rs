@@ -84,11 +84,13 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// Slides "Shadow ray" and "Cost of shadow computation".
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     // <solution>
+    // Return None for a light that cannot add anything.
     let in_front = surface.geometric_normal.dot(light.direction) > 0.0
         && surface.shading_normal.dot(light.direction) > 0.0;
     if !in_front || light.radiance == Vec3::ZERO {
         return None;
     }
+    // Start off the surface and end before the light.
     let origin = off_surface(surface);
     Some(Ray::new(origin, light.direction).with_range(0.0, light.distance * BEFORE_THE_LIGHT))
     // <stub> todo!("return None for a light behind the surface, otherwise a ray that excludes both ends")

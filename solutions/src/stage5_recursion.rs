@@ -49,6 +49,7 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
     // Split direction = sin θ1 m - cos θ1 n, with m along the surface. The product sin θ1 m needs no division.
     let cos_1 = -direction.dot(normal);
     let along = direction + cos_1 * normal;
+    // Multiply the part along the surface by the ratio, and compute cos² θ2 from its length.
     let along_2 = ratio * along;
     let cos_2_squared = 1.0 - along_2.length_squared();
     if !(cos_2_squared >= 0.0) {
@@ -73,6 +74,7 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 /// Schlick, 1994.
 pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
     // <solution>
+    // Use the cosine on the side of the smaller index, where the angle is larger.
     let cosine = if n1 > n2 {
         match cos_behind(cos_theta, n1, n2) {
             Some(cos_2) => cos_2,
@@ -81,6 +83,7 @@ pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
     } else {
         cos_theta
     };
+    // Compute Schlick's formula.
     let r0 = ((n1 - n2) / (n1 + n2)).powi(2);
     r0 + (1.0 - r0) * (1.0 - cosine).clamp(0.0, 1.0).powi(5)
     // <stub> todo!("Schlick's formula; if n1 > n2, with the cosine behind the surface")

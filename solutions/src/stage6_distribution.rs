@@ -25,7 +25,8 @@ const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 
 /// The position of a stratified sample in its pixel, whose side is 1: `(cell + u) / grid`.
 ///
-/// The result is in `0.0..1.0` along x and y. It is never 1, because 1 belongs to the next pixel.
+/// The result is in its cell, up to rounding, and in `0.0..1.0` along x and y. It is never 1, because 1 belongs to the
+/// next pixel.
 ///
 /// Pitfall: 3 + 0.99999994 is rounded to 4, and then `(cell + u) / grid` is 1.
 ///
@@ -39,11 +40,11 @@ pub fn jittered(stratum: &Stratum) -> Vec2 {
 
 /// The position of a sample, relative to the upper left corner of its pixel, whose side is 1.
 ///
-/// - [`Sampler::Center`]: the centre of the pixel. - [`Sampler::Random`] and [`Sampler::LowDiscrepancy`]: `u`
-/// unchanged. Low-discrepancy numbers are spread already. - [`Sampler::Jittered`]: [`jittered`]. -
-/// [`Sampler::Gaussian`]: the jittered position, scaled to the square that reaches [`FILTER_RADIUS`] from the centre
-/// of
-///   the pixel on all sides.
+/// - [`Sampler::Center`]: the centre of the pixel.
+/// - [`Sampler::Random`] and [`Sampler::LowDiscrepancy`]: `u` unchanged. Low-discrepancy numbers are spread already.
+/// - [`Sampler::Jittered`]: the result of [`jittered`].
+/// - [`Sampler::Gaussian`]: the result of [`jittered`], scaled to the square that reaches [`FILTER_RADIUS`] from the
+///   centre of the pixel on all sides.
 ///
 /// Slide "Antialiasing".
 pub fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2 {
@@ -136,12 +137,13 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
 /// Slide "Depth of Field".
 pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray {
     // <solution>
+    // Find the start of the ray, relative to the centre of the lens.
     let place = 0.5 * lens.aperture * on_lens;
     let offset = place.x * camera.right + place.y * camera.up;
     if offset == Vec3::ZERO {
         return *pinhole;
     }
-    // Subtract relative to the centre of the lens, so that a large camera.position adds no rounding error.
+    // Aim at the focal plane, also relative to the centre, so that a large camera.position adds no rounding error.
     let focus = lens.focal_distance / pinhole.direction.dot(camera.towards) * pinhole.direction;
     Ray { origin: camera.position + offset, direction: (focus - offset).normalize(), ..*pinhole }
     // <stub> todo!("start on the lens, and aim where the pinhole ray meets the focal plane")
@@ -222,9 +224,11 @@ pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> 
     if roughness <= 0.0 {
         return ideal;
     }
+    // Choose 1 - cos θ such that cos θ = u^(1 / (n + 1)), and turn by any angle around ideal.
     let exponent = 2.0 / (roughness * roughness) - 2.0;
     let below_one = -(u.x.ln() / (exponent + 1.0)).exp_m1();
     let direction = around(ideal, below_one, u.y);
+    // Reflect a direction below the surface back to its side.
     let above = direction.dot(normal);
     if above < 0.0 { direction - 2.0 * above * normal } else { direction }
     // <stub> todo!("turn ideal by a random angle, and keep it on its side of the surface")
