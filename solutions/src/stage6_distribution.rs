@@ -1,11 +1,12 @@
-//! Stage 6 · distribution: many rays where one was, spread over the pixel, the lens, the light, the mirror and the time.
+//! Stage 6 · distribution: distributed ray tracing. Many rays replace one; they are distributed over the pixel, the
+//! lens, the area light, the glossy reflection and the time.
 //!
 //! Slides: "Antialiasing", "Generate pixel samples", "Distributed Ray Tracing", "Depth of Field", "Soft shadows",
 //! "Temporal Jittering Sampling".
 //!
-//! Nothing here is random: random numbers come as arguments, `u` in `0.0..1.0` each, and what you return has to be
-//! distributed as it should when they are distributed evenly. Which of the many right formulas you take is yours to
-//! choose.
+//! These functions draw no random numbers: random numbers are arguments, `u` in `0.0..1.0` each. If `u` is uniformly
+//! distributed, your results must have the distribution that the doc comment states. Any formula with this distribution
+//! passes, unless the doc comment gives the formula.
 
 use glam::{Vec2, Vec3, vec2};
 use raykata::aabb::Aabb;
@@ -22,19 +23,30 @@ use std::f32::consts::{FRAC_PI_4, TAU};
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON / 2.0;
 // </solution>
 
-/// The sample in its cell: `(cell + u) / grid`, in `0.0..1.0` along x and y.
+/// The position of a stratified sample in its pixel, whose side is 1: `(cell + u) / grid`.
 ///
-/// Where the formula lies: 3 + 0.99999994 is rounded to 4, and then the sample lies in the next pixel. Never return 1.
+/// The result is in its cell, up to rounding, and in `0.0..1.0` along x and y. It is never 1, because 1 belongs to the
+/// next pixel.
+///
+/// Pitfall: 3 + 0.99999994 is rounded to 4, and then `(cell + u) / grid` is 1.
+///
+/// Slide "Generate pixel samples".
 pub fn jittered(stratum: &Stratum) -> Vec2 {
     // <solution>
     ((stratum.cell.as_vec2() + stratum.u) / stratum.grid.as_vec2()).min(Vec2::splat(BELOW_ONE))
-    // <stub> todo!("scale the place in the cell to the whole grid, and stay below 1")
+    // <stub> todo!("scale the position in the cell to the whole grid, and stay below 1")
     // </solution>
 }
 
-/// Where a sample lies, seen from the upper left corner of its pixel, whose side is 1: in the centre; at `u`
-/// ([`Sampler::Random`] and [`Sampler::LowDiscrepancy`], whose numbers are spread already); [`jittered`]; or
-/// ([`Sampler::Gaussian`]) jittered over a square that reaches [`FILTER_RADIUS`] from the centre.
+/// The position of a sample, relative to the upper left corner of its pixel, whose side is 1.
+///
+/// - [`Sampler::Center`]: the centre of the pixel.
+/// - [`Sampler::Random`] and [`Sampler::LowDiscrepancy`]: `u` unchanged. Low-discrepancy numbers are spread already.
+/// - [`Sampler::Jittered`]: the result of [`jittered`].
+/// - [`Sampler::Gaussian`]: the result of [`jittered`], scaled to the square that reaches [`FILTER_RADIUS`] from the
+///   centre of the pixel on all sides.
+///
+/// Slide "Antialiasing".
 pub fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2 {
     // <solution>
     let center = Vec2::splat(0.5);
@@ -44,27 +56,36 @@ pub fn pixel_position(sampler: Sampler, stratum: &Stratum) -> Vec2 {
         Sampler::Jittered => jittered(stratum),
         Sampler::Gaussian => center + FILTER_RADIUS * (2.0 * jittered(stratum) - 1.0),
     }
-    // <stub> todo!("one place for each sampler")
+    // <stub> todo!("return the position for each sampler")
     // </solution>
 }
 
-/// How much a sample counts that lies `offset` from the centre of its pixel:
-/// `(e^(-2x²) - e^(-2R²)) (e^(-2y²) - e^(-2R²))` with R = [`FILTER_RADIUS`], and 0 beyond R along x or y.
+/// The filter weight of a sample at `offset` from the centre of its pixel: the Gaussian
+/// `(e^(-2x²) - e^(-2R²)) (e^(-2y²) - e^(-2R²))` with R = [`FILTER_RADIUS`].
 ///
-/// Where the formula lies: the bell of Gauss never ends. Cut off without the second term it leaves a step, and the
-/// product of two negative factors counts where nothing should.
+/// The weight is 0 if `|x|` or `|y|` is R or more. It is never negative.
+///
+/// Pitfall: a Gaussian does not end. Without the term `e^(-2R²)` the weight has a step at R. Beyond R along both axes,
+/// the product of two negative factors is positive.
+///
+/// Slide "Antialiasing".
 pub fn gaussian_weight(offset: Vec2) -> f32 {
     // <solution>
     let bell = |x: f32| ((-2.0 * x * x).exp() - (-2.0 * FILTER_RADIUS * FILTER_RADIUS).exp()).max(0.0);
     bell(offset.x) * bell(offset.y)
-    // <stub> todo!("a bell along x times a bell along y, each 0 from R on")
+    // <stub> todo!("multiply a weight along x by a weight along y, each 0 from R on")
     // </solution>
 }
 
-/// The colour of a pixel: the mean of its samples, each as much as its weight. Without any weight it is black.
+/// The colour of a pixel: the weighted mean of its samples.
 ///
-/// Where the formula lies: divided by their number instead of by the sum of their weights, samples make the picture
-/// darker or brighter.
+/// Each weight is at least 0. If there is no sample, or if the weights sum to 0, the pixel is black. The colour is not
+/// clamped.
+///
+/// Pitfall: if you divide by the number of samples instead of the sum of the weights, the picture is too dark or too
+/// bright.
+///
+/// Slide "Antialiasing".
 pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
     // <solution>
     let color: Vec3 = samples.iter().map(|sample| sample.weight * sample.color).sum();
@@ -74,18 +95,24 @@ pub fn filter_pixel(samples: &[WeightedColor]) -> Vec3 {
     // </solution>
 }
 
-/// A place on the disk of radius 1 around the origin, everywhere equally likely.
+/// A uniformly distributed point of the disk of radius 1 around the origin.
 ///
-/// Where the formula lies: with the distance from the middle even in `0..1`, half of all places lie on a quarter of the
-/// disk. And corners of the square are not on the disk.
+/// Every `u` gives a point whose distance from the origin is at most 1 (up to rounding), and no `u` gives NaN.
+///
+/// Pitfall: if the distance from the centre is uniform in `0..1`, half of the points lie in a quarter of the disk. The
+/// corners of the square `-1..1` are outside the disk.
+///
+/// Slide "Depth of Field".
 pub fn sample_disk(u: Vec2) -> Vec2 {
     // <solution>
-    // Squares around the middle become circles, so that places far apart in the square stay far apart (Shirley and
-    // Chiu, "A low distortion map between disk and square", 1997).
+    // Map concentric squares to circles, so that points far apart in the square stay far apart (Shirley and Chiu, "A
+    // low distortion map between disk and square", 1997).
     let square = 2.0 * u - 1.0;
+    // Return the centre at once, because the formulas below divide by 0 there.
     if square == Vec2::ZERO {
         return Vec2::ZERO;
     }
+    // Compute polar coordinates: the larger coordinate is the radius, and the ratio gives the angle.
     let (radius, angle) = if square.x.abs() > square.y.abs() {
         (square.x, FRAC_PI_4 * (square.y / square.x))
     } else {
@@ -96,63 +123,83 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
     // </solution>
 }
 
-/// The ray that leaves the lens at `on_lens`, a place on a disk of radius 1 that stands for the opening, and meets
-/// `pinhole`, the ray through the middle, on the plane of focus: at right angles to the view direction,
-/// `lens.focal_distance` away. Of unit length. From the middle it is `pinhole` itself, bit for bit.
+/// The ray from a point of a thin lens to the point where the pinhole ray meets the focal plane (depth of field).
 ///
-/// Where the formula lies: `focal_distance` along the ray is a sphere, and edges of the picture blur. And far from the
-/// origin the difference of two far points has few digits left: subtract before you add `camera.position`.
+/// The lens is a disk around `camera.position` of diameter `lens.aperture`, spanned by `camera.right` and `camera.up`.
+/// `on_lens` is a point of the disk of radius 1, which stands for the lens. The focal plane is at right angles to the
+/// view direction `camera.towards`, at distance `lens.focal_distance`. The direction of the result has unit length. If
+/// the ray starts at the centre of the lens, because `on_lens` or `lens.aperture` is 0, the result is `pinhole`, bit
+/// for bit.
+///
+/// Pitfall: points at `focal_distance` along each ray form a sphere, and the edges of the picture blur. The difference
+/// of two positions far from the origin is imprecise: subtract before you add `camera.position`.
+///
+/// Slide "Depth of Field".
 pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray {
     // <solution>
+    // Find the start of the ray, relative to the centre of the lens.
     let place = 0.5 * lens.aperture * on_lens;
     let offset = place.x * camera.right + place.y * camera.up;
     if offset == Vec3::ZERO {
         return *pinhole;
     }
-    // Both seen from the middle of the lens, so that camera.position, however large, takes no part.
+    // Aim at the focal plane, also relative to the centre, so that a large camera.position adds no rounding error.
     let focus = lens.focal_distance / pinhole.direction.dot(camera.towards) * pinhole.direction;
     Ray { origin: camera.position + offset, direction: (focus - offset).normalize(), ..*pinhole }
-    // <stub> todo!("start on the lens and aim where the pinhole ray meets the plane of focus")
+    // <stub> todo!("start on the lens, and aim where the pinhole ray meets the focal plane")
     // </solution>
 }
 
-/// A point of the rectangle with this corner and these edges, everywhere equally likely.
+/// A uniformly distributed point of the rectangle with the corner `corner`.
+///
+/// `edges` are the vectors from this corner along both sides. They need not be at right angles.
+///
+/// Slide "Area Lights".
 pub fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
     // <solution>
     corner + u.x * edges.0 + u.y * edges.1
-    // <stub> todo!("go along both edges")
+    // <stub> todo!("start at the corner and go along both edges")
     // </solution>
 }
 
-/// A point of the disk, everywhere equally likely.
+/// A uniformly distributed point of a disk.
+///
+/// `disk.normal` need not have unit length.
+///
+/// Slide "Area Lights".
 pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     // <solution>
     let (x, y) = disk.normal.normalize().any_orthonormal_pair();
     let place = disk.radius * sample_disk(u);
     disk.center + place.x * x + place.y * y
-    // <stub> todo!("carry a place on the unit disk to this one")
+    // <stub> todo!("map a point of the unit disk to this disk")
     // </solution>
 }
 
-/// A unit direction in which the sphere is seen from `from`, each equally likely; from inside the sphere any direction.
+/// A unit direction from `from` to the sphere, uniformly distributed over the solid angle of the sphere.
 ///
-/// Where the formula lies: `1 - cos θ` of a far sphere is rounded to 0, and its shadows turn sharp. With
-/// `sin θ = radius / distance` it is `sin²θ / (1 + cos θ)`.
+/// From outside, the directions fill a cone around the direction to the centre. The angle θ between its axis and its
+/// rim has `sin θ = radius / distance`. From inside the sphere the directions are uniform over all directions. From
+/// the centre any unit direction passes, and NaN fails.
+///
+/// Pitfall: for a far sphere `1 - cos θ` is rounded to 0, and its shadows become sharp. It is `sin²θ / (1 + cos θ)`.
+///
+/// Slides "Soft shadows" and "Area Lights".
 pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     // <solution>
     let to_center = sphere.center - from;
     let sin_squared = sphere.radius * sphere.radius / to_center.length_squared();
-    // 1 - cos θ of the directions along the rim; 2 is the direction away from the centre.
+    // Compute 1 - cos θ of the rim. From inside it is 2, up to the direction away from the centre.
     let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
-    // Slices of equal height have equal area on a sphere (Archimedes).
+    // Choose 1 - cos θ uniformly, because slices of a sphere of equal height have equal area (Archimedes).
     around(to_center.normalize_or(Vec3::Y), u.x * widest, u.y)
-    // <stub> todo!("a direction in the cone around the centre: 1 - cos θ even between 0 and that of the rim")
+    // <stub> todo!("choose 1 - cos θ uniformly between 0 and that of the rim, and any angle around the axis")
     // </solution>
 }
 
 // <solution>
-/// The unit vector at an angle to `axis` whose cosine is `1 - below_one`, turned around it by the share `turn` of a
-/// circle. The sine comes from `below_one` and not from the cosine, which has lost its digits for small angles.
+/// The unit vector at an angle to `axis` whose cosine is `1 - below_one`, turned around `axis` by the fraction `turn`
+/// of a full turn. The sine is computed from `below_one`, because the cosine is imprecise for small angles.
 fn around(axis: Vec3, below_one: f32, turn: f32) -> Vec3 {
     let sine = (below_one * (2.0 - below_one)).max(0.0).sqrt();
     let (x, y) = axis.any_orthonormal_pair();
@@ -161,29 +208,35 @@ fn around(axis: Vec3, below_one: f32, turn: f32) -> Vec3 {
 }
 // </solution>
 
-/// Where a rough surface sends a ray that a smooth one would send along `ideal`: at an angle θ to it with a likelihood
-/// that falls with `cosⁿ θ`, `n = 2 / roughness² - 2`, alike on all sides. `normal` is on the side on which the ray goes
-/// on; what would go through the surface is mirrored on it, back to that side. Of unit length; `ideal` itself, bit for
-/// bit, if roughness is 0.
+/// A direction for glossy reflection: a sample of the Phong lobe around `ideal`, the direction for a smooth surface.
 ///
-/// Where the formula lies: `cos θ = u^(1 / (n + 1))` of a slightly rough surface is 1 but for its last digits, and
-/// `√(1 - cos² θ)` knows but a few angles. `-expm1(ln(u) / (n + 1))` is `1 - cos θ` with all its digits.
+/// At an angle θ to `ideal`, up to 90°, the density per solid angle is proportional to `cosⁿ θ`, with
+/// `n = 2 / roughness² - 2`, and the same on all sides. `normal` is on the side to which the ray goes. A direction d
+/// that would go through the surface (`d·normal < 0`) is reflected back to this side: `d - 2 (d·normal) normal`. The
+/// result has unit length. If `roughness` is 0, it is `ideal`, bit for bit.
+///
+/// Pitfall: for a slightly rough surface `cos θ = u^(1 / (n + 1))` is close to 1, and `√(1 - cos² θ)` gives only a few
+/// different angles. `-exp_m1(ln(u) / (n + 1))` is `1 - cos θ` with all its digits.
+///
+/// Slide "DRT: Diffuse reflection".
 pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> Vec3 {
     // <solution>
     if roughness <= 0.0 {
         return ideal;
     }
+    // Choose 1 - cos θ such that cos θ = u^(1 / (n + 1)), and turn by any angle around ideal.
     let exponent = 2.0 / (roughness * roughness) - 2.0;
     let below_one = -(u.x.ln() / (exponent + 1.0)).exp_m1();
     let direction = around(ideal, below_one, u.y);
+    // Reflect a direction below the surface back to its side.
     let above = direction.dot(normal);
     if above < 0.0 { direction - 2.0 * above * normal } else { direction }
     // <stub> todo!("turn ideal by a random angle, and keep it on its side of the surface")
     // </solution>
 }
 
-/// The time slot, from 1 to 16, of the cell in column `x` and row `y`. Cells are divided into blocks of 4 by 4, and in
-/// each block slots are handed out by this table (slide "Temporal Jittering Sampling"):
+/// The time slot, from 1 to 16, of the cell in column `x` and row `y`. Cells form blocks of 4 by 4, and each block has
+/// the slots of this table (slide "Temporal Jittering Sampling"):
 ///
 /// ```text
 ///  7 11  3 14
@@ -195,38 +248,54 @@ pub fn temporal_slot(x: u32, y: u32) -> u32 {
     // <solution>
     const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
     TABLE[y as usize % 4][x as usize % 4]
-    // <stub> todo!("look it up: the row is y, the column x, and blocks repeat")
+    // <stub> todo!("look up the slot: y is the row, x is the column, and blocks repeat")
     // </solution>
 }
 
-/// A moment in slot `slot` (from 1) of `slots` slots of equal length into which `shutter` divides its time, at `u`
-/// within the slot; never before it opens or after it closes.
+/// The time at position `u` of a time slot, for motion blur.
+///
+/// The interval from `shutter.open` to `shutter.close` is divided into `slots` slots of equal length. `slot` counts
+/// them from 1. At `u = 0` the time is the beginning of the slot. The result is in `shutter.open..=shutter.close`,
+/// both ends included.
+///
+/// Pitfall: the rounded sum may lie outside this interval.
+///
+/// Slide "Motion Blur".
 pub fn time_in_shutter(shutter: &Shutter, slot: u32, slots: u32, u: f32) -> f32 {
     // <solution>
     let share = ((slot - 1) as f32 + u) / slots as f32;
     (shutter.open + share * (shutter.close - shutter.open)).clamp(shutter.open, shutter.close)
-    // <stub> todo!("the slots before, and u of this one, between open and close")
+    // <stub> todo!("add u to the number of slots before this one, and scale from open to close")
     // </solution>
 }
 
-/// Where a point is at `time` in `0..=1` that moves evenly from `start` to `end`.
+/// Linear interpolation: the position at `time`, in `0..=1`, of a point that moves from `start` to `end` at constant
+/// speed.
 ///
-/// Where the formula lies: `start + t (end - start)` misses the end by a rounding, and
-/// `(1 - t) start + t end` moves a point that stands still. Be exact at both ends, stand still where nothing moves, and
-/// never leave the way between: boxes rely on it.
+/// The result is exactly `start` at time 0 and exactly `end` at time 1. If `start == end`, it is exactly this point.
+/// Each coordinate is between those of `start` and `end` (both included), because bounding boxes rely on it.
+///
+/// Pitfall: `start + t (end - start)` misses the end by a rounding error, and `(1 - t) start + t end` moves a point
+/// that stands still.
+///
+/// Slide "Motion Blur".
 pub fn lerp(start: Vec3, end: Vec3, time: f32) -> Vec3 {
     // <solution>
     let blended = (1.0 - time) * start + time * end;
     blended.max(start.min(end)).min(start.max(end))
-    // <stub> todo!("blend start and end, and stay between them")
+    // <stub> todo!("interpolate between start and end, and clamp to the box around them")
     // </solution>
 }
 
-/// The box around all places of something that moves evenly from box `start` to box `end`.
+/// The motion bounds: the smallest box around everything that moves linearly from box `start` to box `end`.
+///
+/// It is exact: each coordinate is one of those of `start` and `end`.
+///
+/// Slide "Motion Blur".
 pub fn motion_bounds(start: &Aabb, end: &Aabb) -> Aabb {
     // <solution>
-    // Corners move along straight lines, so whatever lies within both boxes' bounds at the ends does so in between.
+    // Corners move along straight lines, so each coordinate is largest and smallest at one of the two ends.
     Aabb::new(start.min.min(end.min), start.max.max(end.max))
-    // <stub> todo!("where can a corner be between the two?")
+    // <stub> todo!("find the smallest and the largest coordinates of both boxes")
     // </solution>
 }

@@ -1,4 +1,4 @@
-//! A golden table and a picture.
+//! A table and a picture that are compared with stored references.
 
 use checks::broken::Outcome;
 use checks::{Trial, golden, picture};
@@ -14,7 +14,7 @@ pub(super) fn lights(at: Vec3) -> Vec<LightSample> {
     vec![light(vec3(4.0, 5.0, 3.0), vec3(0.9, 0.8, 0.7)), light(vec3(-5.0, 2.0, 4.0), vec3(0.1, 0.2, 0.5))]
 }
 
-/// A point of a unit sphere at the origin, lit by two lights, one of which a second sphere hides from the lower left.
+/// A point of the unit sphere at the origin, lit by two lights. The second light is occluded at the lower left.
 pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
     let surface =
         Surface { point: normal, error: Vec3::splat(4e-7), geometric_normal: normal, shading_normal: normal };
@@ -72,6 +72,6 @@ pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {
         .collect();
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
-    // The points are given, so only light on the horizon may round either way: a few of 4800 pixels.
+    // The points are given, so pixels may differ only where a light is exactly at the horizon: a few of 4800.
     picture::compare("stage4_lit_sphere", &picture::film_of(colors.collect()), &rays, 0.001)
 }

@@ -1,6 +1,7 @@
-//! Stage 4: light and shade.
+//! The checks of stage 4: shading and shadows.
 //!
-//! `normals` · `terms` · `shadows` · `shades` · `gamma` · `golden`
+//! `normals` (the shading normal), `terms` (the diffuse and the specular term), `shadows` (shadow rays), `shades` (the
+//! whole Phong model), `gamma` (bytes), `golden` (a table and a picture).
 
 mod gamma;
 mod golden;

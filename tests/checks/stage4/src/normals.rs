@@ -1,4 +1,4 @@
-//! The normal to shade with.
+//! The shading normal.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -16,7 +16,7 @@ pub(super) fn paste_normal_query(
 }
 
 pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
-    // Smooth normals lean up to a third of the way from the geometric one, and may be of any length and either sign.
+    // An interpolated normal is the geometric one plus up to 0.3 of a unit vector. It has any length and either sign.
     let inputs = (unit(), unit(), unit(), any::<bool>(), any::<bool>(), 1..=8i32).prop_map(
         |(geometric, lean, direction, smooth, back, length)| {
             let bent = (geometric + 0.3 * lean) * length as f32 / 4.0;
@@ -38,12 +38,12 @@ pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let diagnosis = match () {
-                () if same(-expected) => "the normal points away from the viewer",
+                () if same(-expected) => "your normal points away from the viewer: negate it",
                 () if (yours.normalize_or_zero() - expected).length() < 1e-4 => {
-                    "an interpolated normal is shorter than 1: normalise it"
+                    "your normal does not have unit length: normalise the interpolated normal"
                 }
                 () if interpolated.is_some() && same(facing) => {
-                    "the flat normal, though the surface is smooth"
+                    "you return the geometric normal where there is an interpolated one"
                 }
                 () => "",
             };
@@ -61,10 +61,11 @@ pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> Outcome {
                 paste_normal_query(query),
                 yours,
                 Vec3::NEG_Y,
-                "the flat normal, facing the viewer",
+                "the geometric normal, turned to the viewer",
             );
-            return Err(broken
-                .looks_like(Some("an average of zero has no direction: fall back to the geometric normal")));
+            return Err(broken.looks_like(Some(
+                "a normal of length 0 or NaN has no direction: return the geometric normal",
+            )));
         }
     }
     Ok(())

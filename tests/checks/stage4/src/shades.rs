@@ -1,4 +1,4 @@
-//! The whole illumination.
+//! The whole Phong model: the ambient term, and per light the diffuse and the specular term.
 
 use super::terms::{cos_phi, specular};
 use checks::Trial;
@@ -24,7 +24,7 @@ pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
     let lights = prop::collection::vec((light(), any::<bool>()), 0..5);
     (unit(), unit(), colors, 0..=64i32, lights).prop_map(
         |(normal, to_viewer, (ambient, a, d, s), exponent, lights)| {
-            // The viewer stands on the side of the normal.
+            // The viewer is on the side of the normal.
             let to_viewer = if to_viewer.dot(normal) < 0.0 { -to_viewer } else { to_viewer };
             let material = Material {
                 ambient: a.abs(),
@@ -54,7 +54,7 @@ fn term(query: &ShadeQuery, index: usize) -> TermQuery {
     }
 }
 
-/// The diffuse and the specular share of light `index` in double precision, shadows aside.
+/// The diffuse and the specular contribution of light `index` in double precision, without shadows.
 fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
     let light = &query.lights[index];
     let diffuse = query.surface.shading_normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
@@ -63,19 +63,19 @@ fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
     [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term(query, index))]
 }
 
-/// Whether light `index` is at the horizon, or the viewer at right angles to its mirrored direction: there it may or may not
-/// count, and with exponent 0 that is not a small difference.
+/// Whether light `index` is at the horizon, or the viewer is at right angles to the reflected light. There rounding
+/// decides whether the light counts, and with exponent 0 the difference is large.
 fn is_on_edge(query: &ShadeQuery, index: usize) -> bool {
     let term = term(query, index);
     term.normal.dot(term.to_light).abs() < 1e-5 || cos_phi(&term).abs() < 1e-5
 }
 
-/// How far a colour may be off from `right`.
+/// The greatest allowed difference of a channel from `right`.
 fn tolerance(right: DVec3) -> f64 {
     1e-4 * (1.0 + right.abs().max_element())
 }
 
-/// The share of light `index`, shadows aside.
+/// The contribution of light `index` in double precision, without shadows.
 fn share(query: &ShadeQuery, index: usize) -> DVec3 {
     shares(query, index).into_iter().sum()
 }
@@ -122,37 +122,37 @@ fn shade_diagnosis(
     };
     let one = |light: Option<&usize>| light.is_some_and(|&light| same(share(query, light) + ambient));
     match () {
-        () if color.is_nan() => "NaN: a negative cosine to a broken power?",
-        () if same(expected - ambient) => "the ambient part is missing",
+        () if color.is_nan() => "your colour is NaN: is a negative cosine raised to a fractional power?",
+        () if same(expected - ambient) => "the ambient term A·ka is missing",
         () if visible.len() < query.lights.len() && same(expected_color(query, |_| true)) => {
-            "hidden lights shine as well: multiply by V_i"
+            "you add lights that are occluded: multiply by V_i"
         }
         () if visible.len() < query.lights.len()
             && same(expected_color(query, |light| !query.visible[light])) =>
         {
-            "visible and hidden are swapped"
+            "you add the occluded lights and leave out the visible ones"
         }
-        () if same(expected.min(DVec3::ONE)) => "the colour is cut off at 1: that is for the picture to do",
-        () if same(only(1)) => "the diffuse part is missing",
-        () if same(only(0)) => "the specular part is missing",
+        () if same(expected.min(DVec3::ONE)) => "you clamp the colour to 1: return it without a clamp",
+        () if same(only(1)) => "the diffuse term is missing",
+        () if same(only(0)) => "the specular term is missing",
         () if one(visible.first()) || one(visible.last()) => {
-            "one light counts, the first light or the last: add up all of them"
+            "you count one light, the first or the last: add up all lights"
         }
         () if same(expected_color(&white, |light| query.visible[light])) => {
-            "the colour of the light is left out"
+            "you leave out the radiance of the light"
         }
-        () if same(ambient + (expected - ambient) * kd) => "the light is multiplied by kd twice",
+        () if same(ambient + (expected - ambient) * kd) => "you multiply the light by kd twice",
         () if same(expected + (query.lights.len().max(1) - 1) as f64 * ambient) => {
-            "the ambient part is added for each light: it counts once"
+            "you add the ambient term once per light: add it once"
         }
         () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
-            "too bright: is the cosine left out, or a light counted that is behind the surface?"
+            "your colour is too bright: is the cosine missing, or do you add a light behind the surface?"
         }
         () => "",
     }
 }
 
-/// A surface with two lights on which each part and each way to go wrong gives another colour.
+/// A surface with two lights for which every known mistake gives a different colour.
 fn drawn(brightness: f32, visible: [bool; 2]) -> ShadeQuery {
     let light = |direction: Vec3, radiance: Vec3| LightSample { direction, distance: 2.0, radiance };
     let material = Material {
@@ -203,8 +203,8 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
     });
     trial.forall(2000, queries, |queries| {
         compare(queries, trial.kit.shade(queries), |query, yours| {
-            // A light needs a ray if it has a share to give that the colour shows: a cosine to the power of 32 may be 0 in
-            // single precision, and what is darker than colours are judged to may be left out.
+            // A light needs a ray if its contribution is above the tolerance of colours, because a cosine to the power
+            // of 32 may be 0 in single precision.
             let cosine = |light: usize| query.lights[light].direction.dot(query.surface.shading_normal);
             let shows = |light: usize| share(query, light).max_element() > tolerance(DVec3::ZERO);
             let needed: Vec<usize> =
@@ -220,10 +220,10 @@ pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome
                 && query.material.specular == Vec3::ZERO
                 && !traced.is_empty();
             let diagnosis = match () {
-                () if twice => "two rays to one light: keep the answer",
-                () if vain => "a ray to a light that is behind the surface or switched off",
-                () if black => "the surface is black: no light changes that, so no ray is needed",
-                () if missed => "a light is counted without asking whether it is visible",
+                () if twice => "you trace two rays to one light: trace one and keep the answer",
+                () if vain => "you trace a ray to a light that is behind the surface or switched off",
+                () if black => "you trace a ray from a black surface: every light adds 0 there",
+                () if missed => "you count a light without asking whether it is visible",
                 () => return Ok(()),
             };
             let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");

@@ -9,19 +9,20 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{LightSample, ShadowQuery, Surface};
 
-/// A point on a surface and a light at `distance` towards `direction`.
+/// A point of a surface, and a light in direction `direction` at distance `distance`.
 pub(super) fn shadow(point: Vec3, normal: Vec3, direction: Vec3, distance: f32, error: f32) -> ShadowQuery {
     let surface =
         Surface { point, error: Vec3::splat(error), geometric_normal: normal, shading_normal: normal };
     ShadowQuery { surface, light: LightSample { direction, distance, radiance: Vec3::ONE } }
 }
 
-/// Points at coordinates of this size, on surfaces in any position, with lights well above the horizon.
+/// Points with coordinates of these sizes (powers of ten), on surfaces in any orientation, with lights well above the
+/// horizon.
 pub(super) fn lit(sizes: std::ops::Range<f32>) -> impl Strategy<Value = ShadowQuery> + Clone {
     (unit(), unit(), rough_point(1.0), magnitude(sizes.start, sizes.end), 1..=64i32).prop_map(
         |(normal, lean, at, size, distance)| {
             let direction = (normal + 0.8 * lean).normalize();
-            // Seven roundings of each coordinate, as for a point of a triangle of this size.
+            // An error bound of seven roundings per coordinate, as for a point of a triangle of this size.
             shadow(size * at, normal, direction, size * distance as f32 / 4.0, 4e-7 * size)
         },
     )
@@ -59,7 +60,7 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
                     format!("direction {}", ray.direction),
                     format!("direction {}", light.direction),
                     if (ray.direction / length + light.direction).length() < 1e-4 {
-                        "the ray goes away from the light"
+                        "your ray goes away from the light: use light.direction"
                     } else {
                         ""
                     },
@@ -67,27 +68,32 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
             }
             let reach = ray.t_max * length;
             let describe = || (format!("ends after {reach}"), format!("just below {}", light.distance));
-            // L2: a light that is a surface of the scene must not shadow itself; what stands near it must.
+            // L2: the surface of the light itself must not occlude it. An object close to the light must.
             match () {
-                () if (length - 1.0).abs() > 1e-3 && reach > light.distance && ray.t_max <= light.distance => Some((
-                    describe().0,
-                    describe().1,
-                    "t counts lengths of the direction: if it is as long as the way, the light is at t = 1",
-                )),
+                () if (length - 1.0).abs() > 1e-3
+                    && reach > light.distance
+                    && ray.t_max <= light.distance =>
+                {
+                    Some((
+                        describe().0,
+                        describe().1,
+                        "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
+                    ))
+                }
                 () if reach == f32::INFINITY => Some((
                     describe().0,
                     describe().1,
-                    "the ray goes on behind the light, where nothing can shadow it: set t_max",
+                    "your ray goes on behind the light, where no object can occlude the light: set t_max",
                 )),
                 () if !(reach < light.distance) => Some((
                     describe().0,
                     describe().1,
-                    "the ray reaches the light, which would shadow itself: end a little before it",
+                    "your ray reaches the light, so the light would occlude itself: end slightly before it",
                 )),
                 () if reach < 0.99 * light.distance => Some((
                     describe().0,
                     describe().1,
-                    "the ray ends too early: what stands before the light is not seen",
+                    "your ray ends too early: it misses objects just in front of the light",
                 )),
                 () => None,
             }
@@ -96,21 +102,21 @@ pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> O
     let sun = shadow(Vec3::ZERO, Vec3::Y, vec3(0.6, 0.8, 0.0), f32::INFINITY, 1e-7);
     judge_shadow_rays(trial, &[sun], |_, ray| {
         (ray.t_max != f32::INFINITY).then(|| {
-            (format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the sun is endlessly far away")
+            (format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the sun is infinitely far away")
         })
     })
     .into_iter()
     .collect()
 }
 
-/// How far above the point, along the normal, the ray begins to count: `(height, bound on the point's error)`.
+/// The height of the ray's start above the point, and the bound on the point's error, both along the normal.
 pub(super) fn start_height(query: &ShadowQuery, ray: &raykata::ray::Ray) -> (f64, f64) {
     let normal = query.surface.geometric_normal.as_dvec3();
     let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
     ((start - query.surface.point.as_dvec3()).dot(normal), query.surface.error.as_dvec3().dot(normal.abs()))
 }
 
-/// Whether the start has moved towards the light, and not along the normal.
+/// Whether the origin was moved along the ray instead of along the normal.
 fn goes_along_the_light(query: &ShadowQuery, ray: &raykata::ray::Ray) -> bool {
     let moved = (ray.origin - query.surface.point).normalize_or_zero();
     let (normal, to_light) = (query.surface.geometric_normal, query.light.direction);
@@ -118,21 +124,21 @@ fn goes_along_the_light(query: &ShadowQuery, ray: &raykata::ray::Ray) -> bool {
 }
 
 pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> Outcome {
-    // R6: the true surface is up to `error` above the point. Sizes from a thousandth to a hundred thousand.
+    // R6: the true surface is up to `error` above the point. Coordinates range from a thousandth to a hundred thousand.
     trial.forall(3000, lit(-3.0..5.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let (height, bound) = start_height(query, ray);
             let diagnosis = match () {
                 () if height == 0.0 => {
-                    "the ray starts on the surface itself, and hits it in half of all cases"
+                    "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
                 }
-                () if height < 0.0 => "the ray starts below the surface",
+                () if height < 0.0 => "your ray starts below the surface: move to the viewer’s side",
                 () if goes_along_the_light(query, ray) => {
-                    "the offset goes along the ray, which may be nearly along the surface: go along the normal"
+                    "you move the origin along the ray: move it along the geometric normal"
                 }
-                () => "a fixed offset is too small here: move by the error of the point, error · |n|",
+                () => "your offset is too small: move by error·|n|, then each coordinate one float outwards",
             };
-            // A hundredth for the rounding of the bound itself.
+            // One per cent of slack for the rounding of the bound itself.
             (height < 0.99 * bound).then(|| {
                 (format!("starts {height:.3e} above the point"), format!("{bound:.3e} or more"), diagnosis)
             })
@@ -144,14 +150,14 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> Outcome {
     trial.forall(3000, lit(-3.0..5.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let (height, bound) = start_height(query, ray);
-            // 64 steps of the largest coordinate: anything farther away than that must be seen.
+            // 64 float steps of the largest coordinate: the ray must hit any object farther away than that.
             let size = f64::from(query.surface.point.abs().max_element());
             let most = 64.0 * 2.0 * checks::double::U * size + 4.0 * bound;
             (height > most).then(|| {
                 (
                     format!("starts {height:.3e} above the point"),
                     format!("at most {most:.3e}"),
-                    "a fixed offset is too large here: what touches the surface casts no shadow on it",
+                    "your offset is too large here: the ray misses objects that nearly touch the surface",
                 )
             })
         })
@@ -172,11 +178,11 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
                 "the definition",
             )
             .looks_like(Some(
-                "the light is behind the surface: no ray is needed to know that it adds nothing",
+                "you trace a ray to a light behind the surface, which adds nothing: return None",
             ))),
         })
     })?;
-    // Exactly along the surface, or along the interpolated one, light adds nothing either.
+    // Light exactly parallel to the surface, by either normal, adds nothing either.
     let along = shadow(Vec3::ZERO, Vec3::Y, Vec3::X, 5.0, 1e-6);
     let lean = vec3(-0.6, 0.8, 0.0);
     let mut along_smooth = shadow(Vec3::ZERO, Vec3::Y, vec3(0.8, 0.6, 0.0), 5.0, 1e-6);
@@ -187,7 +193,7 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
         if trial.kit.shadow_ray(&[query])[0].is_some() {
             return Err(Broken::with_texts(query.call("shadow_ray"), "a ray", "None", "the definition")
                 .looks_like(Some(
-                    "the light shines exactly along the surface: its cosine is 0, so it adds nothing",
+                    "you trace a ray to a light whose cosine with a normal is 0: return None",
                 )));
         }
     }
@@ -196,6 +202,6 @@ pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
     match trial.kit.shadow_ray(&[dark])[0] {
         None => Ok(()),
         Some(_) => Err(Broken::with_texts(dark.call("shadow_ray"), "a ray", "None", "the definition")
-            .looks_like(Some("a light that is switched off needs no ray"))),
+            .looks_like(Some("you trace a ray to a light of radiance 0, which adds nothing: return None"))),
     }
 }

@@ -1,4 +1,4 @@
-//! Diffuse light and the highlight.
+//! The diffuse and the specular term.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -12,7 +12,7 @@ use raykata::kit::TermQuery;
 pub(super) fn terms() -> impl Strategy<Value = TermQuery> + Clone {
     (unit(), unit(), unit(), 0..=64i32, any::<bool>()).prop_map(
         |(normal, to_light, to_viewer, exponent, aim)| {
-            // Half of the viewers stand near the mirrored light, or there would be no highlight to judge.
+            // Half of the viewers are near the reflected light, so that there are highlights to judge.
             let mirrored = 2.0 * normal.dot(to_light) * normal - to_light;
             let to_viewer = if aim { (mirrored + 0.3 * to_viewer).normalize() } else { to_viewer };
             TermQuery { normal, to_light, to_viewer, exponent: exponent as f32 / 2.0 }
@@ -34,19 +34,19 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
             let expected = cosine.max(0.0) as f32;
             let diagnosis = match () {
                 () if (f64::from(yours) - cosine).abs() < 1e-6 => {
-                    "a light behind the surface adds nothing; it must not subtract: clamp at 0"
+                    "you return a negative cosine for a light behind the surface: return at least 0"
                 }
                 () if (f64::from(yours) - cosine.abs()).abs() < 1e-6 => {
-                    "a light behind the surface lights it: clamp at 0, do not take the absolute value"
+                    "you return the absolute value: a light behind the surface gives 0"
                 }
-                () if yours == 1.0 => "the cosine is missing",
+                () if yours == 1.0 => "you return 1: the cosine is missing",
                 () if yours == 0.0 && cosine > 0.0 => {
-                    "a light in front of the surface gives nothing: is its direction turned around?"
+                    "you return 0 for a light in front of the surface: is a direction negated?"
                 }
                 () => "",
             };
             let input = paste_term("diffuse_term", query);
-            // Three products and two sums of numbers up to 1.
+            // The tolerance covers three products and two sums of numbers up to 1.
             if (yours - expected).abs() < 1e-6 {
                 Ok(())
             } else {
@@ -54,7 +54,7 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
             }
         })
     };
-    // First a light in front: from behind, a wrong sign and an absolute value look alike.
+    // Begin with a light in front: behind the surface a wrong sign and an absolute value give the same answer.
     let (to_light, to_viewer) = (vec3(0.6, 0.8, 0.0), Vec3::Y);
     judge(&[TermQuery { normal: Vec3::Y, to_light, to_viewer, exponent: 1.0 }])
         .into_iter()
@@ -62,7 +62,7 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, terms(), judge)
 }
 
-/// The cosine of the angle between the mirrored light and the viewer, in double precision.
+/// The cosine of the angle between the reflected light and the viewer, in double precision.
 pub(super) fn cos_phi(query: &TermQuery) -> f64 {
     let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
     (2.0 * n.dot(l) * n - l).dot(v)
@@ -76,7 +76,7 @@ pub(super) fn specular(query: &TermQuery) -> f64 {
 }
 
 pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> Outcome {
-    // First a highlight for which each way to go wrong gives another number.
+    // Begin with a highlight for which every known mistake gives a different number.
     let drawn = TermQuery {
         normal: Vec3::Y,
         to_light: vec3(0.6, 0.8, 0.0),
@@ -92,10 +92,10 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
         let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
         let exponent = f64::from(query.exponent);
         let expected = specular(query);
-        // A cosine near 0 decides between 0 and 1 for exponent 0.
+        // For exponent 0 the sign of a cosine near 0 decides between 0 and 1, so either answer passes.
         let cos_phi = cos_phi(query);
         let edge = n.dot(l).abs() < 1e-5 || cos_phi.abs() < 1e-5;
-        // The cosine is off by a few roundings, and the power makes n cosⁿ⁻¹ φ times as much of that: for roots more than n.
+        // The cosine is off by a few roundings. The power multiplies this by n cosⁿ⁻¹ φ, which exceeds n for n < 1.
         let steep = if cos_phi > 0.0 { exponent * cos_phi.powf(exponent - 1.0).max(1.0) } else { exponent };
         if edge || (f64::from(yours) - expected).abs() < 1e-6 * (1.0 + steep) {
             return Ok(());
@@ -103,16 +103,18 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
         let near = |value: f64| (f64::from(yours) - value).abs() < 1e-5 * (1.0 + exponent);
         let power = |cosine: f64| cosine.max(0.0).powf(exponent);
         let diagnosis = match () {
-            () if yours.is_nan() => "a negative cosine to a broken power is NaN: clamp it first",
-            () if n.dot(l) <= 0.0 => "the light is behind the surface: no highlight",
+            () if yours.is_nan() => "a negative cosine to a fractional power is NaN: return 0 first",
+            () if n.dot(l) <= 0.0 => "you return a highlight for a light behind the surface: return 0",
             () if near(power((l + v).normalize().dot(n))) => {
-                "the half-vector form (Blinn); the notes mirror the light (Phong)"
+                "you use the half vector (Blinn-Phong): the lecture reflects the light (Phong)"
             }
-            () if near(power(n.dot(l))) => "φ is the angle between mirrored light and viewer, not θ",
-            () if near(cos_phi) => "the exponent is left out",
-            () if near(power((n.dot(l) * n - l).dot(v))) => "the 2 of 2 (n·l) n - l is left out",
+            () if near(power(n.dot(l))) => {
+                "you use θ: φ is the angle between the reflected light and the viewer"
+            }
+            () if near(cos_phi) => "you leave out the exponent",
+            () if near(power((n.dot(l) * n - l).dot(v))) => "you leave out the factor 2 of 2 (n·l) n - l",
             () if yours == 0.0 && cos_phi > 0.0 => {
-                "no highlight where there is one: the mirrored direction points into the surface, 2 (n·l) n - l does not"
+                "you return 0 where there is a highlight: the reflected light is 2 (n·l) n - l"
             }
             () => "",
         };
@@ -122,7 +124,7 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
 }
 
 pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> Outcome {
-    // L1: cos φ = -0.5 to an even power is positive, to a broken power NaN; and a light below the horizon.
+    // L1: a negative cos φ to an even power is positive, to a fractional power NaN. Some lights are below the horizon.
     let below = vec3(0.6, -0.8, 0.0);
     let aside = vec3(0.8, 0.6, 0.0);
     let queries: Vec<TermQuery> = [0.0, 2.0, 2.5, 32.0]
@@ -131,7 +133,7 @@ pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> Outcome {
             [
                 TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(-0.6, 0.8, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(0.6, 0.8, 0.0), exponent },
-                // Here cos φ is positive, and only cos θ says that the light is below the horizon.
+                // Here cos φ is positive. Only cos θ shows that the light is below the horizon.
                 TermQuery { normal: Vec3::Y, to_light: below, to_viewer: vec3(-0.96, 0.28, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: aside, to_viewer: vec3(0.8, -0.6, 0.0), exponent },
                 TermQuery { normal: Vec3::Y, to_light: aside, to_viewer: vec3(0.96, 0.28, 0.0), exponent },
@@ -142,7 +144,7 @@ pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> Outcome {
         if yours != 0.0 {
             let broken = Broken::new(paste_term("specular_term", query), yours, 0.0, "closed form");
             return Err(broken.looks_like(Some(
-                "cos φ < 0, or the light is behind the surface: the highlight is 0, whatever the power",
+                "return 0 where cos φ < 0 or the light is behind the surface, for every exponent",
             )));
         }
     }

@@ -1,4 +1,4 @@
-//! How much of the light is mirrored.
+//! The Fresnel reflectance.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -15,7 +15,7 @@ fn queries() -> impl Strategy<Value = FresnelQuery> + Clone {
     })
 }
 
-/// `cos θ2`; `None` beyond the critical angle. The second number says how far from that the answer is.
+/// `cos θ2`, `None` beyond the critical angle; and cos² θ2, which is 0 at the critical angle.
 fn behind(query: &FresnelQuery) -> (Option<f64>, f64) {
     let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
     let squared = 1.0 - (n1 / n2).powi(2) * (1.0 - cosine * cosine);
@@ -51,27 +51,25 @@ fn judge(
 ) -> Vec<Outcome> {
     compare(queries, answers, |query, yours| {
         let expected = reference(query);
-        // Near the critical angle the share rises with the root of the distance to it, and with it the rounding.
+        // Near the critical angle the reflectance and its rounding error change with the root of the distance to it.
         let tolerance = 1e-5 + 4e-6 / behind(query).1.abs().sqrt().max(1e-3);
-        // Equal indices at cos θ = 0: 0/0, and any share is right, but it is a number.
+        // Equal indices at cos θ = 0 give 0/0: any value in 0..=1 passes, and NaN fails.
         let nothing = query.n1 == query.n2 && query.cos_theta == 0.0;
         if (nothing && (0.0..=1.0).contains(&yours)) || (f64::from(yours) - expected).abs() <= tolerance {
             return Ok(());
         }
         let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
         let diagnosis = match () {
-            () if nothing => "0 / 0 along a surface that bends nothing: any share is right, and NaN is none",
-            () if yours.is_nan() => {
-                "NaN beyond the critical angle: all light is mirrored there, the share is 1"
-            }
+            () if nothing => "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1",
+            () if yours.is_nan() => "you return NaN: beyond the critical angle the reflectance is 1",
             () if behind(query).0.is_none() => {
-                "beyond the critical angle all light is mirrored: the share is 1"
+                "beyond the critical angle all light is reflected: the reflectance is 1"
             }
             () if (f64::from(yours) - swapped).abs() <= tolerance => {
-                "n1 and n2 are exchanged, or the cosine is that of the wrong side: it must be the one in the thinner medium"
+                "n1 and n2 are exchanged, or the cosine is wrong: use that in the less dense medium"
             }
             () if (f64::from(1.0 - yours) - expected).abs() <= tolerance => {
-                "that is what goes through; asked is what is mirrored"
+                "you return the transmitted fraction: return the reflected one"
             }
             () => mistakes(query)
                 .into_iter()
@@ -83,7 +81,7 @@ fn judge(
     })
 }
 
-/// What Schlick's formula gives with one thing wrong.
+/// What Schlick's formula gives with one mistake.
 fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
     let r0 = ((n1 - n2) / (n1 + n2)).powi(2);
@@ -91,31 +89,28 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let (right, wrong) = if n1 > n2 { (behind, cosine) } else { (cosine, behind) };
     let formula = |r0: f64, cosine: f64, power: i32| r0 + (1.0 - r0) * (1.0 - cosine).powi(power);
     vec![
-        (
-            formula(r0, wrong, 5),
-            "the cosine is that of the wrong side: it must be the one in the thinner medium",
-        ),
-        (formula(r0, right, 4), "the fourth power: Schlick takes the fifth"),
-        (formula(r0.sqrt(), right, 5), "R0 is not squared"),
-        (r0, "R0 alone, whatever the angle: the share rises to 1 towards flat angles"),
+        (formula(r0, wrong, 5), "you use the cosine of the wrong side: use that in the less dense medium"),
+        (formula(r0, right, 4), "you take the fourth power: Schlick takes the fifth"),
+        (formula(r0.sqrt(), right, 5), "you do not square R0"),
+        (r0, "you return R0 for every angle: the reflectance rises to 1 at grazing angles"),
     ]
 }
 
-/// What Fresnel's equations give with one thing wrong.
+/// What Fresnel's equations give with one mistake.
 fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let [cos_1, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
     let Some(cos_2) = behind(query).0 else { return Vec::new() };
     let ratio = |p: f64, q: f64| (p - q) / (p + q);
     let (s, p) = (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
     vec![
-        (s * s, "one polarisation only: the mean of both"),
-        (p * p, "one polarisation only: the mean of both"),
-        (s * s + p * p, "the sum of both polarisations, not their mean"),
-        (0.5 * (s.abs() + p.abs()), "the ratios are not squared"),
+        (s * s, "you return one polarisation: return the mean of both"),
+        (p * p, "you return one polarisation: return the mean of both"),
+        (s * s + p * p, "you return the sum of both polarisations: return their mean"),
+        (0.5 * (s.abs() + p.abs()), "you do not square the ratios"),
     ]
 }
 
-/// From either side, and beyond the critical angle; all mistakes give different shares there.
+/// Queries from either side, and beyond the critical angle, for which all known mistakes give different answers.
 fn drawn() -> [FresnelQuery; 3] {
     [(0.5, 1.0, 1.5), (0.875, 1.5, 1.0), (0.5, 1.5, 1.0)].map(|(cos_theta, n1, n2)| FresnelQuery {
         cos_theta,

@@ -1,7 +1,7 @@
-//! Stage 5: mirrors and glass.
+//! The checks of stage 5: mirrors and glass.
 //!
-//! `directions` · `fresnel` · `children` (which rays go on) · `weights` (whose decides) · `leaving` (from where) ·
-//! `trees` (what becomes of them, counted)
+//! `directions` (reflection and refraction), `fresnel` (reflectance), `scatter` (secondary rays and their weights),
+//! `weights` (the limit on the weight), `spawn` (origins of secondary rays), `trees` (whole ray trees, counted).
 
 mod directions;
 mod fresnel;

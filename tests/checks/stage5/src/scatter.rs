@@ -1,4 +1,4 @@
-//! Which rays go on from a surface, and what they count.
+//! Which secondary rays leave a surface, and their weights.
 
 use super::directions::arrival;
 use super::fresnel::{exact, schlick};
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use raykata::kit::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
-/// No limit that a check does not ask for.
+/// Limits that end no ray of these checks.
 pub(super) const FAR: Limits = Limits { max_depth: 100, min_contribution: 0.0 };
 
 pub(super) fn paste(query: &ScatterQuery) -> String {
@@ -44,7 +44,7 @@ pub(super) fn find(children: &[SecondaryRay], bounce: Bounce) -> Option<&Seconda
     children.iter().find(|child| child.bounce == bounce)
 }
 
-/// `(n1, n2)` and the mirrored share.
+/// `(n1, n2)`, and the Fresnel reflectance in double precision.
 fn share(query: &ScatterQuery) -> (f32, f32, f64) {
     let index = query.material.index_of_refraction;
     let (n1, n2) = if query.entering { (1.0, index) } else { (index, 1.0) };
@@ -83,7 +83,7 @@ pub(super) fn scatter_weigh_what_the_surface_says(trial: &Trial<'_>) -> Outcome 
     trial.forall(3000, queries(), |queries| judge_weights(trial, queries))
 }
 
-/// A surface that mirrors and lets through, glass that mirrors its share alone, and one channel in each child.
+/// A surface that reflects and transmits; glass that reflects by Fresnel alone; and one channel per secondary ray.
 pub(super) fn drawn() -> [ScatterQuery; 3] {
     let query = |mirror: Vec3, transmission: Vec3, fresnel: Fresnel| ScatterQuery {
         direction: vec3(0.96, -0.28, 0.0),
@@ -107,7 +107,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
         let [weight, mirror, transmission] =
             [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
         let expected = [weight * (mirror + share * transmission), weight * (1.0 - share) * transmission];
-        // Refraction that does not happen, or only just, is another check's business.
+        // Another check judges total internal reflection and angles close to it.
         let sine = (1.0 - f64::from(query.direction.dot(query.normal)).powi(2)).max(0.0).sqrt();
         if f64::from(n1 / n2) * sine > 0.999 {
             return Ok(());
@@ -126,25 +126,27 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
         let through = (1.0 - share) * transmission;
         let diagnosis = match () {
             () if same([mirror + share * transmission, through]) => {
-                "the weight of the ray itself is left out: weights multiply down the tree"
+                "you leave out the weight of the incoming ray: multiply by `weight`"
             }
             () if same([weight * expected[0], weight * expected[1]])
                 || same([weight * expected[0], expected[1]])
                 || same([expected[0], weight * expected[1]]) =>
             {
-                "the weight of the ray is multiplied in twice"
+                "you multiply by the weight of the incoming ray twice"
             }
             () if lost && mirror == DVec3::ZERO && found[0].is_none() && share > 0.0 => {
-                "clear glass mirrors its share F, too: test the weight of the child, not material.mirror"
+                "clear glass reflects by Fresnel: test the reflected weight, not material.mirror"
             }
             () if same([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]) => {
-                "mirror and transmission are swapped"
+                "you exchange material.mirror and material.transmission"
             }
             () if share > 0.0 && same([weight * mirror, weight * transmission]) => {
-                "material.fresnel is left out"
+                "you leave out material.fresnel"
             }
-            () if lost => "a ray is left out that counts in one channel: the largest channel decides",
-            () if share > 0.0 => "the mirrored share F of the transmission moves to the mirrored ray",
+            () if lost => "you leave out a ray with one channel above 0: test the largest channel",
+            () if share > 0.0 => {
+                "with Fresnel: reflection mirror + F transmission, refraction (1 - F) transmission"
+            }
             () => "",
         };
         let [reflected, transmitted] = expected.map(|weight| weight.as_vec3());
@@ -154,9 +156,9 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
     })
 }
 
-const ENTERING: &str = "entering the glass, n1 is the air and n2 the glass";
+const ENTERING: &str = "entering: n1 = 1 (air), n2 = index_of_refraction (glass)";
 
-/// R4: a ray through a pane of glass leaves it in the direction in which it came.
+/// R4: a ray through a pane of glass leaves it in the direction in which it entered.
 pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome {
     let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
     for direction in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
@@ -173,7 +175,8 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
         let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
         super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
         let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
-            let broken = Broken::with_texts(paste(&enter), describe(&inside), "a refracted ray", "glass");
+            let broken =
+                Broken::with_texts(paste(&enter), describe(&inside), "a refracted ray", "into glass");
             return Err(broken.looks_like(Some(ENTERING)));
         };
         let bent = super::directions::snell(&snell).0.map(|direction| direction.as_vec3());
@@ -186,12 +189,12 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
         let outside = trial.kit.scatter(std::slice::from_ref(&leave)).remove(0);
         let out = find(&outside, Bounce::Transmission).map(|child| child.direction);
         if !out.is_some_and(|out| (out - direction).length() < 1e-5) {
-            let broken = Broken::new(paste(&leave), out, Some(direction), "out as it came in");
+            let broken = Broken::new(paste(&leave), out, Some(direction), "as it entered");
             return Err(broken.looks_like(Some(match out {
                 Some(out) if out.dot(leave.normal) > 0.0 => {
-                    "back into the glass: the normal is on the ray's side already, so it must not be turned"
+                    "you turn the normal: it is already on the side that the ray comes from"
                 }
-                _ => "leaving the glass, n1 is the glass and n2 the air",
+                _ => "leaving: n1 = index_of_refraction (glass), n2 = 1 (air)",
             })));
         }
     }
@@ -199,7 +202,7 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
 }
 
 pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> Outcome {
-    // R5: 60° inside of glass. Nothing goes through, and no NaN creeps in by 0 · NaN.
+    // R5: 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
     for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
         let query = ScatterQuery {
             direction: vec3(0.866_025_4, -0.5, 0.0),
@@ -225,19 +228,19 @@ pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> 
             let broken =
                 Broken::with_texts(paste(&query), describe(&yours), expected, "total internal reflection");
             return Err(broken
-                .looks_like(Some("beyond the critical angle no ray goes through, and the share F is 1")));
+                .looks_like(Some("beyond the critical angle: no refracted ray, and Fresnel reflectance 1")));
         }
     }
     Ok(())
 }
 
 pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
-    // R8: a child without weight costs a whole tree of rays that show nothing.
+    // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing.
     let dull = (queries(), 0..3i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },
         1 => ScatterQuery { weight: Vec3::ZERO, ..query },
         _ => {
-            // What is left of a red ray on a blue mirror.
+            // A red ray on a blue mirror: the product is 0.
             let material = Material { mirror: Vec3::Z, transmission: Vec3::ZERO, ..query.material };
             ScatterQuery { weight: Vec3::X, material, ..query }
         }
@@ -247,13 +250,9 @@ pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
             if yours.is_empty() {
                 return Ok(());
             }
-            let broken = Broken::with_texts(
-                paste(query),
-                describe(&yours),
-                "no rays",
-                "what counts nothing shows nothing",
-            );
-            Err(broken.looks_like(Some("a child of weight zero: test the child's own weight")))
+            let broken =
+                Broken::with_texts(paste(query), describe(&yours), "no rays", "weight 0 adds nothing");
+            Err(broken.looks_like(Some("you trace a secondary ray of weight 0: test its own weight")))
         })
     })
 }

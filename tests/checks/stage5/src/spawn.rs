@@ -1,4 +1,4 @@
-//! Where rays start that go on.
+//! The origins of secondary rays.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use raykata::kit::{Bounce, SecondaryRay, Surface};
 use raykata::ray::Ray;
 
-/// A ray that goes on from a surface, and the unit normal on the side to which it goes.
+/// A surface and a secondary ray that leaves it.
 type Leaving = (Surface, SecondaryRay);
 
 fn leaving(point: Vec3, normal: Vec3, lean: Vec3, bounce: Bounce, error: f32) -> Leaving {
@@ -27,12 +27,12 @@ fn side(normal: Vec3, bounce: Bounce) -> Vec3 {
     }
 }
 
-/// Points at coordinates of all sizes, on surfaces in any position.
+/// Points with coordinates of all sizes, on surfaces in any orientation.
 fn at_any_scale() -> impl Strategy<Value = Leaving> + Clone {
     let bounce = prop_oneof![Just(Bounce::Reflection), Just(Bounce::Transmission)];
     (unit(), unit(), rough_point(1.0), magnitude(-3.0, 5.0), bounce).prop_map(
         |(normal, lean, at, size, bounce)| {
-            // Seven roundings of each coordinate, as for a point of a triangle of this size.
+            // An error bound of seven roundings per coordinate, as for a point of a triangle of this size.
             leaving(size * at, normal, lean, bounce, 4e-7 * size)
         },
     )
@@ -47,9 +47,9 @@ fn describe((surface, child): &Leaving) -> String {
     format!("spawn_ray({}, {child})", surface.paste())
 }
 
-/// R6: the slide starts the ray at `hit.Point()`, which is rounded: in half of all cases the ray meets its own surface.
+/// R6: the slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
 pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome {
-    // A point with a large error, at which mistakes differ most.
+    // Begin with a point with a large error, because known mistakes differ most there.
     let drawn = [Bounce::Reflection, Bounce::Transmission].map(|bounce| {
         leaving(vec3(30.0, -20.0, 10.0), vec3(0.0, 0.6, 0.8), vec3(0.6, 0.0, 0.8), bounce, 1e-3)
     });
@@ -67,40 +67,46 @@ fn judge(query: &Leaving, ray: Ray) -> Outcome {
         return broken(
             format!("direction {}", ray.direction),
             format!("direction {}", child.direction),
-            "the direction is that of the child",
+            "your direction is wrong: use child.direction",
         );
     }
     if ray.t_max != f32::INFINITY {
-        return broken(format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the ray has no end");
+        return broken(
+            format!("t_max = {}", ray.t_max),
+            "t_max = inf".into(),
+            "a secondary ray is infinite: leave t_max infinite",
+        );
     }
     let side = side(surface.geometric_normal, child.bounce).as_dvec3();
     let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * direction;
     let moved: DVec3 = start - surface.point.as_dvec3();
     let height = moved.dot(side);
     let bound = surface.error.as_dvec3().dot(side.abs());
-    let starts = || format!("starts {height:.3e} beyond the point, on the side to which the ray goes");
-    // A hundredth for the rounding of the bound itself.
+    let starts = || {
+        format!("starts {height:.3e} from the point, along the normal of the side into which the ray goes")
+    };
+    // One per cent of slack for the rounding of the bound itself.
     if !(height >= 0.99 * bound) {
         let along = moved.normalize_or_zero();
         let diagnosis = match () {
             () if height == 0.0 => {
-                "the ray starts on the surface itself, and hits it again in half of all cases"
+                "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
             }
             () if height <= -0.99 * bound => {
-                "the ray starts on the other side: what is mirrored stays on the side of the normal, what goes \
-                 through does not"
+                "your ray starts on the wrong side: a reflected ray starts on the side of the normal, a \
+                 refracted ray on the other side"
             }
             () if along.dot(child.direction.as_dvec3()) > 0.99 && along.dot(side) < 0.97 => {
-                "the offset goes along the ray, which may be nearly along the surface: go along the normal"
+                "you move the origin along the ray: move it along the geometric normal"
             }
-            () => "a fixed offset is too small here: move by the error of the point, error · |n|",
+            () => "your offset is too small: move by error·|n|, then each coordinate one float outwards",
         };
         return broken(starts(), format!("{bound:.3e} or more"), diagnosis);
     }
-    // 64 steps of the largest coordinate: anything farther away than that must be seen.
+    // 64 float steps of the largest coordinate: the ray must hit any object farther away than that.
     let most = 64.0 * 2.0 * checks::double::U * f64::from(surface.point.abs().max_element()) + 4.0 * bound;
     if height > most {
-        let diagnosis = "a fixed offset is too large here: what touches the surface is not seen";
+        let diagnosis = "your offset is too large here: the ray misses objects that nearly touch the surface";
         return broken(starts(), format!("at most {most:.3e}"), diagnosis);
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! What becomes of the rays: whole trees, counted, in worlds so simple that every ray's fate is known.
+//! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
 use super::scatter::{FAR, paste};
 use checks::broken::{Broken, Outcome};
@@ -7,10 +7,10 @@ use glam::{Vec3, vec3};
 use raykata::kit::{Bounce, Limits, ScatterQuery};
 use raykata::material::{Fresnel, Material};
 
-/// A tree with more rays than this does not end.
+/// A tree with more rays than this is reported as infinite.
 const TOO_MANY: usize = 20_000;
 
-/// Rays of the tree in a closed room in which every ray meets the same surface at the same slant.
+/// The number of rays in a closed room in which every ray meets the same surface at the same angle.
 fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (usize, ScatterQuery) {
     let first = ScatterQuery {
         direction: vec3(0.6, -0.8, 0.0),
@@ -57,26 +57,26 @@ fn judge(
         return Ok(());
     }
     let describe =
-        |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "a tree without end".into() };
-    let input = format!("a closed room, every ray followed, from\n{}", paste(&first));
+        |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "an infinite tree".into() };
+    let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
     Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
 }
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
-    let depth = "a ray that was mirrored or refracted max_depth times sends none on";
+    let depth = "a ray of depth max_depth has no secondary rays: compare depth with limits.max_depth";
     for (max_depth, expected) in [(0, 1), (1, 3), (2, 7), (5, 63), (10, 2047)] {
         judge(trial, 0.5, 0.5, Limits { max_depth, ..FAR }, expected, depth)?;
     }
-    // R8: dull walls, depth 10: one ray and not 2047.
-    judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "rays of weight zero are followed")
+    // R8: surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
+    judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "you trace rays of weight 0")
 }
 
 pub(super) fn tree_ends_where_children_count_too_little(trial: &Trial<'_>) -> Outcome {
-    // R9: halves down to a hundredth: 1/64 is traced and 1/128 is not. Testing the parent makes 255 rays of 127.
-    let parent = "the weight of the child decides, not that of its parent";
+    // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays.
+    let parent = "you test the weight of the incoming ray: test the secondary ray’s own weight";
     let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
-    // Twenty bounces, 1 + 20 rays, if the limit is not there at all.
-    let left_out = "limits.min_contribution is left out: only the depth ends this";
+    // Without the limit on the weight there are 1 + 20 rays.
+    let left_out = "you leave out limits.min_contribution: only the depth ends the tree";
     let halving = judge(trial, 0.5, 0.0, Limits { max_depth: 20, min_contribution: 0.01 }, 7, parent);
     halving.map_err(|broken| match broken.yours.as_str() {
         "21 rays" => broken.looks_like(Some(left_out)),
@@ -90,25 +90,32 @@ pub(super) fn tree_ends_where_children_count_too_little(trial: &Trial<'_>) -> Ou
         0.5,
         limits(0.5),
         2,
-        "a weight of just min_contribution is traced, and one below is not",
+        "a weight equal to min_contribution is traced, and a smaller one is not",
     )?;
-    // Both limits: whichever comes first.
-    judge(trial, 0.5, 0.5, Limits { max_depth: 3, min_contribution: 0.01 }, 15, "both limits hold")
+    // Both limits hold: the tree ends at the one that is reached first.
+    judge(
+        trial,
+        0.5,
+        0.5,
+        Limits { max_depth: 3, min_contribution: 0.01 },
+        15,
+        "test both limits: depth and weight",
+    )
 }
 
 pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> Outcome {
-    // Perfect mirrors lose nothing: only the depth ends this.
+    // A perfect mirror keeps the whole weight, so only the depth ends the tree.
     judge(
         trial,
         1.0,
         0.0,
         Limits { max_depth: 50, min_contribution: 0.001 },
         51,
-        "the weight never falls: the depth must end it",
+        "the weight stays 1 here: max_depth must end the tree",
     )
 }
 
-/// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution makes this one.
+/// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution gives this tree.
 pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> Outcome {
     let glass = Material {
         transmission: Vec3::ONE,
@@ -127,7 +134,7 @@ pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// Writes the children of a ray that meets the unit sphere at `point`, and theirs.
+/// Writes the secondary rays of a ray that meets the unit sphere at `point`, and theirs, recursively.
 #[allow(clippy::too_many_arguments, reason = "a recursion over plain data")]
 fn follow(
     trial: &Trial<'_>,
@@ -141,7 +148,7 @@ fn follow(
 ) {
     let normal = if entering { point } else { -point };
     let limits = Limits { max_depth: 4, min_contribution: 0.001 };
-    // Who forgets the depth has been seen to, and need not be followed to the end of the stack.
+    // Stop where a solution ignores the depth limit, because another check reports that mistake.
     if depth > 2 * limits.max_depth || text.len() > 10_000 {
         text.push_str("…\n");
         return;
@@ -155,7 +162,7 @@ fn follow(
         let fate = if goes_in { "to the sphere" } else { "away" };
         text.push_str(&format!("{indent}{:?} {:.3} {fate}\n", child.bounce, child.weight.x));
         if goes_in {
-            // Inside, the next hit is the other end of the chord.
+            // Inside the sphere, the next hit is the other end of the chord.
             let next = point - 2.0 * point.dot(child.direction) * child.direction;
             follow(trial, glass, next.normalize(), child.direction, false, child.weight, depth + 1, text);
         }

@@ -1,4 +1,4 @@
-//! Whose weight decides about a ray.
+//! The weight that decides whether a secondary ray is traced.
 
 use super::scatter::{FAR, drawn, find, paste, queries};
 use checks::Trial;
@@ -9,12 +9,12 @@ use proptest::prelude::*;
 use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
-/// X8: it is the child's own weight that counts, not that of its parent, and each child's by itself.
+/// X8: a secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.
 pub(super) fn scatter_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
     let [slanted, ..] = drawn();
     let (direction, normal) = (slanted.direction, slanted.normal);
-    // Eighths, so that weights are exact and often just what is asked for; an index of 1, so that nothing is bent or
-    // mirrored back.
+    // Weights are exact and often equal to the limit, because they are products of eighths. The index is 1, so that
+    // there is no total internal reflection.
     let queries = (queries(), 0..=64i32).prop_map(move |(query, least)| ScatterQuery {
         direction,
         normal,
@@ -52,19 +52,21 @@ fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
     let off = usize::from(found[0] == counts[0]);
     let (weight, other) = (weights[off], weights[1 - off]);
     let diagnosis = match (found[off], weight) {
-        (true, 0.0) => "a child of weight zero: it shows nothing, so no ray for it",
+        (true, 0.0) => "you trace a secondary ray of weight 0, which adds nothing",
         (true, _) if other >= least && parent.max_element() >= least => {
-            "the weight of its parent, or of the other child, is tested: each child counts by its own"
+            "you test the weight of the incoming ray or of the other secondary ray: test each ray’s own"
         }
         (true, _) if parent.max_element() >= least => {
-            "the weight of its parent is tested, not its own: the ray is traced in vain"
+            "you test the weight of the incoming ray: test the secondary ray’s own weight"
         }
-        (true, _) => "min_contribution is left out",
-        (false, _) if weight == least => "a weight of just min_contribution is enough",
+        (true, _) => "you leave out min_contribution",
+        (false, _) if weight == least => {
+            "you leave out a ray whose weight is equal to min_contribution: trace it"
+        }
         (false, _) if other < least => {
-            "the weight of the other child is tested: each child counts by its own"
+            "you test the weight of the other secondary ray: test each ray’s own weight"
         }
-        (false, _) => "a ray is left out that counts in one channel: the largest channel decides",
+        (false, _) => "you leave out a ray with one channel at the limit or above: test the largest channel",
     };
     let kind = ["Reflection", "Transmission"][off];
     let verdict =

@@ -1,4 +1,4 @@
-//! Places on lights.
+//! Points of area lights.
 
 use super::lens::{polar, uneven_disk};
 use checks::Trial;
@@ -16,7 +16,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
     let answers = trial.kit.sample_rectangle(&queries);
     let mut shares = Vec::new();
     for (query, point) in queries.iter().zip(answers) {
-        // Solved for the shares of both edges: the second one alone reaches along z.
+        // Solve for the fractions of both edges. Only the second edge has a z component.
         let from_corner = point.as_dvec3() - corner.as_dvec3();
         let v = from_corner.z / 2.0;
         let u = (from_corner.x - 0.5 * v) / 3.0;
@@ -38,10 +38,10 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
                 (1.0 - query.u.x - query.u.y) * corner + query.u.x * edges.0 + query.u.y * edges.1;
             let diagnosis = match () {
                 () if (point - to_corners).length() < 1e-5 => {
-                    "edges are ways from the corner, not the places of other corners"
+                    "you use the edges as positions of corners: they are vectors from the corner"
                 }
                 () if (-1.0..1.0).contains(&u) && (-1.0..1.0).contains(&v) => {
-                    "the corner is not the middle of the rectangle"
+                    "you use the corner as the centre of the rectangle"
                 }
                 () => "",
             };
@@ -50,9 +50,9 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
         shares.push((u, v));
     }
     covers_evenly("sample_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
-        // 28 of 64 cells lie beyond the diagonal.
+        // 28 of the 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
-        if hit == 36 { "a triangle: half of the rectangle is left out" } else { "" }
+        if hit == 36 { "your points fill a triangle: half of the rectangle is missing" } else { "" }
     })
 }
 
@@ -65,7 +65,7 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
     let mut places = Vec::new();
     for (u, point) in u.iter().zip(trial.kit.sample_light_disk(&queries)) {
         let offset = point - disk.center;
-        // A few roundings of coordinates up to 5.
+        // The tolerance covers a few roundings of coordinates up to 5.
         if !(offset.dot(normal).abs() < 5e-6 && offset.length() < disk.radius + 5e-6) {
             let input = format!(
                 "sample_light_disk(&Disk {{ center: {}, normal: {}, radius: {} }}, {})",
@@ -77,10 +77,10 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
             let beside = !(offset.dot(normal).abs() < 5e-6);
             let diagnosis = match () {
                 () if beside && (offset.y == 0.0 || offset.z == 0.0) => {
-                    "the normal is left out: the disk lies flat, whatever its position"
+                    "you leave out the normal: your disk is parallel to a coordinate plane"
                 }
-                () if beside => "beside the plane of the disk: normal need not be of unit length",
-                () => "farther from the centre than its radius",
+                () if beside => "your point is outside the plane of the disk: normalise disk.normal first",
+                () => "your point is farther from the centre than the radius",
             };
             let broken = Broken::new(input, point, "a point of the disk", "the definition");
             return Err(broken.looks_like(checks::judge::known(diagnosis)));
@@ -90,8 +90,8 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
     covers_evenly("sample_light_disk(…, u)", &places, ["radius²", "angle"], uneven_disk)
 }
 
-/// The directions to a sphere, as shares of the solid angle under which it is seen: from its middle to its rim, and
-/// around it.
+/// The directions to a sphere as two fractions of its solid angle: from the axis of the cone to its rim, and around the
+/// axis.
 fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, Broken> {
     let queries: Vec<SphereSampleQuery> =
         pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { sphere, from, u }).collect();
@@ -103,12 +103,12 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
     let mut shares = Vec::new();
     for (query, direction) in queries.iter().zip(trial.kit.sample_sphere(&queries)) {
         let toward = direction.as_dvec3();
-        // 1 - cos θ from the sine, which keeps the digits of small angles.
+        // Compute 1 - cos θ from the sine, which is precise for small angles.
         let sine_squared = toward.cross(axis).length_squared();
         let cosine = toward.dot(axis);
         let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
         let share = below_one / widest;
-        // The direction is rounded: 1e-7 of an angle of √(2 · widest).
+        // The tolerance covers the rounding of the direction: 1e-7 of an angle of √(2 · widest).
         let slack = 4e-7 / widest.sqrt();
         let unit = (toward.length() - 1.0).abs() < 1e-5;
         if !(unit && share <= 1.0 + slack) {
@@ -121,9 +121,9 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
             );
             let broken = Broken::new(input, direction, "a unit direction to the sphere", "the definition");
             let diagnosis = match () {
-                () if direction.is_nan() => "NaN: 1 - sin² is below 0 from inside the sphere",
-                () if !unit => "not of unit length",
-                () => "this way misses the sphere",
+                () if direction.is_nan() => "you return NaN: from inside the sphere 1 - sin² is negative",
+                () if !unit => "your direction does not have unit length",
+                () => "your direction misses the sphere",
             };
             return Err(broken.looks_like(Some(diagnosis)));
         }
@@ -132,7 +132,7 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
     Ok(shares)
 }
 
-const AXES: [&str; 2] = ["1 - cos θ, as a share of the rim's", "the angle around the centre"];
+const AXES: [&str; 2] = ["1 - cos θ, as a fraction of the rim’s", "the angle around the axis"];
 
 pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
     let sphere = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
@@ -141,28 +141,33 @@ pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
     covers_evenly("sample_sphere from 1.25 radii away", &shares, AXES, |counts| {
         let rings = columns(counts);
         if rings[7] == 0 {
-            "part of the sphere is never asked: it is seen up to its rim, where sin θ is radius / distance"
+            "you never sample the rim of the sphere, where sin θ = radius / distance"
         } else if 2 * rings[0] > 3 * rings[7] {
-            "crowded in the middle: slices of equal height, not rings of equal width, have equal area"
+            "too many directions near the centre: make cos θ uniform"
         } else if 2 * rings[7] > 3 * rings[0] {
-            "crowded at the rim"
+            "too many directions near the rim"
         } else {
             ""
         }
     })?;
-    // The light that a surface facing the sphere gets: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
+    // The irradiance of a surface that faces the sphere: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
     let cos_rim = 0.6; // its sine is 2.4 / 3
     let cosines: Vec<f64> = shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
-    has_mean("the cosine of sample_sphere with the way to the centre", &cosines, 0.5 * (1.0 + cos_rim), "")
+    has_mean(
+        "the cosine of sample_sphere with the direction to the centre",
+        &cosines,
+        0.5 * (1.0 + cos_rim),
+        "",
+    )
 }
 
 pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> Outcome {
-    // Ten thousand radii away: 1 - cos θ of its rim is 5e-9, and f32 does not know it from 0.
+    // Ten thousand radii away 1 - cos θ of the rim is 5e-9, so cos θ is rounded to 1 in f32.
     let sphere = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
-    let rounded = "1 - cos θ is rounded to 0 and all directions to one: take sin²θ / (1 + cos θ)";
+    let rounded = "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)";
     let shares = seen(trial, sphere, Vec3::ZERO)?;
     covers_evenly("sample_sphere from 10,000 radii away", &shares, AXES, |counts| {
-        // Directions are rounded to a thousandth of the rim's angle, which moves none by more than a cell.
+        // Directions are rounded to a thousandth of the rim's angle, which moves no direction by more than a cell.
         if counts.iter().max() > Some(&(SAMPLES as u64 / 8)) { rounded } else { "" }
     })
 }
@@ -172,20 +177,25 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> Outcom
     let shares = seen(trial, sphere, vec3(0.5, 0.0, 0.5))?;
     covers_evenly("sample_sphere from inside", &shares, AXES, |counts| {
         let rings = columns(counts);
-        if rings[4..].iter().sum::<u64>() == 0 { "only half of all directions" } else { "" }
+        if rings[4..].iter().sum::<u64>() == 0 {
+            "your directions fill one hemisphere: from inside use all directions"
+        } else {
+            ""
+        }
     })?;
-    // From its very middle no direction is special, and none may be NaN.
+    // From the centre any unit direction passes, and NaN fails.
     let query = SphereSampleQuery { sphere, from: sphere.center, u: Vec2::splat(0.25) };
     let direction = trial.kit.sample_sphere(&[query])[0];
     if (direction.length() - 1.0).abs() < 1e-5 {
         return Ok(());
     }
     let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
-    Err(Broken::new(input, direction, "any unit direction", "the definition")
-        .looks_like(direction.is_nan().then_some("the way to the centre has no direction")))
+    Err(Broken::new(input, direction, "any unit direction", "the definition").looks_like(
+        direction.is_nan().then_some("from the centre the vector to the centre is 0: use any axis"),
+    ))
 }
 
-/// The share of a sphere that is seen past the straight edge of a wall.
+/// The fraction of a sphere that is visible past the straight edge of a wall.
 pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
     let sphere = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
     let queries: Vec<SphereSampleQuery> = pairs(trial.seed, SAMPLES)
@@ -199,10 +209,10 @@ pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
             .map(|direction| f64::from(u8::from(direction.as_dvec3().dot(normal) > 0.0)))
             .collect();
         has_mean(
-            "sample_sphere past a wall that hides just half of the sphere",
+            "sample_sphere past a wall that hides exactly half of the sphere",
             &seen,
             0.5,
-            "one side of the sphere is asked more often than the other",
+            "you sample one side of the sphere more often than the other",
         )?;
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Rays through a lens.
+//! Rays through a thin lens.
 
 use super::pixels::unit_number;
 use checks::Trial;
@@ -12,21 +12,21 @@ use raykata::camera::{Camera, Lens};
 use raykata::kit::LensQuery;
 use raykata::ray::Ray;
 
-/// Random places on the disk, with the square of their distance from the middle and their angle as shares of 1.
+/// The squared distance of a point of the unit disk from the centre, and its angle as a fraction of a full turn.
 pub(super) fn polar(place: Vec2) -> (f64, f64) {
     let (x, y) = (f64::from(place.x), f64::from(place.y));
     (x * x + y * y, y.atan2(x) / std::f64::consts::TAU + 0.5)
 }
 
-/// What is wrong with a disk that is not covered evenly, by its rings of equal area from the middle outwards.
+/// What is wrong with a distribution on a disk, by the counts in rings of equal area from the centre outwards.
 pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
     let rings = columns(counts);
     if rings[7] == 0 {
-        "only the middle of the disk: all up to its radius belongs to it, and the radius is no diameter"
+        "you fill only the inner part of the disk: points must reach up to its radius"
     } else if rings[0] > 2 * rings[7] {
-        "crowded in the middle: area grows with the square of the radius, so take the root of u"
+        "too many points near the centre: use √u as the radius, because area grows with its square"
     } else if rings[7] > 2 * rings[0] {
-        "crowded at the rim"
+        "too many points near the rim"
     } else {
         ""
     }
@@ -36,11 +36,13 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
     let u = pairs(trial.seed, SAMPLES);
     let places = trial.kit.sample_disk(&u);
     for (u, place) in u.iter().zip(&places) {
-        // A radius of 1 and a few roundings.
+        // The tolerance covers a few roundings of a radius of 1.
         if !(place.length() <= 1.0 + 1e-6) {
             let broken =
                 Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
-            return Err(broken.looks_like(Some("outside the disk: corners of the square are not on it")));
+            return Err(broken.looks_like(Some(
+                "your point is outside the disk: the corners of the square are outside it",
+            )));
         }
     }
     let polar: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
@@ -51,14 +53,16 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
     let numbers = (unit_number(), unit_number()).prop_map(|(x, y)| vec2(x, y));
-    // The middle of the square and its diagonals are where formulas divide by 0.
+    // Formulas divide by 0 at the middle of the square and on its diagonals.
     let corners = [0.0, 0.25, 0.5, 0.75].map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)]);
     let judge = |queries: &[Vec2]| {
         compare(queries, trial.kit.sample_disk(queries), |u, yours| {
             if yours.length() <= 1.0 + 1e-6 {
                 return Ok(());
             }
-            let nan = yours.is_nan().then_some("0 / 0: the middle of the square is a place, too");
+            let nan = yours
+                .is_nan()
+                .then_some("you divide 0 by 0 for the middle of the square: return (0, 0) there");
             Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
                 .looks_like(nan))
         })
@@ -69,10 +73,10 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
 
 fn camera(position: Vec3) -> Camera {
     let camera = Camera::new(position, vec3(0.6, -0.48, -0.64), Vec3::Y, 60.0, 1.5);
-    camera.expect("it does not look straight up")
+    camera.expect("the view direction is not parallel to up")
 }
 
-/// A lens anywhere on the film of a camera at `position`.
+/// Lens rays for any point of the film of a camera at `position`.
 fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
     let place = || (-8..=8i32).prop_map(|eighths| eighths as f32 / 8.0);
     let on_lens = (place(), place()).prop_map(|(x, y)| vec2(x, y).clamp_length_max(1.0));
@@ -117,17 +121,17 @@ pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
             let near = (yours.direction - query.pinhole.direction).length() < 1e-5
                 && yours.origin == query.pinhole.origin;
             let diagnosis = match () {
-                () if near => "almost: computed anew, the direction is a rounding off; return the pinhole's",
-                () if yours.direction.is_nan() => "NaN",
+                () if near => "you recompute the direction, which adds a rounding error: return *pinhole",
+                () if yours.direction.is_nan() => "you return NaN",
                 () => "",
             };
-            Err(Broken::new(paste(query), yours, query.pinhole, "bit for bit the ray through the middle")
+            Err(Broken::new(paste(query), yours, query.pinhole, "the pinhole ray, bit for bit")
                 .looks_like(known(diagnosis)))
         })
     })
 }
 
-/// Where a ray meets the plane of focus, seen from the camera, in double precision.
+/// Where a ray meets the focal plane, relative to the camera, in double precision.
 fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
     let towards = query.camera.towards.as_dvec3();
     let start = ray.origin.as_dvec3() - query.camera.position.as_dvec3();
@@ -139,7 +143,8 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
     let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
-            // A few roundings of the direction, over the distance; near the rim of a wide lens they are stretched.
+            // The tolerance covers a few roundings of the direction, relative to the distance. A wide lens enlarges
+            // them.
             let off = (found - expected).length() / expected.length();
             if off < 1e-5 {
                 return Ok(());
@@ -150,19 +155,19 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
             let aims =
                 |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
             let diagnosis = match () {
-                () if yours.is_nan_anywhere() => "NaN",
+                () if yours.is_nan_anywhere() => "you return NaN",
                 () if aims(distance * direction - start) => {
-                    "focal_distance along the ray is a sphere: divide it by the cosine with camera.towards"
+                    "you go focal_distance along the ray: divide it by the cosine with camera.towards"
                 }
                 () if aims(distance * direction.dot(towards) * direction - start) => {
-                    "multiplied by the cosine with camera.towards: along the ray it is farther, so divide"
+                    "you multiply focal_distance by the cosine with camera.towards: divide by it"
                 }
                 () if aims(distance * towards - start) => {
-                    "every ray aims at the middle of the plane of focus: aim where its pinhole ray meets it"
+                    "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it"
                 }
-                () if aims(expected + start) => "turned away from the focus: take the offset off",
+                () if aims(expected + start) => "you add the offset to the focus: subtract it",
                 () if aims(direction) => {
-                    "parallel to the ray through the middle: aim at where that ray meets the plane of focus"
+                    "your ray is parallel to the pinhole ray: aim where that meets the focal plane"
                 }
                 () => "",
             };
@@ -170,7 +175,7 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
                 paste(query),
                 format!("a ray that misses by {:.2e}", (found - expected).length()),
                 format!("a ray through camera.position + {:?}", expected.as_vec3()),
-                "the plane of focus",
+                "the focal plane",
             )
             .looks_like(known(diagnosis)))
         })
@@ -179,7 +184,8 @@ pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
 }
 
-/// A ray well off the axis from well off the middle of a wide lens: there all mistakes make different rays.
+/// A ray far from the axis, from a point far from the centre of a wide lens, where all known mistakes give different
+/// rays.
 fn drawn() -> LensQuery {
     let camera = camera(vec3(1.0, 2.0, 3.0));
     LensQuery {
@@ -206,7 +212,7 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
             let camera = &query.camera;
             let place = 0.5 * query.lens.aperture * query.on_lens;
             let expected = camera.position + place.x * camera.right + place.y * camera.up;
-            // Two roundings of coordinates up to 4.
+            // The tolerance covers two roundings of coordinates up to 4.
             let near = |v: Vec3| (yours.origin - v).length() < 2e-6;
             let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
             if near(expected) && unit {
@@ -214,21 +220,26 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
             }
             let double = camera.position + 2.0 * (expected - camera.position);
             let diagnosis = match () {
-                () if !unit => "its direction is not of unit length",
-                () if near(double) => "aperture is the diameter of the opening, not its radius",
-                () if near(camera.position) => "every ray starts in the middle: the lens is a pinhole",
+                () if !unit => "your direction does not have unit length",
+                () if near(double) => "you use aperture as the radius of the lens: it is the diameter",
+                () if near(camera.position) => "you start every ray at the centre of the lens: use on_lens",
                 () if near(camera.position + place.x * camera.right)
                     || near(camera.position + place.y * camera.up) =>
                 {
-                    "a slit: the lens extends along camera.right and along camera.up"
+                    "your lens is a line: it extends along camera.right and along camera.up"
                 }
                 () if near(camera.position + place.extend(0.0)) => {
-                    "along x and y of the world: the lens extends along camera.right and camera.up"
+                    "you use the world’s x and y axes: use camera.right and camera.up"
                 }
                 () => "",
             };
-            Err(Broken::new(paste(query), yours, expected, "its origin is position + aperture / 2 · on_lens")
-                .looks_like(known(diagnosis)))
+            Err(Broken::new(
+                paste(query),
+                yours,
+                expected,
+                "position + aperture / 2 · on_lens, along right and up",
+            )
+            .looks_like(known(diagnosis)))
         })
     };
     judge(&[drawn()]).into_iter().collect::<Outcome>()?;
@@ -236,7 +247,7 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcome {
-    // There numbers are 1/16 apart: the place of the lens is rounded, but the direction need not be.
+    // Near a million f32 numbers are 1/16 apart: the origin is rounded, but the direction can be precise.
     trial.forall(1000, lens_query(vec3(1e6, -1e6, 1e6)), |queries| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let camera = &query.camera;
@@ -244,14 +255,13 @@ pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcom
             let offset = (place.x * camera.right + place.y * camera.up).as_dvec3();
             let focus = in_focus(query, &query.pinhole);
             let expected = (focus - offset).normalize();
-            // A few roundings of the direction.
+            // The tolerance covers a few roundings of the direction.
             if (yours.direction.as_dvec3() - expected).length() < 2e-6 {
                 return Ok(());
             }
             let broken = Broken::new(paste(query), yours.direction, expected.as_vec3(), "double precision");
-            Err(broken.looks_like(Some(
-                "digits were lost in camera.position: take the difference of two places seen from the camera",
-            )))
+            Err(broken
+                .looks_like(Some("your direction is imprecise: compute it relative to camera.position")))
         })
     })
 }

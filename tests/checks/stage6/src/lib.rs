@@ -1,8 +1,9 @@
-//! Stage 6: many rays where one was.
+//! The checks of stage 6: distributed ray tracing.
 //!
-//! `pixels` · `lens` · `lights` · `rough` (surfaces) · `motion`
+//! `pixels` (samples and the filter), `lens` (depth of field), `area_lights`, `rough` (glossy reflection), `motion`
+//! (times and motion blur).
 //!
-//! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million a test.
+//! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million per test.
 
 mod area_lights;
 mod lens;
@@ -35,7 +36,7 @@ use rough::{
     slightly_rough_is_not_a_few_angles, smooth_surfaces_stay_sharp,
 };
 
-/// A direction off a surface, and the normal on its side.
+/// A direction that leaves a surface, and the normal on the side to which it goes.
 fn unit_arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
     (unit(), unit())
         .prop_map(|(ideal, normal)| (ideal, if normal.dot(ideal) < 0.0 { -normal } else { normal }))

@@ -1,4 +1,4 @@
-//! Times, and where things are then.
+//! Times within the shutter interval, and positions of moving objects.
 
 use super::pixels::unit_number;
 use checks::Trial;
@@ -17,7 +17,7 @@ use raykata::kit::{KitError, TimeQuery, kit_error};
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
 
 pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
-    // A block that begins anywhere holds each slot once, because blocks repeat.
+    // Any 4 × 4 cells in a square have each slot once, because blocks repeat.
     for (left, top) in [(0, 0), (4, 8), (1, 3), (1022, 765)] {
         let cells: Vec<(u32, u32)> = (0..16).map(|index| (left + index % 4, top + index / 4)).collect();
         let repeat = "blocks repeat: take x and y modulo 4";
@@ -40,7 +40,7 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
             let diagnosis = match () {
                 () if sorted == (0..16).collect::<Vec<_>>() => "slots are counted from 1",
                 () if left > 0 => repeat,
-                () => "a misprint: some slot is in the table twice, and another is not",
+                () => "your table is wrong: one slot is in it twice, and another is missing",
             };
             return Err(broken.looks_like(Some(diagnosis)));
         }
@@ -49,11 +49,9 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
             if slot != expected {
                 let diagnosis = match () {
                     () if slot == TABLE[x as usize % 4][y as usize % 4] => {
-                        "rows and columns are exchanged: y picks the row"
+                        "you exchange rows and columns: y is the row"
                     }
-                    () if slot == 1 + 4 * (y % 4) + x % 4 => {
-                        "in order, so that neighbours have nearly one time: take the table"
-                    }
+                    () if slot == 1 + 4 * (y % 4) + x % 4 => "you number the slots in order: use the table",
                     () => "",
                 };
                 let input = format!("temporal_slot({x}, {y})");
@@ -96,28 +94,26 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
             let here = share(query.slot);
             let at = |share: f64| open + share * (close - open);
             let expected = at(here);
-            let near = |time: f64| (f64::from(yours) - time).abs() < 3e-7; // a few roundings of numbers up to 1
+            let near = |time: f64| (f64::from(yours) - time).abs() < 3e-7; // a few roundings of 1
             let open_then = (query.shutter.open..=query.shutter.close).contains(&yours);
             if near(expected) && open_then {
                 return Ok(());
             }
             let diagnosis = match () {
-                () if near(expected) => "the shutter is closed then, by a rounding: clamp",
-                () if near(at(share(query.slot + 1))) => {
-                    "slots are counted from 1: slot 1 begins when it opens"
-                }
-                () if near(here) => "a share of the time: scale it to open..close",
-                () if near(expected - open) => "the shutter opens at open, not at 0",
+                () if near(expected) => "your time is outside open..=close by a rounding error: clamp",
+                () if near(at(share(query.slot + 1))) => "you count slots from 0: slot 1 begins at open",
+                () if near(here) => "you return a fraction of the interval: scale it to open..close",
+                () if near(expected - open) => "you start at 0: the shutter opens at open",
                 () if near((open + here * close).clamp(open, close)) => {
-                    "the time while it is open is close - open: open + share * (close - open)"
+                    "you multiply by close: use open + share * (close - open)"
                 }
-                () if near(at(u)) => "the slot is left out: u is the place in the slot",
+                () if near(at(u)) => "you leave out the slot: u is the position in the slot",
                 () => "",
             };
             Err(Broken::new(paste(query), yours, expected, "double precision").looks_like(known(diagnosis)))
         })
     };
-    // A shutter for which all mistakes give different times.
+    // Begin with a shutter for which all known mistakes give different times.
     let drawn = TimeQuery { shutter: Shutter { open: 0.25, close: 0.875 }, slot: 2, slots: 4, u: 0.375 };
     judge(&[drawn]).into_iter().collect::<Outcome>()?;
     trial.forall(3000, queries, judge)
@@ -132,7 +128,7 @@ pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
         .map(|(index, u)| TimeQuery { shutter, slot: 1 + index as u32 % 16, slots: 16, u: u.x })
         .collect();
     let times = trial.kit.time_in_shutter(&queries);
-    // Even over the whole time, and even within each slot as well.
+    // Times must be uniform over the whole interval and within each slot.
     let place = |time: &f32| {
         let share = 2.0 * (f64::from(*time) - 0.25);
         ((16.0 * share).fract(), share)
@@ -140,7 +136,7 @@ pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
     let places: Vec<(f64, f64)> = times.iter().map(place).collect();
     covers_evenly("time_in_shutter in 16 slots", &places, ["the time in its slot", "the time"], |counts| {
         let of_slot = columns(counts);
-        if of_slot.contains(&0) { "not all of a slot is used: u says where in it" } else { "" }
+        if of_slot.contains(&0) { "you do not use the whole slot: u is the position in the slot" } else { "" }
     })
 }
 
@@ -162,10 +158,11 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
             let smaller = yours == query.0.min(query.1);
             match yours == expected {
                 true => Ok(()),
-                false if near => Err(broken()
-                    .looks_like(Some("off by a rounding: start + t (end - start) does not reach the end"))),
+                false if near => {
+                    Err(broken().looks_like(Some("start + t (end - start) has a rounding error at the end")))
+                }
                 false => Err(broken().looks_like(smaller.then_some(
-                    "clamped as if start were the smaller: take start.min(end) and start.max(end)",
+                    "you clamp as if start were below end: use start.min(end) and start.max(end)",
                 ))),
             }
         })
@@ -174,10 +171,8 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, still, |queries| {
         compare(queries, trial.kit.lerp(queries), |query, yours| match yours == query.0 {
             true => Ok(()),
-            false => Err(Broken::new(describe(query), yours, query.0, "what does not move stands still")
-                .looks_like(Some(
-                    "off by a rounding: (1 - t) a + t a is not always a; clamp to what lies between the ends",
-                ))),
+            false => Err(Broken::new(describe(query), yours, query.0, "start, because start equals end")
+                .looks_like(Some("(1 - t) a + t a has a rounding error: clamp between start and end"))),
         })
     })
 }
@@ -190,7 +185,7 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
         compare(queries, trial.kit.lerp(queries), |query, yours| {
             let (start, end, time) = *query;
             let exact = start.as_dvec3().lerp(end.as_dvec3(), f64::from(time));
-            // Three roundings of the larger end.
+            // The tolerance covers three roundings of the larger end.
             let slack = 2e-7 * f64::from(start.abs().max(end.abs()).max_element());
             let near = (yours.as_dvec3() - exact).abs().max_element() <= slack;
             let inside = Aabb::new(start.min(end), start.max(end)).contains(yours);
@@ -201,13 +196,11 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
             let is = |place: DVec3| (yours.as_dvec3() - place).length() <= 2.0 * slack;
             let (start_at, t) = (start.as_dvec3(), f64::from(time));
             let diagnosis = match () {
-                () if near => {
-                    "outside of the box around its ends, by a rounding: the structure would lose it"
-                }
-                () if is(at(1.0 - t)) => "start and end are exchanged",
-                () if is(start_at + t * end.as_dvec3()) => "end is a place, not the way to it",
-                () if is(at(t * t * (3.0 - 2.0 * t))) => "slow at both ends: it moves evenly",
-                () if is(at(0.5)) => "half the way at any time",
+                () if near => "your point is outside the box of both ends by a rounding error: clamp",
+                () if is(at(1.0 - t)) => "you exchange start and end",
+                () if is(start_at + t * end.as_dvec3()) => "you use end as a displacement: it is a position",
+                () if is(at(t * t * (3.0 - 2.0 * t))) => "your speed varies: the motion is linear in time",
+                () if is(at(0.5)) => "you return the midpoint for every time",
                 () => "",
             };
             Err(Broken::new(describe(query), yours, exact.as_vec3(), "double precision, within the ends")
@@ -237,29 +230,29 @@ pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Out
             let way = 0.5 * (end.min + end.max - start.min - start.max);
             let moved = Aabb::new(start.min.min(start.min + way), start.max.max(start.max + way));
             let diagnosis = match () {
-                () if yours == *start => "only where it starts: what moves leaves this box",
-                () if yours == *end => "only where it ends",
+                () if yours == *start => "you return the start box: include the end box",
+                () if yours == *end => "you return the end box: include the start box",
                 () if yours == Aabb::new(0.5 * (start.min + end.min), 0.5 * (start.max + end.max)) => {
-                    "only where it is half way"
+                    "you return the box at half time: include both ends"
                 }
                 () if yours == Aabb::new(start.min.max(end.min), start.max.min(end.max)) => {
-                    "what both boxes have in common: it is in either of them"
+                    "you return the intersection of both boxes: return the box around them"
                 }
                 () if yours == Aabb::new(start.min, end.max) => {
-                    "from the lower corner at the start to the upper one at the end: it may move whatever way"
+                    "you take min from start and max from end: use both boxes for each"
                 }
-                () if yours == moved => "the box of the start, moved: a box that grows or turns is cut",
+                () if yours == moved => "you move the start box: the end box may have another size",
                 () if [0.0, 0.5, 1.0].into_iter().any(|time| outside(at(time))) => {
-                    "part of the way is outside"
+                    "part of the motion is outside your box"
                 }
-                () => "right, but larger than need be",
+                () => "your box is larger than necessary",
             };
             let input = call("motion_bounds", &[start, end]);
             Err(Broken::new(input, yours, expected, "the corners move along straight lines")
                 .looks_like(known(diagnosis)))
         })
     };
-    // A box that moves to all sides and changes its size.
+    // Begin with a box that moves along each axis and changes its size.
     let drawn =
         (Aabb::new(Vec3::ZERO, vec3(1.0, 1.0, 2.0)), Aabb::new(vec3(0.5, -1.0, 1.0), vec3(4.0, 0.5, 1.5)));
     judge(&[drawn]).into_iter().collect::<Outcome>()?;

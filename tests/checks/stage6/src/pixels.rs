@@ -1,4 +1,4 @@
-//! Where the samples of a pixel lie, and what colour they make.
+//! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -11,10 +11,10 @@ use raykata::kit::{FILTER_RADIUS, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
 
-/// The largest random number there is.
+/// The largest random number, just below 1.
 pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
 
-/// A number on a grid of 1/64, which is short to print, or the largest there is.
+/// A multiple of 1/64, which is short to print, or the largest random number.
 pub(super) fn unit_number() -> impl Strategy<Value = f32> + Clone {
     prop_oneof![8 => (0..64i32).prop_map(|n| n as f32 / 64.0), 1 => Just(LARGEST)]
 }
@@ -29,7 +29,7 @@ fn stratum() -> impl Strategy<Value = Stratum> + Clone {
     })
 }
 
-/// A cell in which all mistakes give different places.
+/// A cell for which all known mistakes give different positions.
 const DRAWN: Stratum = Stratum { cell: uvec2(2, 1), grid: uvec2(4, 3), u: vec2(0.25, 0.625) };
 
 pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> Outcome {
@@ -37,28 +37,28 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> Outcome
         compare(queries, trial.kit.jittered(queries), |query, yours| {
             let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
             let expected = (cell + u) / grid;
-            // Two roundings of a number below 1.
+            // The tolerance covers two roundings of a number below 1.
             let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 2e-7;
             if near(expected) && yours.max_element() < 1.0 {
                 return Ok(());
             }
             let diagnosis = match () {
                 () if near(expected) => {
-                    "1 belongs to the next pixel: 3 + 0.99999994 is 4 when rounded, so stay below 1"
+                    "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1"
                 }
-                () if near(u) => "the place in the cell is not scaled to the grid",
-                () if near(u / grid) => "every cell is the first one",
+                () if near(u) => "you return u: add the cell and divide by the grid",
+                () if near(u / grid) => "you leave out the cell: all samples are in the first cell",
                 () if near((cell + 0.5) / grid) || near(cell / grid) => {
-                    "u is not used, and nothing is jittered"
+                    "you do not use u: the sample is not jittered"
                 }
                 () if near((cell + u) / grid.yx())
                     || near((cell + u) / grid.x)
                     || near((cell + u) / grid.y) =>
                 {
-                    "x goes by the columns of the grid, y by its rows"
+                    "divide x by the columns of the grid and y by its rows"
                 }
                 () if near((cell + u.xx()) / grid) || near((cell + u.yy()) / grid) => {
-                    "one random number for both axes"
+                    "you use one random number for both axes: use u.x and u.y"
                 }
                 () => "",
             };
@@ -89,29 +89,25 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> Outcome {
                 Sampler::Jittered => jittered,
                 Sampler::Gaussian => 0.5 + radius * (2.0 * jittered - 1.0),
             };
-            // A few roundings of numbers up to 3.
+            // The tolerance covers a few roundings of numbers up to 3.
             let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 1e-6;
             if near(expected) {
                 return Ok(());
             }
             let diagnosis = match sampler {
-                _ if near(expected - 0.5) => {
-                    "seen from the centre of the pixel, and not from its upper left corner"
-                }
+                _ if near(expected - 0.5) => "your position is relative to the centre of the pixel: add 0.5",
                 Sampler::Gaussian if near(jittered) => {
-                    "only the pixel itself: the bell reaches FILTER_RADIUS from the centre on all sides"
+                    "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides"
                 }
                 Sampler::Gaussian if near(0.5 + radius * (jittered - 0.5)) => {
-                    "half as wide: it reaches from -FILTER_RADIUS to FILTER_RADIUS, twice as far as FILTER_RADIUS"
+                    "half as wide: the square is 2 * FILTER_RADIUS wide"
                 }
                 Sampler::Gaussian if near(0.5 + radius * jittered) => {
-                    "to the right and downwards only: the bell reaches FILTER_RADIUS on all sides"
+                    "you cover only the right and lower part: cover FILTER_RADIUS on all sides"
                 }
-                Sampler::Jittered | Sampler::Gaussian if near(u) => {
-                    "random: take jittered(stratum), which knows its cell"
-                }
+                Sampler::Jittered | Sampler::Gaussian if near(u) => "you return u: use jittered(stratum)",
                 Sampler::Random | Sampler::LowDiscrepancy if near(jittered) => {
-                    "jittered, but u is all: low discrepancy numbers are spread already, random ones are not to be"
+                    "this sampler must return `u` unchanged; your result is jittered"
                 }
                 _ => "",
             };
@@ -125,7 +121,7 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, (samplers, stratum()), judge)
 }
 
-/// The bell along one axis, in double precision.
+/// The filter's weight along one axis, in double precision.
 fn bell(x: f64) -> f64 {
     let radius = f64::from(FILTER_RADIUS);
     ((-2.0 * x * x).exp() - (-2.0 * radius * radius).exp()).max(0.0)
@@ -138,7 +134,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome 
         compare(queries, trial.kit.gaussian_weight(queries), |offset, yours| {
             let (x, y) = (f64::from(offset.x), f64::from(offset.y));
             let expected = bell(x) * bell(y);
-            // The difference of two powers, each rounded: a few units in the last place of 1.
+            // The tolerance covers the rounding of two powers: a few units in the last place of 1.
             let near = |weight: f64| (f64::from(yours) - weight).abs() < 1e-6;
             if near(expected) {
                 return Ok(());
@@ -150,33 +146,35 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome 
             };
             let diagnosis = match () {
                 () if near((-2.0 * (x * x + y * y)).exp()) => {
-                    "cut off like this the bell ends in a step: take e^(-2R²) off along each axis"
+                    "your weight ends in a step at R: subtract e^(-2R²) along each axis"
                 }
                 () if near(bell(x.hypot(y))) => {
-                    "a round bell: one along x times one along y ends in a square"
+                    "your filter is round: multiply a weight along x by a weight along y"
                 }
-                () if near(other(|x| -x * x)) => "too wide: e^(-2x²), not e^(-x²)",
-                () if near(other(|x| -2.0 * x.abs())) => "x is not squared: e^(-2x²)",
-                () if near(bell(x) + bell(y)) => "the sum of two bells: one times the other",
-                () if near(bell(x)) => "y has no part in it: a bell along x times a bell along y",
-                () if near(bell(y)) => "x has no part in it: a bell along x times a bell along y",
+                () if near(other(|x| -x * x)) => "your bell is too wide: it is e^(-2x²), not e^(-x²)",
+                () if near(other(|x| -2.0 * x.abs())) => "you do not square x: e^(-2x²)",
+                () if near(bell(x) + bell(y)) => "you add the two weights: multiply them",
+                () if near(bell(x)) => "you do not use y: multiply the weight along x by that along y",
+                () if near(bell(y)) => "you do not use x: multiply the weight along x by that along y",
                 // The area of e^(-2x²) is √(π / 2).
                 () if near(expected * std::f64::consts::FRAC_2_PI)
                     || near(expected * std::f64::consts::FRAC_2_PI.sqrt()) =>
                 {
-                    "a factor on all weights: filter_pixel divides by their sum, so none is needed"
+                    "you normalise the weight: leave it, because filter_pixel divides by the sum"
                 }
                 () if outside && yours > 0.0 => {
-                    "two factors below 0 make a weight above 0: each is 0 from FILTER_RADIUS on"
+                    "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS"
                 }
-                () if outside && yours < 0.0 => "a weight below 0: each factor is 0 from FILTER_RADIUS on",
+                () if outside && yours < 0.0 => {
+                    "your weight is negative: each factor is 0 beyond FILTER_RADIUS"
+                }
                 () => "",
             };
             let input = call("gaussian_weight", &[offset]);
             Err(Broken::new(input, yours, expected, "double precision").looks_like(known(diagnosis)))
         })
     };
-    // A slanted offset first: in the middle and on the axes, several mistakes give one answer.
+    // Begin with an offset off the axes: on the axes several mistakes give the same answer.
     judge(&[vec2(0.5, -0.25)]).into_iter().collect::<Outcome>()?;
     trial.forall(1000, offsets, judge)
 }
@@ -199,7 +197,7 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
             let sum: glam::DVec3 =
                 samples.iter().map(|sample| f64::from(sample.weight) * sample.color.as_dvec3()).sum();
             let expected = if weight > 0.0 { sum / weight } else { glam::DVec3::ZERO };
-            // Eight additions and a division of numbers up to 16.
+            // The tolerance covers eight additions and a division of numbers up to 16.
             if (yours.as_dvec3() - expected).abs().max_element() < 1e-5 {
                 return Ok(());
             }
@@ -208,13 +206,17 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
                 samples.iter().map(|sample| sample.color.as_dvec3()).sum::<glam::DVec3>() / n;
             let near = |v: glam::DVec3| (yours.as_dvec3() - v).length() < 1e-5;
             let diagnosis = match () {
-                () if yours.is_nan() => "0 / 0: without any weight the pixel is black",
-                () if near(plain) => "all samples count alike: use the weights",
-                () if near(sum / n) => "divided by the number of samples: divide by the sum of their weights",
-                () if near(sum) => "a sum: divide by the sum of the weights",
-                () if near(plain * n / weight) => "the colours are not weighted, only the divisor is",
+                () if yours.is_nan() => "you divide 0 by 0: if the weights sum to 0, return black",
+                () if near(plain) => "you do not use the weights",
+                () if near(sum / n) => {
+                    "you divide by the number of samples: divide by the sum of their weights"
+                }
+                () if near(sum) => "you return the sum: divide it by the sum of the weights",
+                () if near(plain * n / weight) => {
+                    "you do not weight the colours: multiply each colour by its weight"
+                }
                 () if near(expected.min(glam::DVec3::ONE)) => {
-                    "what is brighter than 1 is cut off: leave that to the film"
+                    "you clamp the colour to 1: return it without a clamp"
                 }
                 () => "",
             };
@@ -222,7 +224,7 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
                 .looks_like(known(diagnosis)))
         })
     };
-    // Two unlike samples first: of one alone, or of alike ones, several mistakes make one colour.
+    // Begin with two different samples: for one sample, or for equal ones, several mistakes give the same colour.
     let drawn = [(vec3(0.25, 0.5, 2.5), 0.5), (vec3(1.0, 0.0, 2.25), 1.75)];
     judge(&[drawn.map(|(color, weight)| WeightedColor { color, weight }).to_vec()])
         .into_iter()
@@ -235,14 +237,16 @@ pub(super) fn filter_pixel_of_nothing_is_black(trial: &Trial<'_>) -> Outcome {
     for (samples, yours) in nothing.iter().zip(trial.kit.filter_pixel(&nothing)) {
         if yours != Vec3::ZERO {
             let broken = Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition");
-            return Err(broken.looks_like(yours.is_nan().then_some("0 / 0: nothing weighs anything here")));
+            return Err(
+                broken.looks_like(yours.is_nan().then_some("you divide 0 by 0: the weights sum to 0 here"))
+            );
         }
     }
     Ok(())
 }
 
 pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> Outcome {
-    // Sixteen cells in turn, each with random numbers of its own.
+    // Use sixteen cells in turn, each with its own random numbers.
     let strata: Vec<Stratum> = pairs(trial.seed, SAMPLES)
         .into_iter()
         .enumerate()
@@ -257,15 +261,15 @@ pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> Outc
         places.iter().map(|(x, y)| ((4.0 * x).fract(), (4.0 * y).fract())).collect();
     covers_evenly("jittered in 4 × 4 cells", &in_cells, ["x in its cell", "y in its cell"], |_| "")?;
     covers_evenly("jittered in 4 × 4 cells", &places, ["x", "y"], |_| "")?;
-    // One sample a cell, whatever the numbers: that is what jittering is for. Two roundings of a number below 1 may carry a
-    // sample onto the side of its cell that is the next one's.
+    // Each sample must lie in its own cell, whatever the random numbers. Two roundings of a number below 1 may move it
+    // onto the border with the next cell.
     for (stratum, &(x, y)) in strata.iter().zip(&places) {
         let (place, corner) = (4.0 * DVec2::new(x, y), stratum.cell.as_dvec2());
         let slack = 4.0 * 2e-7;
         if place.cmplt(corner - slack).any() || place.cmpgt(corner + 1.0 + slack).any() {
             let cell = place.as_uvec2();
             let input = call("jittered", &[stratum]);
-            return Err(Broken::new(input, cell, stratum.cell, "the cell it was asked for"));
+            return Err(Broken::new(input, cell, stratum.cell, "the cell of the stratum"));
         }
     }
     Ok(())

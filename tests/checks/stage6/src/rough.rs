@@ -1,4 +1,4 @@
-//! Rays off and through rough surfaces.
+//! Glossy reflection: samples of a Phong lobe.
 
 use super::pixels::unit_number;
 use crate::unit_arrival;
@@ -24,19 +24,19 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let diagnosis = match () {
-                () if yours.is_nan() => "NaN: 2 / 0² is infinite",
+                () if yours.is_nan() => "you return NaN: 2 / 0² is infinite",
                 () if (yours - query.ideal).length() < 1e-3 => {
-                    "almost: with roughness 0 return ideal itself, so that a smooth mirror is one"
+                    "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself"
                 }
-                () => "blurred all the same: with roughness 0 return ideal itself",
+                () => "you change the direction: with roughness 0 return ideal itself",
             };
             Err(Broken::new(paste(query), yours, query.ideal, "roughness 0").looks_like(known(diagnosis)))
         })
     })
 }
 
-/// Directions off a surface, seen along its normal so that none is turned back, as shares of likelihood: from the ideal
-/// direction outwards, and around it.
+/// Samples of a lobe around the normal, so that none is reflected back, as two fractions that must be uniform:
+/// `cosⁿ⁺¹ θ`, and the angle around `ideal`.
 fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
     let axis = vec3(0.48, 0.6, -0.64);
     let queries: Vec<PhongLobeQuery> = pairs(trial.seed, SAMPLES)
@@ -51,9 +51,11 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
         let around = direction.as_dvec3();
         if !((around.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
-            return Err(broken.looks_like(direction.is_nan().then_some("NaN: the root of a number below 0?")));
+            return Err(broken.looks_like(
+                direction.is_nan().then_some("you return NaN: do you take the root of a negative number?"),
+            ));
         }
-        // cosⁿ⁺¹ θ is even in 0..1; ln cos θ from the sine, which keeps the digits of small angles.
+        // cosⁿ⁺¹ θ is uniform in 0..1. Compute ln cos θ from the sine, which is precise for small angles.
         let sine_squared = around.cross(ideal).length_squared().min(1.0);
         let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
         shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
@@ -63,8 +65,8 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
 
 const AXES: [&str; 2] = ["cosⁿ⁺¹ θ", "the angle around ideal"];
 
-const TOO_BLURRED: &str = "too blurred: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
-const TOO_SHARP: &str = "too sharp: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
+const TOO_BLURRED: &str = "your lobe is too wide: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
+const TOO_SHARP: &str = "your lobe is too narrow: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
 
 pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Outcome {
     for roughness in [0.2, 0.5, 1.0] {
@@ -72,7 +74,7 @@ pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -
         covers_evenly(&format!("sample_phong_lobe with roughness {roughness}"), &shares, AXES, |counts| {
             let rings = columns(counts);
             match () {
-                // With the exponent 1 / n in place of 1 / (n + 1), rays spread too far; small cosines are too common.
+                // With the exponent 1 / n instead of 1 / (n + 1) the lobe is too wide: small cosines are too frequent.
                 () if 4 * rings[0] > 5 * rings[7] => TOO_BLURRED,
                 () if 4 * rings[7] > 5 * rings[0] => TOO_SHARP,
                 () => "",
@@ -93,13 +95,13 @@ pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -
 }
 
 pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
-    // n = 2,000,000: cosines differ from 1 in their last four bits only.
+    // n is 2,000,000, so cosines differ from 1 in their last four bits only.
     let shares = lobe(trial, 0.001)?;
     covers_evenly("sample_phong_lobe with roughness 0.001", &shares, AXES, |counts| {
         let rings = columns(counts);
-        let uneven = rings.iter().max() > Some(&(SAMPLES as u64 / 7)); // a ring gets an eighth ± 2 %
+        let uneven = rings.iter().max() > Some(&(SAMPLES as u64 / 7)); // a ring has an eighth ± 2 %
         if uneven {
-            "few angles occur: √(1 - cos²) has lost its digits; take 1 - cos θ from expm1"
+            "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1"
         } else {
             ""
         }
@@ -116,7 +118,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
         },
     );
     trial.forall(3000, queries, |queries| {
-        // The same with a normal that turns nothing back shows what was drawn.
+        // The same samples with the normal `ideal` give the directions before they are reflected back.
         let free: Vec<PhongLobeQuery> =
             queries.iter().map(|query| PhongLobeQuery { normal: query.ideal, ..*query }).collect();
         let drawn = trial.kit.sample_phong_lobe(&free);
@@ -124,23 +126,27 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
         compare(&pairs, trial.kit.sample_phong_lobe(queries), |(query, drawn), yours| {
             let above = drawn.dot(query.normal);
             let expected = if above < 0.0 { *drawn - 2.0 * above * query.normal } else { *drawn };
-            // A few roundings; rays along the surface may lie a rounding below it.
+            // The tolerance covers a few roundings. A ray parallel to the surface may be one rounding below it.
             if (yours - expected).length() < 1e-5 && yours.dot(query.normal) > -1e-5 {
                 return Ok(());
             }
             let diagnosis = match () {
-                () if yours.is_nan() => "NaN: ln 0 is -∞, and 0 · ∞ is NaN",
-                () if (yours + *drawn).length() < 1e-4 => "turned around: only its part along the normal is",
-                () if above < -1e-3 && yours.dot(query.normal).abs() < 1e-5 => {
-                    "laid into the surface: take its part along the normal off twice"
+                () if yours.is_nan() => "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN",
+                () if (yours + *drawn).length() < 1e-4 => {
+                    "you reverse the whole direction: reverse only its part along the normal"
                 }
-                () if yours.dot(query.normal) < 0.0 => "it goes to the other side: mirror it on the normal",
+                () if above < -1e-3 && yours.dot(query.normal).abs() < 1e-5 => {
+                    "you subtract the part along the normal once: subtract it twice"
+                }
+                () if yours.dot(query.normal) < 0.0 => {
+                    "your ray goes through the surface: reflect it back by the normal"
+                }
                 () if above < 0.0 && yours == query.ideal => {
-                    "replaced by ideal: there the blurred image gets too bright; mirror it on the normal"
+                    "you return ideal, which changes the distribution: reflect the ray back by the normal"
                 }
                 () => "",
             };
-            Err(Broken::new(paste(query), yours, expected, "mirrored back to the side of the normal")
+            Err(Broken::new(paste(query), yours, expected, "reflected back to the side of the normal")
                 .looks_like(known(diagnosis)))
         })
     })
