@@ -77,7 +77,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
                     "your normal points the other way: compute u × v, not v × u"
                 }
                 (Some(yours), Some(expected)) if (yours.normalize_or_zero() - expected).length() < 1e-3 => {
-                    "the length of your normal is not 1: for tiny edges |u × v|² underflows, so scale u and v first"
+                    "your normal is not of length 1: |u × v|² underflows for tiny edges; scale u and v first"
                 }
                 (None, Some(_)) => {
                     "you return None for a small triangle: scale u and v before the cross product"
