@@ -10,7 +10,7 @@
 use glam::Vec3;
 use raykata::ray::Ray;
 
-/// The smaller of those two roots for which `ray.contains(t)` is true, or `None` if it is true for neither.
+/// The smaller one of the roots that count (`ray.contains(t)` is true), or `None` if neither of them counts.
 ///
 /// The roots come in any order. Each of them may be NaN or infinite. A root that is NaN does not count, but the other
 /// root still may.
