@@ -15,8 +15,7 @@ use raykata::ray::Ray;
 /// The roots come in any order. Each of them may be NaN or infinite. A root that is NaN does not count, but the other
 /// root still may.
 ///
-/// Pitfall: a ray that starts inside a sphere has one root behind its origin, so the smaller root is not always the
-/// hit.
+/// Pitfall: a ray that starts inside a sphere has one root behind its origin, so the smaller root may not be the hit.
 pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
     // <solution>
     let [first, second] = roots;
@@ -55,8 +54,8 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
         return None;
     }
 
-    // Compute one root as a sum of two numbers of the same sign, which does not cancel. t₀ t₁ = c / a gives the
-    // other.
+    // Compute one root as a sum of two numbers of the same sign, which does not cancel. The product of both roots is
+    // c / a, which gives the other root.
     let q = b + (a * discriminant).sqrt().copysign(b);
     // Return the nearest root in the ray's range.
     nearest_root([c / q, q / a], ray)
@@ -72,8 +71,7 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
 /// NaN anywhere.
 ///
 /// Pitfall: the slide returns no hit when `t_ca < 0`, but a ray that starts inside and points away from the centre
-/// hits the far side. The slide's `d² = L·L - t_ca²` cancels for a distant sphere, and it is true for unit directions
-/// only.
+/// hits the far side. The slide's `d² = L·L - t_ca²` cancels for a distant sphere and needs a unit direction.
 pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
     let to_center = center - ray.origin;
@@ -82,8 +80,7 @@ pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // Find the ray's point nearest to the centre, and the vector from there to the centre.
     let t_ca = to_center.dot(ray.direction) / length_squared;
     let nearest = to_center - t_ca * ray.direction;
-    // Compute the squared half chord by Pythagoras, and reject rays that pass beside the sphere. NaN is rejected as
-    // well.
+    // Compute the squared half chord by Pythagoras. Reject rays that pass beside the sphere, and NaN.
     let half_chord_squared = radius * radius - nearest.length_squared();
     if !(half_chord_squared >= 0.0 && radius > 0.0) {
         return None;
@@ -113,8 +110,7 @@ pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
     // </solution>
 }
 
-/// Ray-plane intersection: solve `n·(o + t d - p₀) = 0` for `t`. The plane is infinite and contains `point`, which is
-/// `p₀`.
+/// Ray-plane intersection: solve `n·(o + t d - p₀) = 0` for `t`. The plane is infinite and contains `point` = `p₀`.
 ///
 /// Returns `t` in lengths of `direction` if it counts. Neither `direction` nor `normal` need be a unit vector. The
 /// plane can be hit from both sides. The result is `None` for a ray parallel to the plane (`n·d = 0` exactly), a ray
@@ -131,11 +127,10 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // </solution>
 }
 
-/// `normal` or `-normal`: the one that points to the side from which a ray along `direction` comes, so that `n·d ≤
-/// 0`.
+/// `normal` or `-normal`: the one that points to the side from which a ray along `direction` comes, so that
+/// `n·d ≤ 0`.
 ///
-/// Neither vector need be a unit vector. The length of the normal does not change. If `n·d` is 0, both results are
-/// right.
+/// Neither vector need be a unit vector. The length of the normal does not change. If `n·d` is 0, either is right.
 pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
     if normal.dot(direction) > 0.0 { -normal } else { normal }

@@ -25,8 +25,7 @@ use raykata::shape::Triangle;
 ///
 /// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
 /// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
-/// too: two triangles that share an edge round differently, so one in ten rays that are aimed at the edge misses
-/// both.
+/// too: two triangles that share an edge round differently, so one in ten rays that are aimed at the edge hits neither.
 pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
     // Name the columns of the equations as the slide does: a e i | b f j | c g k | d h l.
@@ -35,8 +34,7 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let [c, g, k] = ray.direction.to_array();
     let [d, h, l] = (triangle.a - ray.origin).to_array();
 
-    // Compute the determinant of the columns (a e i), (b f j), (c g k). The slide prints (gl - hk) and (hj - fl)
-    // here.
+    // Compute the determinant of the columns (a e i), (b f j), (c g k). The slide prints (gl - hk), (hj - fl).
     let determinant = a * (f * k - g * j) + b * (g * i - e * k) + c * (e * j - f * i);
     // Reject rays along the plane and triangles without area.
     if determinant == 0.0 {
@@ -77,8 +75,7 @@ pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
 /// `scalars` are the [`gram_scalars`] of `triangle`. The contract is at the top of this file.
 ///
 /// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
-/// method itself has a weakness, too: it rounds the point before it tests it, so far from the origin the error of `P`
-/// decides.
+/// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
 pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit> {
     // <solution>
     let u = triangle.b - triangle.a;
@@ -172,8 +169,7 @@ pub fn longest_axis(v: Vec3) -> usize {
 ///
 /// `point` lies in the plane of the triangle, up to rounding. The corners may have either order, clockwise or
 /// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
-/// a side whose line contains the ray's origin (its normal is 0) accepts every point. With a NaN the result is
-/// `false`.
+/// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
 ///
 /// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals: it
 /// changes no sign, and a normal of 0 becomes NaN.
@@ -257,8 +253,7 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
 /// One unit normal per vertex: the normalised sum of the unit normals of the triangles that use the vertex.
 ///
 /// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
-/// its area. A triangle without area does not count. If no triangle with an area uses a vertex, any unit vector is
-/// right.
+/// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
 ///
 /// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalised. Then take the
 /// normal of one of the triangles around the vertex.
@@ -276,8 +271,7 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
             of_one_face[vertex as usize] = normal;
         }
     }
-    // Normalise each sum. A sum below this limit consists of rounding errors: take the normal of one triangle
-    // instead.
+    // Normalise each sum. A sum below this limit consists of rounding errors: take the normal of one face.
     let cancelled = |sum: Vec3| sum.length_squared() < 1e-10;
     sums.iter()
         .zip(of_one_face)
