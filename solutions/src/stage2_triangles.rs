@@ -21,7 +21,11 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// Ray-triangle intersection by Cramer's rule: solve `β (a - b) + γ (a - c) + t d = a - o`, which is three equations
-/// (x, y and z) with three unknowns. The contract is at the top of this file.
+/// (x, y and z) with three unknowns.
+///
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
 ///
 /// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
 /// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
@@ -34,7 +38,8 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let [c, g, k] = ray.direction.to_array();
     let [d, h, l] = (triangle.a - ray.origin).to_array();
 
-    // Compute the determinant of the columns (a e i), (b f j), (c g k). The slide prints (gl - hk), (hj - fl).
+    // Compute the determinant of the columns (a e i), (b f j), (c g k). The slide wrongly prints
+    // (gl - hk) instead of (gi - ek) and (hj - fl) instead of (ej - fi).
     let determinant = a * (f * k - g * j) + b * (g * i - e * k) + c * (e * j - f * i);
     // Reject rays along the plane and triangles without area.
     if determinant == 0.0 {
@@ -59,7 +64,7 @@ pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// area and negative otherwise.
 ///
 /// Pitfall: for a thin triangle `D` is the difference of two nearly equal numbers, so this formula gives zero or even
-/// a positive number. `D` is equal to `-|u × v|²`, which never is positive.
+/// a positive number. `D` is equal to `-|u × v|²`, which is never positive.
 pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     // <solution>
     let u = triangle.b - triangle.a;
@@ -72,7 +77,11 @@ pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
 /// Ray-triangle intersection by the Gram matrix: first the `t` at which the ray hits the plane of the triangle, then
 /// the barycentric coordinates `s` (here β) and `t` (here γ) of the point `I = P - a = s u + t v`.
 ///
-/// `scalars` are the [`gram_scalars`] of `triangle`. The contract is at the top of this file.
+/// `scalars` are the [`gram_scalars`] of `triangle`.
+///
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
 ///
 /// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
 /// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
@@ -102,9 +111,13 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
 
 /// Ray-triangle intersection by a method of your choice. Your pictures use this function.
 ///
-/// The contract is at the top of this file. The reference is watertight: a ray that is aimed at a shared edge always
-/// hits at least one of the two triangles (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT
-/// 2013). The checks of this stage do not demand that.
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// The reference is watertight: a ray that is aimed at a shared edge always hits at least one of the two triangles
+/// (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The checks of this stage do not demand
+/// that.
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
     // Convert everything to double precision, which holds products of sizes from 1e-38 to 1e38 without overflow or
@@ -171,8 +184,8 @@ pub fn longest_axis(v: Vec3) -> usize {
 /// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
 /// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
 ///
-/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals: it
-/// changes no sign, and a normal of 0 becomes NaN.
+/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals, because
+/// that changes no sign and turns a normal of 0 into NaN.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let to_point = point - ray.origin;
