@@ -26,7 +26,7 @@ pub fn triangle_bounds(triangle: &Triangle) -> Aabb {
 
 /// The box around a sphere: from `center - radius` to `center + radius` on each axis.
 ///
-/// Each side may be off by the rounding of this sum and by two more floats outwards.
+/// Each side may be off by the rounding of the sum or difference, and may lie up to two more floats outwards.
 pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
     // <solution>
     let (low, high) = (sphere.center - sphere.radius, sphere.center + sphere.radius);
@@ -375,7 +375,7 @@ fn nearer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Option<P
 ///
 /// The result is the same hit as that of [`closest_hit_both`], also for two hits at the same `t`. The search opens
 /// far fewer nodes: it lowers `t_max` at each hit, and compares the farther child's entry with `t_max` again after it
-/// has searched the nearer child.
+/// has searched the nearer child. If the ray enters both children at the same `t`, either may be searched first.
 ///
 /// Pitfall: boxes overlap, so a hit in the nearer child may lie behind a hit in the farther child. And if `t_max`
 /// becomes exactly `t`, another hit at the same `t` is not reported, because the range is open.
