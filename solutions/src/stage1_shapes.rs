@@ -1,106 +1,139 @@
-//! Stage 1 · shapes: where does a ray meet a sphere, or a plane?
+//! Stage 1 · shapes: the `t` at which a ray hits a sphere or a plane.
 //!
 //! Slides: "Ray-Sphere Intersection" I and II, "Ray-plane intersection", "Negate Normal Vector".
 //!
-//! Given: [`Ray`] with `origin`, `direction`, and `ray.contains(t)`, which says whether a hit at `t` counts.
-//! Asked: the `t` of the nearest hit that counts, or `None`. `direction` is not always of unit length: `t` counts lengths
-//! of `direction`. Start with [`nearest_root`], because both sphere tests end with it.
+//! Given: [`Ray`] with `origin`, `direction` and `ray.contains(t)`. A hit at `t` counts if `ray.contains(t)` is true,
+//! which means `t_min < t < t_max`. Both ends are open, and NaN never counts.
+//! Asked: the `t` of the nearest hit that counts, or `None`. `t` counts lengths of `direction`, which need not be a
+//! unit vector. Start with [`nearest_root`], because both sphere functions end with it.
 
 use glam::Vec3;
 use raykata::ray::Ray;
 
-/// The smaller of two roots that counts for `ray`, if one does. The roots come in any order, and either may be NaN.
+/// The smaller one of the roots that count (`ray.contains(t)` is true), or `None` if neither of them counts.
 ///
-/// A ray that starts inside a sphere has one root behind it, so the smaller root is not always the one to return.
+/// The roots come in any order. Each of them may be NaN or infinite. A root that is NaN does not count, but the other
+/// root still may.
+///
+/// Pitfall: a ray that starts inside a sphere has one root behind its origin, so the smaller root may not be the hit.
 pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
     // <solution>
     let [first, second] = roots;
-    // min and max return the other operand when one is NaN, and `contains` says no to NaN.
+    // Sort the roots. If one of them is NaN, min and max both return the other.
     let (near, far) = (first.min(second), first.max(second));
+    // Return the first root that lies in the ray's range.
     [near, far].into_iter().find(|&t| ray.contains(t))
-    // <stub> todo!("return the smaller of the two roots for which ray.contains(t) holds")
+    // <stub> todo!("return the smaller of the two roots for which ray.contains(t) is true")
     // </solution>
 }
 
-/// Ray against sphere, the algebraic way: put `o + t d` into `|p - c|² = r²` and solve `a t² - 2 b t + c = 0` with
-/// `a = d·d`, `b = -(o - c)·d` and `c = |o - c|² - r²`.
+/// Ray-sphere intersection by algebra: put `o + t d` into `|p - center|² = r²` and solve `a t² - 2 b t + c = 0` with
+/// `a = d·d`, `b = -(o - center)·d` and `c = |o - center|² - r²`.
 ///
-/// Where the formula lies: `b² - a c` subtracts two huge numbers when the sphere is far or small. At distance 100,000
-/// from a unit sphere it loses 24 of 100 true hits.
+/// Returns the nearest root that counts, in lengths of `direction`, which need not be a unit vector. A tangent ray
+/// (discriminant exactly 0) hits. A ray that starts on the sphere has a root `t = 0`, which does not count. The
+/// result is `None` for a radius of 0, a negative radius, a direction of 0, an infinite origin, and a NaN anywhere.
+///
+/// Pitfall: `b² - a c` subtracts two huge numbers when the sphere is distant or small. At distance 100,000 from a
+/// unit sphere it loses 24 of 100 true hits. The checks accept an error of a few roundings, also for near spheres. So
+/// use the equal form `a (r² - |f⊥|²)` with `f = o - center` and `f⊥ = f + (b / a) d`, which does not cancel.
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
+    // Compute the coefficients of the quadratic a t² - 2 b t + c = 0.
     let f = ray.origin - center;
     let a = ray.direction.length_squared();
     let b = -f.dot(ray.direction);
     let c = f.length_squared() - radius * radius;
 
-    // b² - a c = a (r² - |f⊥|²), where f⊥ is the part of f at right angles to the ray. This side does not cancel.
+    // Compute the discriminant without cancellation: b² - a c = a (r² - |f⊥|²), where f⊥ is the part of f at right
+    // angles to the ray. The variable holds it without the factor a.
     let f_perpendicular = f + (b / a) * ray.direction;
     let discriminant = radius * radius - f_perpendicular.length_squared();
+    // Reject rays that pass beside the sphere. NaN makes the comparison false, so it is rejected as well.
     if !(discriminant >= 0.0 && radius > 0.0) {
-        return None; // Beside the sphere; a NaN ends here, too.
+        return None;
     }
 
-    // The root that adds two numbers of one sign is exact to a few roundings; t₀ t₁ = c / a gives the other.
+    // Compute one root as a sum of two numbers of the same sign, which does not cancel. The product of both roots is
+    // c / a, which gives the other root.
     let q = b + (a * discriminant).sqrt().copysign(b);
+    // Return the nearest root in the ray's range.
     nearest_root([c / q, q / a], ray)
     // <stub> todo!("solve the quadratic for t and return the nearest root that counts")
     // </solution>
 }
 
-/// Ray against sphere, the geometric way: go along the ray to the point nearest to the centre (`t_ca`), then back and
-/// forth by half a chord (`t_hc`).
+/// Ray-sphere intersection by geometry: `t_ca` is the `t` of the ray's point nearest to the centre, and `t_hc` is
+/// half of the chord. The two roots are `t_ca - t_hc` and `t_ca + t_hc`.
 ///
-/// Where the formula lies: the slide gives up when `t_ca < 0`, but a ray that starts inside and looks away from the
-/// centre still leaves the sphere; and `d² = L·L - t_ca²` cancels, besides being true for unit directions only.
+/// The contract is that of [`sphere_algebraic`]: the nearest root that counts, in lengths of `direction`. A tangent
+/// ray hits. The result is `None` for a radius of 0, a negative radius, a direction of 0, an infinite origin, and a
+/// NaN anywhere.
+///
+/// Pitfall: the slide returns no hit when `t_ca < 0`, but a ray that starts inside and points away from the centre
+/// hits the far side. The slide's `d² = L·L - t_ca²` cancels for a distant sphere and needs a unit direction.
 pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
     let to_center = center - ray.origin;
     let length_squared = ray.direction.length_squared();
 
-    // Walk to the point of the ray that is nearest to the centre, and look how far it is from there.
+    // Find the ray's point nearest to the centre, and the vector from there to the centre.
     let t_ca = to_center.dot(ray.direction) / length_squared;
     let nearest = to_center - t_ca * ray.direction;
+    // Compute the squared half chord by Pythagoras. Reject rays that pass beside the sphere, and NaN.
     let half_chord_squared = radius * radius - nearest.length_squared();
     if !(half_chord_squared >= 0.0 && radius > 0.0) {
         return None;
     }
+    // Convert half of the chord to lengths of the direction.
     let t_hc = (half_chord_squared / length_squared).sqrt();
 
-    // t_ca - t_hc cancels for an origin near the surface. The product of both distances does not: it is the power of
-    // the origin, (|L|² - r²) / |d|².
+    // Compute the root farther from t = 0 as a sum of two numbers of the same sign. The other difference would cancel
+    // for an origin near the surface, so divide the product of both roots, (|L|² - r²) / |d|² (the power of a point).
     let away = t_ca + t_hc.copysign(t_ca);
     let power = (to_center.length_squared() - radius * radius) / length_squared;
+    // Return the nearest root in the ray's range.
     nearest_root([power / away, away], ray)
     // <stub> todo!("find t_ca and t_hc, and return the nearest of t_ca - t_hc and t_ca + t_hc that counts")
     // </solution>
 }
 
-/// The unit normal of a sphere at `point`, which lies on it: away from the centre.
+/// The unit normal of a sphere at `point`: the direction from the centre to `point`.
+///
+/// `point` lies on the sphere up to rounding. The result has length 1 up to rounding. If `point` is the centre, any
+/// unit vector is right.
 pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
     // <solution>
-    // Dividing by the true length instead of by r keeps the normal at length 1 when `point` is a rounding off.
+    // Divide by the length and not by r: this keeps the normal at length 1 when `point` has a rounding error.
     (point - center).normalize_or(Vec3::Z)
     // <stub> todo!("return the unit vector from the centre to the point")
     // </solution>
 }
 
-/// Ray against an infinite plane through `point`: `n·(o + t d - p₀) = 0`.
+/// Ray-plane intersection: solve `n·(o + t d - p₀) = 0` for `t`. The plane is infinite and contains `point` = `p₀`.
 ///
-/// Where the formula lies: a ray along the plane divides by `n·d = 0`. The result is infinite or NaN and must not be
-/// taken for a hit. The form `t = -(D + n·o) / n·d` is the same on paper but cancels far from the origin.
+/// Returns `t` in lengths of `direction` if it counts. Neither `direction` nor `normal` need be a unit vector. The
+/// plane can be hit from both sides. The result is `None` for a ray parallel to the plane (`n·d = 0` exactly), a ray
+/// that starts in the plane, a normal of 0, and a NaN anywhere.
+///
+/// Pitfall: for a ray along the plane the division by `n·d = 0` gives infinity or NaN, which is not a hit. The form
+/// `t = -(D + n·o) / n·d` is equal on paper but cancels far from the origin.
 pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // <solution>
     let t = (point - ray.origin).dot(normal) / ray.direction.dot(normal);
-    ray.contains(t).then_some(t) // 0/0 and 1/0 do not count
-    // <stub> todo!("solve n·(o + t d - p0) = 0 for t and return it if it counts")
+    // Reject NaN (from 0/0) and infinity (from 1/0) together with all other t out of range.
+    ray.contains(t).then_some(t)
+    // <stub> todo!("solve n·(o + t d - p0) = 0 for t and return it if ray.contains(t)")
     // </solution>
 }
 
-/// `normal`, turned so that it points to the side from which a ray of direction `direction` comes.
+/// `normal` or `-normal`: the one that points to the side from which a ray along `direction` comes, so that
+/// `n·d ≤ 0`.
+///
+/// Neither vector need be a unit vector. The length of the normal does not change. If `n·d` is 0, either is right.
 pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
     if normal.dot(direction) > 0.0 { -normal } else { normal }
-    // <stub> todo!("negate the normal if it points the way the ray goes")
+    // <stub> todo!("negate the normal if n·d > 0")
     // </solution>
 }

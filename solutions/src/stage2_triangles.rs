@@ -1,10 +1,17 @@
-//! Stage 2 · triangles: three ways to meet one, three ways to be inside, and what a mesh makes of it.
+//! Stage 2 · triangles: three methods of ray-triangle intersection, three inside tests, and the normals of meshes.
 //!
 //! Slides: "Finding the intersection", "Cramer's Rule", "Ray-triangle intersection precomputations",
 //! "Ray-Triangle Intersection" I, II, III, "Smooth Shading", "Normals of Vertices".
 //!
-//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`: points on
-//! an edge belong to the triangle, and either side can be hit. The ray's range decides which `t` count.
+//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`. With
+//! `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of the hit for the corners a, b and c.
+//!
+//! The contract of the three intersection functions: points on an edge belong to the triangle. The triangle is hit
+//! from the front and from the back, so the order of the corners does not matter. `t` counts lengths of `direction`,
+//! which need not be a unit vector. A hit counts if `ray.contains(t)`: the range is open. The triangle may have any
+//! size, so no fixed epsilon is right. The result is `None` for a ray along the plane of the triangle, a triangle
+//! without area, a direction of 0, and a NaN anywhere. If the sizes overflow single precision, a hit and a miss are
+//! both right, but no part of a hit is NaN or infinite.
 
 use glam::{DVec2, DVec3, Vec3};
 use raykata::bvh::{PrimitiveHit, Probe};
@@ -13,39 +20,51 @@ use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Ray against triangle by Cramer's rule on `β (a - b) + γ (a - c) + t d = a - o`.
+/// Ray-triangle intersection by Cramer's rule: solve `β (a - b) + γ (a - c) + t d = a - o`, which is three equations
+/// (x, y and z) with three unknowns.
 ///
-/// Where the formula lies: the slide's determinant `D` repeats terms of the numerator of x. It is right for triangles
-/// along the axes and loses more than half of all others. Weakness of the method itself: neighbours that share an
-/// edge round differently, so one ray in ten that is aimed at the edge slips between them.
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
+/// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
+/// too: two triangles that share an edge round differently, so one in ten rays that are aimed at the edge hits neither.
 pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // The letters of the slide, column by column: a e i | b f j | c g k | d h l.
+    // Name the columns of the equations as the slide does: a e i | b f j | c g k | d h l.
     let [a, e, i] = (triangle.a - triangle.b).to_array();
     let [b, f, j] = (triangle.a - triangle.c).to_array();
     let [c, g, k] = ray.direction.to_array();
     let [d, h, l] = (triangle.a - ray.origin).to_array();
 
-    // D expands the columns (a e i), (b f j), (c g k); the slide prints (gl - hk) and (hj - fl) here.
+    // Compute the determinant of the columns (a e i), (b f j), (c g k). The slide wrongly prints
+    // (gl - hk) instead of (gi - ek) and (hj - fl) instead of (ej - fi).
     let determinant = a * (f * k - g * j) + b * (g * i - e * k) + c * (e * j - f * i);
+    // Reject rays along the plane and triangles without area.
     if determinant == 0.0 {
-        return None; // The ray runs along the plane, or the triangle has no area.
+        return None;
     }
+    // Replace one column after the other by the right side (d h l), and divide by the determinant.
     let beta = (d * (f * k - g * j) + b * (g * l - h * k) + c * (h * j - f * l)) / determinant;
     let gamma = (a * (h * k - g * l) + d * (g * i - e * k) + c * (e * l - h * i)) / determinant;
     let t = (a * (f * l - h * j) + b * (h * i - e * l) + d * (e * j - f * i)) / determinant;
 
+    // Reject points outside the triangle and hits outside the ray's range. NaN makes each comparison false.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("solve the three equations for β, γ and t by Cramer's rule")
     // </solution>
 }
 
-/// The four numbers of a triangle that the Gram method needs, computed once: `u·v`, `v·v`, `u·u` and
+/// The four numbers of a triangle that the Gram method needs, computed once per triangle: `u·v`, `v·v`, `u·u` and
 /// `D = (u·v)² - (u·u)(v·v)` for `u = b - a`, `v = c - a`.
 ///
-/// Where the formula lies: for a thin triangle `D` is the difference of two nearly equal numbers, and comes out zero
-/// or even positive. It is the same number as `-|u × v|²`.
+/// All are in world units: squared for the dot products, to the fourth power for `D`. `D` is 0 for a triangle without
+/// area and negative otherwise.
+///
+/// Pitfall: for a thin triangle `D` is the difference of two nearly equal numbers, so this formula gives zero or even
+/// a positive number. `D` is equal to `-|u × v|²`, which is never positive.
 pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     // <solution>
     let u = triangle.b - triangle.a;
@@ -55,45 +74,60 @@ pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     // </solution>
 }
 
-/// Ray against triangle the other way: first its plane, then the weights `s` (here β) and `t` (here γ) of the point
-/// `I = P - a` from the Gram matrix.
+/// Ray-triangle intersection by the Gram matrix: first the `t` at which the ray hits the plane of the triangle, then
+/// the barycentric coordinates `s` (here β) and `t` (here γ) of the point `I = P - a = s u + t v`.
 ///
-/// Where the formula lies: "0 ≤ s + t ≤ 1" alone lets points in with one weight below zero. Weakness of the method
-/// itself: the point is rounded before it is tested, so far from the origin the error of `P` decides.
+/// `scalars` are the [`gram_scalars`] of `triangle`.
+///
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
+/// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
 pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit> {
     // <solution>
     let u = triangle.b - triangle.a;
     let v = triangle.c - triangle.a;
+    // Compute the t at which the ray hits the plane of the triangle.
     let normal = u.cross(v);
     let to_a = triangle.a - ray.origin;
     let t = to_a.dot(normal) / ray.direction.dot(normal);
 
-    // I = o + t d - a, kept relative to the ray's origin: adding o to t d first would round at the size of o.
+    // Compute I = o + t d - a as t d - (a - o), because adding o to t d would round at the size of o.
     let point = t * ray.direction - to_a;
+    // Solve the two equations I·u = s u·u + t u·v and I·v = s u·v + t v·v.
     let (point_u, point_v) = (point.dot(u), point.dot(v));
     let beta = (scalars.uv * point_v - scalars.vv * point_u) / scalars.d;
     let gamma = (scalars.uv * point_u - scalars.uu * point_v) / scalars.d;
 
-    // Each comparison is false for NaN, so a ray along the plane and a triangle without area end here.
+    // Reject points outside the triangle and hits outside the ray's range. Each comparison is false for NaN, so this
+    // also rejects rays along the plane and triangles without area.
     let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
     (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
-    // <stub> todo!("meet the plane of the triangle, then find s and t from the Gram scalars")
+    // <stub> todo!("find t from the plane of the triangle, then β and γ from the Gram scalars")
     // </solution>
 }
 
-/// Ray against triangle by a method of your choice. Your pictures are made with this one.
+/// Ray-triangle intersection by a method of your choice. Your pictures use this function.
 ///
-/// The reference is watertight: a ray aimed at a shared edge hits at least one of the two triangles, always (Woop,
-/// Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// The reference is watertight: a ray that is aimed at a shared edge always hits at least one of the two triangles
+/// (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The checks of this stage do not demand
+/// that.
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // In double precision throughout: t, β and γ are then right to the last digit, and sizes from 1e-38 to 1e38 fit. In
-    // single precision neighbours agree as well, but a ray may count for the neighbour of the triangle that it meets, and
-    // miss the neighbour's box: 7 of 10⁸ rays at edges leaked out of meshes in a hierarchy. The price: a plain frame of
-    // 57,600 triangles takes a tenth longer.
+    // Convert everything to double precision, which holds products of sizes from 1e-38 to 1e38 without overflow or
+    // underflow. In single precision neighbouring triangles also agree, but rounding may give a ray to the neighbour
+    // of the triangle that it hits, and the ray may miss the neighbour's box: in a hierarchy 7 of 10⁸ rays at edges
+    // leaked out of meshes. Double precision makes a plain frame of 57,600 triangles a tenth slower.
     let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
 
-    // See the triangle from the ray: origin at zero, the ray's longest axis as z, sheared so that the ray is (0 0 z).
+    // Transform the triangle: the ray's origin to zero, the ray's longest axis to z, and a shear that turns the ray
+    // into (0 0 z).
     let z = longest_axis(ray.direction);
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);
     let shear = DVec2::new(d[x], d[y]) / d[z];
@@ -103,19 +137,22 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     };
     let [p, q, r] = [a, b, c].map(project);
 
-    // Three edge functions: each has the sign of the side on which the ray passes that edge. Neighbours compute an
-    // edge they share from the same two points, and rounding is monotone, so it cannot turn "inside" into "outside".
+    // Compute three edge functions. The sign of each tells on which side of the edge the ray passes. Two triangles
+    // compute a shared edge from the same two points, and rounding is monotone, so it cannot turn "inside" into
+    // "outside".
     let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
+    // Reject the ray if two signs differ or if the projected triangle has no area.
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
     let sum = alpha + beta + gamma;
     if (least < 0.0 && most > 0.0) || sum == 0.0 || sum.is_nan() {
         return None;
     }
 
-    // The paper takes t from the sheared z of the corners, which loses all digits on a needle seen from inside.
-    // The plane does not: t = (a - o)·n / d·n.
+    // Compute t from the plane: t = (a - o)·n / d·n. The paper takes t from the sheared z of the corners, which loses
+    // all digits on a needle seen from inside.
     let normal = (b - a).cross(c - a);
     let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
+    // Reject hits outside the ray's range. Divide by the sum to get barycentric coordinates.
     ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
     // <stub> todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
     // </solution>
@@ -140,11 +177,15 @@ pub fn longest_axis(v: Vec3) -> usize {
 }
 // </solution>
 
-/// Inside test I: the plane through the ray's origin and a side of the triangle has `point` on its inner side, for
-/// all three sides.
+/// Inside test I: the ray's origin and each side of the triangle span a plane, and `point` is inside if it lies on
+/// the same side of all three planes.
 ///
-/// Where the formula lies: "distance < 0 → outside" holds for one winding only. Accept the point if it lies on the
-/// same side of all three planes, whichever that is, and on a plane counts as inside. Normalising changes no sign.
+/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order, clockwise or
+/// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
+/// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
+///
+/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals, because
+/// that changes no sign and turns a normal of 0 into NaN.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let to_point = point - ray.origin;
@@ -154,8 +195,11 @@ pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // </solution>
 }
 
-/// Inside test II: seen along the ray, `point` lies on the same side of all three sides: the sign of
-/// `d · ((T₂ - P) × (T₁ - P))`.
+/// Inside test II: seen along the ray, `point` is inside if it lies on the same side of all three edges. The sign of
+/// `d · ((T₂ - P) × (T₁ - P))` tells the side for the edge from `T₁` to `T₂`.
+///
+/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order. Points on an edge
+/// are inside. With a NaN the result is `false`.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
     let side = |from: Vec3, to: Vec3| (to - point).cross(from - point).dot(ray.direction);
@@ -165,16 +209,21 @@ pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool 
 }
 
 // <solution>
-/// Whether no two of the signs contradict each other. Zero goes with either; NaN goes with neither.
+/// Whether all values are `>= 0` or all values are `<= 0`. Zero fits both, NaN fits neither.
 fn same_side(sides: [f32; 3]) -> bool {
     sides.iter().all(|&side| side >= 0.0) || sides.iter().all(|&side| side <= 0.0)
 }
 // </solution>
 
-/// Inside test III: the weights `(α, β, γ)` of the corners a, b, c as shares of the area, if `point` is inside.
+/// Inside test III: the barycentric coordinates `(α, β, γ)` of `point`, each of which is the area of a triangle
+/// between `point` and two corners, divided by the area of the whole triangle.
 ///
-/// Where the formula lies: areas without a sign cannot tell (-0.2, -0.2) from (0.2, 0.2). Measure each area along the
-/// normal of the triangle, so that it goes negative outside.
+/// `point` lies in the plane of the triangle, up to rounding. α belongs to corner a and the area opposite of it, β to
+/// b, and γ to c. Points on an edge are inside. The result is `None` if `point` is outside, if the triangle has no
+/// area, or for a NaN.
+///
+/// Pitfall: areas without a sign cannot tell (-0.2, -0.2) from (0.2, 0.2). Measure each area along the normal of the
+/// triangle, so that it is negative outside.
 pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
@@ -183,39 +232,50 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
         Vec3::new(area(triangle.b, triangle.c), area(triangle.c, triangle.a), area(triangle.a, triangle.b))
             / normal.length_squared();
     weights.cmpge(Vec3::ZERO).all().then_some(weights)
-    // <stub> todo!("return the three signed areas over the area of the triangle, if none is below zero")
+    // <stub> todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
     // </solution>
 }
 
-/// The value at weights `(α, β, γ)` between values at the three corners.
+/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
+/// at the corners a, b and c. The result is not normalised.
 pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // <solution>
     weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2]
-    // <stub> todo!("weigh the three corners")
+    // <stub> todo!("return the sum of the three corners, each times its weight")
     // </solution>
 }
 
-/// The unit normal `u × v / |u × v|` of a triangle, `None` if it has no area.
+/// The unit normal `u × v / |u × v|` of a triangle, with `u = b - a` and `v = c - a`.
 ///
-/// Where the formula lies: for edges of 1e-11 the product of two lengths squared underflows, and the "unit" normal is
-/// 1 % too long; for 1e-12 it is NaN. Scale the edges first: their lengths do not matter.
+/// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle without area and
+/// for a NaN.
+///
+/// Pitfall: for edges of 1e-11 the square of `|u × v|` underflows, and the "unit" normal is 1 % too long. For edges
+/// of 1e-12 it is NaN. Scale the edges first, because their lengths do not change the direction of the normal.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     // <solution>
+    // Divide each edge by its largest component, so that no product underflows.
     let unit_sized = |edge: Vec3| edge / edge.abs().max_element();
     let normal = unit_sized(triangle.b - triangle.a).cross(unit_sized(triangle.c - triangle.a));
-    normal.try_normalize() // None for zero and for NaN
+    // Return None for a cross product of zero or NaN.
+    normal.try_normalize()
     // <stub> todo!("normalise u × v, and return None for a triangle without area")
     // </solution>
 }
 
-/// One unit normal a vertex: the average of the normals of the triangles around it.
+/// One unit normal per vertex: the normalised sum of the unit normals of the triangles that use the vertex.
 ///
-/// Where the formula lies: opposite normals average to zero, and zero cannot be normalised. Then take the normal of
-/// one of the faces. A vertex that no proper face uses may have any unit normal.
+/// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
+/// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
+///
+/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalised. Then take the
+/// normal of one of the triangles around the vertex.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
+    // Start with a sum of zero for each vertex, and with a normal to fall back on.
     let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
     let mut of_one_face = vec![Vec3::Z; mesh.positions.len()];
+    // Add the unit normal of each triangle that has an area to its three vertices.
     for corners in &mesh.triangles {
         let [a, b, c] = corners.map(|vertex| mesh.positions[vertex as usize]);
         let Some(normal) = face_normal(&Triangle { a, b, c }) else { continue };
@@ -224,7 +284,7 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
             of_one_face[vertex as usize] = normal;
         }
     }
-    // Unit normals that do not cancel add up to well over this; what is left below it is rounding.
+    // Normalise each sum. A sum below this limit consists of rounding errors: take the normal of one face.
     let cancelled = |sum: Vec3| sum.length_squared() < 1e-10;
     sums.iter()
         .zip(of_one_face)
@@ -234,16 +294,21 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // </solution>
 }
 
-/// The closest hit among primitives `0..n_primitives`: ask `probe.hit(primitive, ray)` for each. Of two hits at the
-/// same `t` the primitive with the smaller number wins, so that every search agrees with every other.
+/// The closest hit among primitives `0..n_primitives`: call `probe.hit(primitive, ray)` for each of them and keep the
+/// hit with the smallest `t`.
+///
+/// Each primitive is asked exactly once. Only hits in the ray's range count, and `probe.hit` returns no others. Of
+/// two hits at the same `t` the primitive with the smaller number wins, so that all search functions return the same
+/// hit. The result is `None` if nothing is hit.
 pub fn brute_force(n_primitives: u32, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     let mut ray = *ray;
     let mut closest = None;
+    // Ask each primitive, and end the ray at each hit: from then on only nearer hits count, and an equal t does not.
     for primitive in 0..n_primitives {
         if let Some(t) = probe.hit(primitive, &ray) {
             closest = Some(PrimitiveHit { t, primitive });
-            ray.t_max = t; // From here on only nearer hits count, and an equal one does not.
+            ray.t_max = t;
         }
     }
     closest

@@ -1,6 +1,6 @@
 //! Stage 1: spheres and planes.
 //!
-//! `roots` · `spheres` (laws for both methods; how they are judged is in `sphere_method`) · `planes` · `picture`
+//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers) · `planes` · `picture`
 
 mod picture;
 mod planes;

@@ -1,4 +1,4 @@
-//! What stage 1 can show.
+//! The picture of stage 1.
 
 use checks::broken::Outcome;
 use checks::{Trial, picture};
@@ -24,10 +24,10 @@ pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> Outcome {
         .map(|((ray, t), out)| (t.map_or(Vec3::Y, |_| out), ray.direction))
         .collect();
     let facing = trial.kit.face_forward(&normals);
-    // The sphere hides the floor wherever both are hit: it stands between the floor and the eye.
+    // Where a ray hits both, it hits the sphere first, because the sphere stands between the floor and the camera.
     let hit = on_floor.iter().zip(&on_sphere).map(|(floor, sphere)| floor.is_some() || sphere.is_some());
     let colors =
         hit.zip(facing).map(|(hit, normal)| if hit { picture::normal_color(normal) } else { Vec3::ZERO });
-    // The outline of the sphere crosses about 60 of 4800 pixels, and a ray that only just hits may fall either way.
+    // The outline of the sphere crosses about 60 of 4800 pixels. There rounding decides whether a ray hits or misses.
     picture::compare("stage1_sphere_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
 }

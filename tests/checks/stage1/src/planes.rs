@@ -1,4 +1,4 @@
-//! Ray against plane, and the side that a ray sees.
+//! Ray-plane intersection, and the normal on the side that the ray comes from.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -22,19 +22,19 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
         let endless = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
         let mirrored = |t: f32| double::plane(&endless, &query.plane).accepts(Some(-t));
         let diagnosis = match (yours, expected) {
-            (Some(t), _) if t.is_nan() => "NaN is no hit: compare so that NaN fails",
-            (Some(t), _) if !query.ray.contains(t) => "a t that ray.contains(t) refuses",
-            (Some(t), _) if t != 0.0 && mirrored(t) => "the sign of t is wrong: p0 - o, not o - p0",
+            (Some(t), _) if t.is_nan() => "you return NaN: compare so that NaN fails",
+            (Some(t), _) if !query.ray.contains(t) => "you return a t that ray.contains(t) refuses",
+            (Some(t), _) if t != 0.0 && mirrored(t) => "the sign of t is wrong: compute p0 - o, not o - p0",
             (Some(t), Expected::Hit { t: exact, tolerance })
                 if (f64::from(t / length) - exact).abs() <= tolerance =>
             {
                 "your t counts world units; it must count lengths of direction"
             }
             (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal).abs() < 0.01 => {
-                "a fixed limit for n·d: only a ray with n·d = 0 is parallel, however flat it comes in"
+                "you compare n·d with a fixed limit, but a ray is parallel only if n·d = 0"
             }
             (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal) > 0.0 => {
-                "the plane can be hit from behind, too"
+                "the plane can be hit from behind, too: do not test the sign of n·d"
             }
             _ => "",
         };
@@ -77,7 +77,7 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
     for (query, yours) in queries.iter().zip(trial.kit.plane(&queries)) {
         if yours.is_some() {
             let diagnosis =
-                "n·d = 0 makes t infinite or NaN, and a start in the plane makes t = 0: none of them counts";
+                "n·d = 0 makes t infinite or NaN; an origin in the plane makes t = 0: none of these counts";
             return Err(Broken::with_texts(
                 query.call("plane"),
                 format!("{yours:?}"),
@@ -91,7 +91,7 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
-    // T12: -(D + n·o) subtracts two numbers of the size of the coordinates; (p0 - o)·n does not.
+    // T12: -(D + n·o) subtracts two numbers as large as the coordinates; (p0 - o)·n does not.
     let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
         let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
         PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }
@@ -106,9 +106,9 @@ pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Out
     trial.forall(1000, (direction(), direction()), |queries| {
         compare(queries, trial.kit.face_forward(queries), |(normal, direction), yours| {
             let expected = if normal.dot(*direction) > 0.0 { -*normal } else { *normal };
-            // At a right angle either side will do.
+            // At a right angle both sides are accepted.
             let right = yours == expected || (normal.dot(*direction) == 0.0 && yours == -expected);
-            let diagnosis = (yours == -expected).then_some("the normal points away from the viewer");
+            let diagnosis = (yours == -expected).then_some("your normal points away from the viewer");
             let input = format!("face_forward({}, {})", normal.paste(), direction.paste());
             if right {
                 Ok(())

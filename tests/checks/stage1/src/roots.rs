@@ -1,4 +1,4 @@
-//! Which of two roots is the hit.
+//! `nearest_root`: which of two roots is the hit.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -10,10 +10,10 @@ use raykata::kit::RootQuery;
 use raykata::ray::Ray;
 
 pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> Outcome {
-    // First roots that are clearly out of range: among random ones the smallest that fails lies at an end of it.
+    // First test roots that are clearly out of range, because random roots shrink to an end of the range.
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let behind = "a root behind the ray: ray.contains(t) refuses it";
-    let beyond = "a root beyond t_max: ray.contains(t) refuses it";
+    let behind = "you return a root behind the ray, which ray.contains(t) refuses";
+    let beyond = "you return a root beyond t_max, which ray.contains(t) refuses";
     for (roots, ray, diagnosis) in
         [([-2.0, -1.0], ray, behind), ([2.0, 3.0], ray.with_range(0.0, 1.0), beyond)]
     {
@@ -42,13 +42,15 @@ pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> 
             }
             let diagnosis = match (yours, expected) {
                 (Some(t), _) if t == query.ray.t_min || t == query.ray.t_max => {
-                    "the range is open: its ends do not count"
+                    "you return an end of the range; the range is open: t_min and t_max do not count"
                 }
-                (Some(t), _) if !query.ray.contains(t) => "a root that ray.contains(t) refuses",
+                (Some(t), _) if !query.ray.contains(t) => "you return a root that ray.contains(t) refuses",
                 (None, Some(_)) if !query.ray.contains(first.min(second)) => {
-                    "the smaller root does not count, but the larger one does"
+                    "you return None: the smaller root does not count, but the larger one does"
                 }
-                (Some(_), Some(_)) => "the larger root; they come in any order",
+                (Some(_), Some(_)) => {
+                    "you return the larger root (the roots are not sorted: they come in any order)"
+                }
                 _ => "",
             };
             Err(Broken::new(query.call("nearest_root"), yours, expected, "the definition")
@@ -70,8 +72,8 @@ pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> Outcome
     for ((query, yours), (_, expected)) in queries.iter().zip(trial.kit.nearest_root(&queries)).zip(cases) {
         if yours != expected {
             let diagnosis = match yours {
-                Some(t) if !t.is_finite() => "NaN and infinity are no hits: ask ray.contains(t)",
-                _ => "a comparison with NaN is false, so an if-else put NaN in the place of the other root",
+                Some(t) if !t.is_finite() => "you return NaN or infinity, which ray.contains(t) refuses",
+                _ => "comparisons with NaN are false: an if-else can put NaN in the place of the other root",
             };
             let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
             return Err(broken.looks_like(Some(diagnosis)));

@@ -1,4 +1,4 @@
-//! The two ways to intersect a sphere: how their answers are judged, and what a wrong one looks like.
+//! The two methods of intersecting a sphere: how the checks judge their answers, and the diagnosis of a wrong answer.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -8,7 +8,7 @@ use checks::paste::Arguments;
 use raykata::kit::{Kit, SphereQuery};
 use raykata::shape::Sphere;
 
-/// One of the two ways to intersect a sphere.
+/// One of the two methods of intersecting a sphere.
 #[derive(Clone, Copy)]
 pub(super) struct Method {
     pub(super) name: &'static str,
@@ -22,7 +22,7 @@ pub(super) const GEOMETRIC: Method =
     Method { name: "sphere_geometric", ask: |kit, queries| kit.sphere_geometric(queries) };
 
 impl Method {
-    /// Judges answers against double precision.
+    /// Compares answers with the result in double precision.
     pub(super) fn judge(self, trial: &Trial<'_>, queries: &[SphereQuery]) -> Vec<Outcome> {
         compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
             let expected = double::sphere(&query.ray, &query.sphere);
@@ -39,7 +39,7 @@ impl Method {
         })
     }
 
-    /// Judges answers that are known exactly.
+    /// Compares answers with results that are known exactly.
     pub(super) fn judge_exact(
         self,
         trial: &Trial<'_>,
@@ -56,7 +56,7 @@ impl Method {
     }
 }
 
-/// Whether `t` is a root for a sphere whose radius is the square root of the true one.
+/// Whether `t` is a root for a sphere whose radius is the square root of the true radius.
 fn takes_radius_for_its_square(query: &SphereQuery, t: f32) -> bool {
     let sphere = Sphere { radius: query.sphere.radius.sqrt(), ..query.sphere };
     double::sphere_roots(&query.ray, &sphere).is_ok_and(|roots| is_one_of(t, roots))
@@ -66,7 +66,7 @@ fn is_one_of(t: f32, roots: Roots) -> bool {
     [roots.near, roots.far].iter().any(|root| (f64::from(t) - root).abs() <= 1e-5 * root.abs())
 }
 
-/// The mistake that gives this answer.
+/// The diagnosis: a known mistake that gives this answer, if there is one.
 pub(super) fn sphere_diagnosis(
     query: &SphereQuery,
     yours: Option<f32>,
@@ -78,31 +78,27 @@ pub(super) fn sphere_diagnosis(
         (f64::from(t) - exact).abs() <= 4.0 * tolerance + 1e-6 * exact.abs()
     };
     Some(match (yours, expected, roots) {
-        (Some(t), _, _) if t.is_nan() => "NaN is no hit: compare so that NaN fails",
-        (Some(t), _, _) if t <= query.ray.t_min => {
-            "a hit at or behind the start of the ray: ask ray.contains(t)"
-        }
-        (Some(t), _, _) if t >= query.ray.t_max => {
-            "a hit at or beyond the end of the ray: ask ray.contains(t)"
-        }
+        (Some(t), _, _) if t.is_nan() => "you return NaN: compare so that NaN fails",
+        (Some(t), _, _) if t <= query.ray.t_min => "you return a t at or before t_min: ask ray.contains(t)",
+        (Some(t), _, _) if t >= query.ray.t_max => "you return a t at or beyond t_max: ask ray.contains(t)",
         (Some(t), Expected::Hit { t: exact, .. }, Some(roots))
             if exact < roots.far && near(t, roots.far, roots.tolerance) =>
         {
-            "your t equals the far root"
+            "you return the far root"
         }
         (Some(t), Expected::Hit { t: exact, .. }, Some(roots))
             if (length - 1.0).abs() > 1e-3 && near(t, exact * length, roots.tolerance) =>
         {
-            "your t counts world units; it must count lengths of direction (is direction taken for a unit vector?)"
+            "your t counts world units; it must count lengths of direction (which is no unit vector here)"
         }
         (Some(t), _, Some(roots))
             if near(t, -roots.near, roots.tolerance) || near(t, -roots.far, roots.tolerance) =>
         {
-            "the sign of t is wrong: this is as far behind the ray as the sphere is before it"
+            "the sign of t is wrong: you return the negative of a root"
         }
         (Some(t), _, _) if takes_radius_for_its_square(query, t) => "r stands where r² belongs",
         (Some(t), _, Some(roots)) if near(t, 0.5 * (roots.near + roots.far), roots.tolerance) => {
-            "your t is the point nearest to the centre: half the chord is missing"
+            "you return the t of the point nearest to the centre: half the chord is missing"
         }
         (None, Expected::Hit { .. }, Some(roots)) if roots.near < 0.0 => {
             "the ray starts inside: the near root is behind it, and the far one counts (t_ca < 0 is no miss)"
@@ -111,15 +107,15 @@ pub(super) fn sphere_diagnosis(
             if f64::from((query.ray.origin - query.sphere.center).length())
                 > 100.0 * f64::from(query.sphere.radius) =>
         {
-            "a far, small sphere: b² - a c (or L·L - t_ca²) cancels; use r² - |f⊥|²"
+            "the sphere is small and far away: b² - a c (or L·L - t_ca²) cancels; use r² - |f⊥|²"
         }
         (Some(_), Expected::Hit { .. }, Some(_)) if (length - 1.0).abs() > 1e-3 => {
-            "direction is not of unit length here: is a = d·d left out?"
+            "direction is not a unit vector here: did you leave out a = d·d?"
         }
         (None, Expected::Hit { .. }, _) => {
-            "a hit is lost: is -r² left out, or the sign of b (or t_ca) wrong?"
+            "you return None for a ray that hits: is -r² left out, or the sign of b (or t_ca) wrong?"
         }
-        (Some(_), Expected::Miss, _) => "a hit where the ray passes by",
+        (Some(_), Expected::Miss, _) => "you return a hit, but the ray misses the sphere",
         _ => return None,
     })
 }

@@ -1,4 +1,4 @@
-//! Ray against sphere: each law for both methods.
+//! Ray-sphere intersection: each check for both methods.
 
 use super::sphere_method::{ALGEBRAIC, GEOMETRIC, Method};
 use checks::Trial;
@@ -35,14 +35,14 @@ for_both_methods! {
 }
 
 pub(super) fn sphere_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
-    // First the ray that the slide draws: what random rays shrink to starts within the sphere.
+    // First test the ray that the slide draws. Random rays that fail shrink to rays that start inside the sphere.
     let drawn = SphereQuery {
         ray: Ray::new(Vec3::new(-5.0, 1.0, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 2.0 },
     };
     method.judge(trial, &[drawn]).into_iter().collect::<Outcome>()?;
     let inputs = (ray(), sphere(), any::<bool>()).prop_map(|(ray, sphere, aim)| {
-        // Half of the rays are aimed at the sphere, or hardly any would hit it.
+        // Aim half of the rays at the sphere, because hardly any random ray hits it.
         let to_center = sphere.center - ray.origin;
         let direction = if aim && to_center != Vec3::ZERO {
             (to_center.normalize() + 0.1 * ray.direction).normalize()
@@ -67,7 +67,7 @@ pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
         .prop_map(|(origin, direction, sphere)| SphereQuery { ray: Ray::new(origin, direction), sphere });
     trial.forall(2000, inputs.clone(), |queries| method.judge(trial, queries))?;
 
-    // A direction twice as long makes t half as large, to the last bit: powers of two change no rounding.
+    // A direction 1024 times as long makes t exactly 1024 times smaller, because powers of two change no rounding.
     trial.forall(500, inputs, |queries| {
         let longer = |query: &SphereQuery| SphereQuery {
             ray: Ray::new(query.ray.origin, 1024.0 * query.ray.direction),
@@ -81,10 +81,10 @@ pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
             true => Ok(()),
             false => {
                 let expected = answer.map(|t| t / 1024.0);
-                let lost = scaled.is_none().then_some(
-                    "a fixed epsilon drops it: t is small because direction is long, not because the hit is near",
-                );
-                let source = "1/1024 of the t for direction / 1024";
+                let lost = scaled
+                    .is_none()
+                    .then_some("a fixed epsilon rejects this hit: t is small because direction is long");
+                let source = "the t for direction / 1024, divided by 1024";
                 Err(Broken::new(query.call(method.name), scaled, expected, source).looks_like(lost))
             }
         })
@@ -112,7 +112,7 @@ pub(super) fn sphere_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
     )
 }
 
-/// S2, S4: a unit sphere up to 100,000 away, and a sphere of a thousandth at 100. Each ray is aimed at the sphere.
+/// S2, S4: spheres of radius 0.001 to 1 at distances of 10 to 100,000. Each ray is aimed at its sphere.
 pub(super) fn sphere_far(trial: &Trial<'_>, method: Method) -> Outcome {
     let inputs = (unit(), rough_point(0.55), magnitude(1.0, 5.0), magnitude(-3.0, 0.0)).prop_map(
         |(away, at, distance, radius)| {
@@ -124,8 +124,8 @@ pub(super) fn sphere_far(trial: &Trial<'_>, method: Method) -> Outcome {
         },
     );
     trial.forall(4000, inputs, |queries| method.judge(trial, queries))?;
-    // S6: from 100 above a ground of radius 100,000 no formula in single precision keeps all digits, but the error
-    // must stay within the rounding of the inputs.
+    // S6: the ground is a sphere of radius 100,000, about 100 below the origins. No formula in single precision keeps
+    // all digits there, but the error must stay within the rounding of the inputs.
     let ground = (rough_point(100.0), unit()).prop_map(|(origin, direction)| {
         let origin = origin + Vec3::new(0.0, 110.0, 0.0);
         let direction = Vec3::new(direction.x, -direction.y.abs() - 0.2, direction.z).normalize();
@@ -144,16 +144,12 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
     };
     method.judge_exact(
         trial,
-        &[(
-            at_height(1.0),
-            Some(5.0),
-            "the ray touches the sphere: the discriminant is exactly 0, and that is a hit",
-        )],
+        &[(at_height(1.0), Some(5.0), "the ray touches the sphere: a discriminant of exactly 0 is a hit")],
     )?;
-    // One step higher misses, one step lower hits, and neither may make NaN.
+    // One float higher the ray misses, one float lower it hits. Neither answer may be NaN.
     let (above, below) = (at_height(1.0f32.next_up()), at_height(1.0f32.next_down()));
     for (query, yours) in [above, below].iter().zip((method.ask)(trial.kit, &[above, below])) {
-        // A step of height moves the root by sqrt(2u): 3.5e-4 to either side of 5.
+        // One float of height moves the root by sqrt(2u), which is 3.5e-4, to either side of 5.
         if yours.is_some_and(|t| !((t - 5.0).abs() < 1e-3)) {
             return Err(Broken::with_texts(
                 query.call(method.name),
@@ -167,7 +163,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
-    // Points exactly on the sphere: leaving it outwards meets nothing, crossing it meets the other side.
+    // The origin is exactly on the sphere: a ray outwards misses, and a ray inwards hits the far side.
     let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
     let from = |origin: Vec3, direction: Vec3| SphereQuery { ray: Ray::new(origin, direction), sphere };
     method.judge_exact(
@@ -188,8 +184,8 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
                 None,
                 "the ray starts on the sphere and runs along it: t = 0 does not count",
             ),
-            (from(Vec3::X, Vec3::NEG_X), Some(2.0), "the ray starts on the sphere and crosses it"),
-            (from(Vec3::NEG_Z, Vec3::Z), Some(2.0), "the ray starts on the sphere and crosses it"),
+            (from(Vec3::X, Vec3::NEG_X), Some(2.0), "the ray starts on the sphere and hits its far side"),
+            (from(Vec3::NEG_Z, Vec3::Z), Some(2.0), "the ray starts on the sphere and hits its far side"),
         ],
     )
 }
@@ -197,7 +193,8 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
 pub(super) fn sphere_nonsense(trial: &Trial<'_>, method: Method) -> Outcome {
     let ray = Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X);
     let unit = Sphere { center: Vec3::ZERO, radius: 1.0 };
-    let nothing = "such a sphere or ray cannot be hit; compare so that NaN fails";
+    let nothing =
+        "radius 0, a zero direction, NaN or infinity: the sphere cannot be hit; compare so that NaN fails";
     method.judge_exact(
         trial,
         &[
@@ -217,17 +214,17 @@ pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, inputs, |cases| {
         let queries: Vec<_> = cases.iter().map(|(sphere, point, _)| (*sphere, *point)).collect();
         compare(cases, trial.kit.sphere_normal(&queries), |(sphere, point, out), yours| {
-            // The point is rounded at the size of centre plus radius; seen from the centre that turns the normal.
+            // The point is rounded at the size of centre plus radius, and this error turns the normal.
             let tolerance = 8.0 * f32::EPSILON * (1.0 + sphere.center.length() / sphere.radius);
             let right = (yours - *out).length() <= tolerance
                 && (yours.length() - 1.0).abs() <= 4.0 * f32::EPSILON + tolerance;
             let diagnosis = match () {
-                () if (yours + *out).length() <= tolerance => "the normal points inwards",
+                () if (yours + *out).length() <= tolerance => "your normal points inwards",
                 () if (yours - point.normalize_or_zero()).length() <= tolerance => {
-                    "the direction from the origin: subtract the centre first"
+                    "you return the direction from the world's origin: subtract the centre first"
                 }
                 () if (yours.normalize_or_zero() - *out).length() <= tolerance => {
-                    "the normal is not of unit length"
+                    "your normal is not of unit length"
                 }
                 () => "",
             };

@@ -1,4 +1,4 @@
-//! What a mesh has at its corners.
+//! Attributes of a mesh: interpolation, face normals and vertex normals.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -21,7 +21,7 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, inputs, |queries| {
         compare(queries, trial.kit.interpolate(queries), |query, yours| {
             let [a, b, c] = query.corners;
-            // Eighths of eighths: exact in single precision.
+            // All numbers are multiples of 1/64, so the sum is exact in single precision.
             let expected = query.weights.x * a + query.weights.y * b + query.weights.z * c;
             let input = format!(
                 "interpolate({}, [{}, {}, {}])",
@@ -31,9 +31,9 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
                 c.paste()
             );
             let diagnosis = if (yours.normalize_or_zero() - expected.normalize_or_zero()).length() < 1e-6 {
-                "the value is normalised: that is for normals, not for every attribute"
+                "your value is normalised: return the weighted sum as it is"
             } else {
-                "the weights are (α, β, γ) for the corners in this order"
+                "multiply the corners a, b, c by α, β, γ in this order"
             };
             if yours == expected {
                 Ok(())
@@ -55,11 +55,11 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
             let (u, v) = (b - a, c - a);
             let cross = u.cross(v);
             let expected = cross.try_normalize().filter(|_| cross != DVec3::ZERO).map(|n| n.as_vec3());
-            // Corners are multiples of 1/8 times the factor, so edges are exact; but once they are scaled they are rounded,
-            // and of a thin triangle the product is what little remains: some sixteen roundings of |u| |v|.
+            // Corners are multiples of 1/8 times the factor, so edges are exact. Scaling them rounds, and the cross
+            // product of a thin triangle is a small difference of large products: allow sixteen roundings of |u| |v|.
             let slack = (16.0 * U * u.length() * v.length() / cross.length()).max(1e-5);
             let unit = |normal: Vec3| (normal.length() - 1.0).abs() < 1e-5;
-            // By the same roundings edges in one line may have an area, unless the line is an axis.
+            // By the same roundings, collinear edges may have an area, unless they are parallel to an axis.
             let slanting =
                 [u, v].iter().all(|edge| edge.to_array().iter().filter(|x| **x != 0.0).count() > 1);
             let right = match (yours, expected) {
@@ -70,14 +70,18 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
                 (None, expected) => expected.is_none(),
             };
             let diagnosis = match (yours, expected) {
-                (Some(yours), _) if yours.is_nan() => "0/0: a triangle without area has no normal",
+                (Some(yours), _) if yours.is_nan() => {
+                    "you return NaN (0/0): a triangle without area has no normal"
+                }
                 (Some(yours), Some(expected)) if (yours + expected).length() < 1e-5 => {
-                    "the normal points the other way: u × v, not v × u"
+                    "your normal points the other way: compute u × v, not v × u"
                 }
                 (Some(yours), Some(expected)) if (yours.normalize_or_zero() - expected).length() < 1e-3 => {
-                    "the length is not 1: for tiny edges |u × v|² underflows, so scale u and v first"
+                    "your normal is not of length 1: |u × v|² underflows for tiny edges; scale u and v first"
                 }
-                (None, Some(_)) => "a small triangle has a normal, too: scale u and v before the product",
+                (None, Some(_)) => {
+                    "you return None for a small triangle: scale u and v before the cross product"
+                }
                 _ => "",
             };
             let input = call("face_normal", &[triangle]);
@@ -88,7 +92,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
             }
         })
     };
-    // Three corners on a line, and two or three in one point.
+    // Three corners on a line, two corners in one point, three corners in one point.
     let flat = [(Vec3::X, 2.0 * Vec3::X), (Vec3::X, Vec3::ZERO), (Vec3::ZERO, Vec3::ZERO)]
         .map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
     judge(&flat).into_iter().collect::<Outcome>()?;
@@ -113,7 +117,7 @@ pub(super) fn judge_normals(
     if normals.len() != mesh.positions.len() {
         let (yours, expected) =
             (format!("{} normals", normals.len()), format!("{} normals", mesh.positions.len()));
-        return Err(Broken::with_texts(input, yours, expected, "one a vertex"));
+        return Err(Broken::with_texts(input, yours, expected, "one per vertex"));
     }
     for (vertex, &yours) in normals.iter().enumerate() {
         if let Some(expected) = accept(vertex, yours) {
@@ -126,15 +130,15 @@ pub(super) fn judge_normals(
             let same = |n: Vec3| (yours - n.normalize_or_zero()).length() < 1e-4;
             let diagnosis = match () {
                 () if yours.is_nan() => {
-                    "0/0: normals that cancel have no average; take the normal of one face"
+                    "you return NaN (0/0): normals that cancel have no average; take the normal of one face"
                 }
-                () if (yours.length() - 1.0).abs() > 1e-4 => "the normal is not of unit length",
-                () if (yours + expected).length() < 1e-3 => "the normal points inwards",
+                () if (yours.length() - 1.0).abs() > 1e-4 => "your normal is not of unit length",
+                () if (yours + expected).length() < 1e-3 => "your normal points inwards",
                 () if same(weighed.iter().sum()) => {
-                    "each face counts by its area: normalise the normals of the faces before adding them up"
+                    "you weight each face by its area: normalise the face normals before you add them"
                 }
                 () if weighed.iter().any(|&face| same(face)) => {
-                    "the normal of one face: add up those of all faces around the vertex"
+                    "you return the normal of one face: add up those of all faces around the vertex"
                 }
                 () => "",
             };
@@ -150,7 +154,7 @@ pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> Outcome {
     judge_normals(trial, "an octahedron", &octahedron, |vertex, yours| {
         differs(yours, octahedron.positions[vertex])
     })?;
-    // The average counts each face once, however large: one face up, one to the side, of very different areas.
+    // The average counts each face once, whatever its area: one large face points up, one small face to the side.
     let corner = Mesh {
         positions: vec![Vec3::ZERO, 8.0 * Vec3::X, 8.0 * Vec3::Y, vec3(0.0, 0.0, 0.125), vec3(0.0, 4.0, 0.0)],
         triangles: vec![[0, 1, 2], [0, 4, 3]],
@@ -165,7 +169,7 @@ pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn vertex_normals_that_cancel_are_still_normals(trial: &Trial<'_>) -> Outcome {
-    // T14: a sheet with both sides as faces; a face without area; a vertex without faces.
+    // T14: a sheet whose two sides are faces, a face without area, and a vertex without faces.
     let sheet = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, vec3(5.0, 5.0, 5.0)],
         triangles: vec![[0, 1, 2], [0, 2, 1], [0, 1, 1]],

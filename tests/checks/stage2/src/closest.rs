@@ -1,4 +1,4 @@
-//! The closest of many.
+//! Brute force: the closest hit of many primitives.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -9,14 +9,14 @@ use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
 
 pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome {
-    // First tables that tell one mistake from another.
+    // First test small tables, on which each mistake gives another answer.
     for (primitives, diagnosis) in [
-        (vec![5.0], "the last primitive is left out: they are 0..n"),
+        (vec![5.0], "the last primitive is left out: their numbers are 0..n"),
         (
             vec![1.0, 3.0],
-            "the closest hit is not kept: a later one replaces it (is it kept under another name?)",
+            "the closest hit is not kept: a later hit replaces it (do you assign it to another variable?)",
         ),
-        (vec![3.0, 1.0], "the closest hit is not kept: the first one stays, or ends the search"),
+        (vec![3.0, 1.0], "the closest hit is not kept: the first hit stays, or ends the search"),
     ] {
         let ray = Ray::new(Vec3::ZERO, Vec3::X);
         let table = Table { boxes: Vec::new(), primitives };
@@ -50,10 +50,10 @@ pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome
                         "the last primitive is left out"
                     }
                     (Some((_, yours)), Some((_, expected))) if yours == expected => {
-                        "of two hits at one t the smaller number wins"
+                        "of two hits at the same t the primitive with the smaller number wins"
                     }
                     (Some((_, yours)), Some((_, expected))) if yours > expected => {
-                        "the closest hit is not kept (is it assigned to another name?)"
+                        "the closest hit is not kept (do you assign it to another variable?)"
                     }
                     _ => "",
                 };

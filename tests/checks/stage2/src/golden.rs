@@ -1,4 +1,4 @@
-//! A golden table and a picture.
+//! A table of hits and a picture, both compared with references.
 
 use super::attributes::octahedron;
 use super::method::{CHOICE, CRAMER, GRAM};
@@ -9,7 +9,7 @@ use raykata::kit::{InterpolateQuery, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// What each method finds on a fan of rays, to four digits: beyond that methods differ.
+/// The hits of each method on a fan of 25 rays, to four digits, because the methods differ in later digits.
 pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> Outcome {
     let triangle = Triangle { a: vec3(-1.0, -1.0, 0.0), b: vec3(2.0, -0.5, 0.5), c: vec3(0.0, 2.0, -0.5) };
     let eye = vec3(0.3, 0.2, 4.0);
@@ -63,7 +63,7 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> Outcome {
             }
         }
     }
-    // The outline is about 120 of 4800 pixels long; a ray that only just hits may fall either way.
+    // The outline crosses about 120 of 4800 pixels. There rounding decides whether a ray hits or misses.
     let film = picture::film_of(nearest.into_iter().map(|(_, color)| color).collect());
     picture::compare("stage2_octahedron", &film, &rays, 0.002)
 }

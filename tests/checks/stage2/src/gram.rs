@@ -15,7 +15,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
         let beside = u.any_orthogonal_vector() * 2f32.powi(-thinness);
         Triangle { a, b: a + u, c: a + (u + beside) }
     });
-    // T3: the direct formula gives 0 for the first and +9.5e-7 for the second.
+    // T3: the formula UV² - UU·VV gives 0 for the first triangle and +9.5e-7 for the second.
     let slide_cases = [
         Triangle { a: Vec3::ZERO, b: Vec3::X, c: vec3(2.0, 1e-4, 0.0) },
         Triangle { a: Vec3::ZERO, b: Vec3::ONE, c: vec3(1.0, 1.0, 1.0001) },
@@ -31,7 +31,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
             ];
             let input = call("gram_scalars", &[triangle]);
             for (name, yours, exact, size) in scalars {
-                // Three products and two sums.
+                // A dot product has three products and two sums.
                 if (f64::from(yours) - exact).abs() > 8.0 * double::U * f64::from(size) {
                     let (describe, expected) = (format!("{name} = {yours}"), format!("{name} = {exact}"));
                     let other = scalars.iter().find(|(_, _, other, _)| {
@@ -44,7 +44,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
                 }
             }
             let d = -u.as_dvec3().cross(v.as_dvec3()).length_squared();
-            // The cross product is rounded at the size of |u| |v|; squared, that is what remains of D.
+            // The cross product has an error of about |u| |v| roundings, and D is its square.
             let slack = 16.0 * double::U * f64::from(u.length() * v.length());
             let tolerance = 2.0 * slack * d.abs().sqrt() + slack * slack;
             if yours.d <= 0.0 && (f64::from(yours.d) - d).abs() <= tolerance {
@@ -59,7 +59,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
             if (f64::from(yours.d) + d).abs() <= tolerance {
                 return Err(broken.looks_like(Some("the sign of D is wrong: it is UV² - UU·VV = -|u × v|²")));
             }
-            Err(broken.looks_like(Some("UV² - UU·VV cancels for a thin triangle; D is -|u × v|²")))
+            Err(broken.looks_like(Some("UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²")))
         })
     };
     judge(&slide_cases).into_iter().collect::<Outcome>()?;

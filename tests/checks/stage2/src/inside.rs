@@ -13,7 +13,7 @@ use raykata::kit::{InsideQuery, Kit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// A point in the plane of a triangle, as the hit of a ray, with its true weights.
+/// A point where a ray hits the plane of a triangle, with its barycentric coordinates `[α, β, γ]`.
 pub(super) fn plane_points() -> impl Strategy<Value = (InsideQuery, [f64; 3])> + Clone {
     aimed(triangle(), point(8)).prop_map(|TriangleQuery { ray, triangle }| {
         let hit = double::triangle(&ray, &triangle);
@@ -22,14 +22,16 @@ pub(super) fn plane_points() -> impl Strategy<Value = (InsideQuery, [f64; 3])> +
     })
 }
 
-/// Whether the point is inside: `None` if it is too near a side, or the triangle too thin, to tell.
+/// Whether the point is inside. `None` if rounding may decide: the point is near a side, the triangle is thin, or
+/// the ray is nearly parallel to it.
 pub(super) fn clearly_inside(query: &InsideQuery, weights: [f64; 3]) -> Option<bool> {
     let Triangle { a, b, c } = query.triangle;
     let area = (b - a).cross(c - a).length();
     let thin = (b - a).length() * (c - a).length() / area;
     let facing = query.ray.direction.normalize().dot((b - a).cross(c - a) / area).abs();
     let least = weights.into_iter().fold(f64::INFINITY, f64::min);
-    // A side's plane through the eye is no plane if the eye lies on the side's line; grazing rays come close.
+    // A side and the ray's origin span no plane if the origin lies on the line of the side. For a grazing ray it nearly
+    // does.
     let sharp = thin < 30.0 && facing > 0.05 && weights.iter().all(|w| w.is_finite());
     (sharp && least.abs() > 1e-3).then_some(least > 0.0)
 }
@@ -49,9 +51,9 @@ pub(super) fn judge_inside(
                     let backwards = normal.dot(query.ray.direction) > 0.0;
                     let diagnosis = match yours {
                         false if backwards => {
-                            "seen from behind all three signs turn: accept all ≥ 0 or all ≤ 0"
+                            "seen from behind, all three signs change: accept all ≥ 0 or all ≤ 0"
                         }
-                        false => "seen from the front all three signs are alike: accept all ≥ 0 or all ≤ 0",
+                        false => "for a point inside, all three signs are equal: accept all ≥ 0 or all ≤ 0",
                         true => "a point beyond a side: is P0 subtracted twice, or a side left out or turned around?",
                     };
                     Err(Broken::new(query.call(name), yours, inside, "double precision")
@@ -65,14 +67,16 @@ pub(super) fn judge_inside(
 
 pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
     judge_inside(trial, "inside_by_planes", |kit, queries| kit.inside_by_planes(queries))?;
-    // T10: the eye on the line of a side makes that plane's normal 0, and normalising it makes NaN.
+    // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalising it gives NaN.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
     let eye = vec3(-4.0, 0.0, 0.0);
     let query = InsideQuery { ray: Ray::new(eye, vec3(5.0, 0.0, 0.0)), point: vec3(1.0, 0.0, 0.0), triangle };
     match trial.kit.inside_by_planes(&[query])[..] {
         [true] => Ok(()),
         ref yours => Err(Broken::new(query.call("inside_by_planes"), yours, [true], "exact arithmetic")
-            .looks_like(Some("the eye lies on the line of a side: normalising that plane's normal is 0/0"))),
+            .looks_like(Some(
+                "the ray's origin is on the line of a side: accept its 0, and do not normalise (0/0)",
+            ))),
     }
 }
 
@@ -86,20 +90,23 @@ pub(super) fn inside_by_areas_gives_the_weights_of_the_corners(trial: &Trial<'_>
         compare(cases, trial.kit.inside_by_areas(&queries), |(query, weights), yours| {
             let Some(inside) = clearly_inside(query, *weights) else { return Ok(()) };
             let exact = DVec3::from_array(*weights);
-            // The point is rounded at its own size, and a thin triangle (up to 30 times) makes more of that.
+            // The point is rounded at its own size. A thin triangle magnifies this error, here up to 30 times.
             let right = yours.is_none_or(|yours| (yours.as_dvec3() - exact).abs().max_element() < 1e-3);
             if yours.is_some() == inside && right {
                 return Ok(());
             }
             let diagnosis = match yours {
                 Some(yours) if inside && (yours.element_sum() - 1.0).abs() > 1e-2 => {
-                    "the weights do not add up to 1: divide like by like, |u × v| is twice the area"
+                    "your coordinates do not add up to 1: |u × v| is twice the area of the triangle"
                 }
-                Some(_) if !inside => "areas without a sign cannot tell inside from outside: measure along the normal",
-                Some(yours) if (yours.as_dvec3().truncate() - exact.truncate()).length() > 1e-3
-                    && (yours.as_dvec3() - DVec3::new(exact.z, exact.y, exact.x)).length() < 1e-3 =>
+                Some(_) if !inside => {
+                    "areas without a sign cannot tell inside from outside: use signed areas"
+                }
+                Some(yours)
+                    if (yours.as_dvec3().truncate() - exact.truncate()).length() > 1e-3
+                        && (yours.as_dvec3() - DVec3::new(exact.z, exact.y, exact.x)).length() < 1e-3 =>
                 {
-                    "the weights belong to other corners: α to a, β to b, γ to c (the slide counts the other way)"
+                    "your values belong to other corners: α to a, β to b, γ to c (the slide differs)"
                 }
                 _ => "",
             };

@@ -1,6 +1,6 @@
 //! Stage 2: triangles and meshes.
 //!
-//! `meet` (laws for all three methods; how they are judged is in `method`) · `gram` · `inside` · `attributes` ·
+//! `meet` (checks for all three methods; `method` judges the answers) · `gram` · `inside` · `attributes` ·
 //! `closest` · `golden`
 
 mod attributes;

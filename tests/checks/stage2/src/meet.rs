@@ -1,4 +1,4 @@
-//! Ray against triangle: each law for all three methods.
+//! Ray-triangle intersection: each check for all three methods.
 
 use super::method::{CHOICE, CRAMER, GRAM, Method, aimed, describe};
 use checks::Trial;
@@ -62,7 +62,7 @@ for_all_methods! {
 }
 
 pub(super) fn triangle_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
-    // First a ray on which every formula is right that is right on any: what it gets wrong is describe most plainly.
+    // First test a simple ray at a simple triangle, because its message is the easiest to read.
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let ray = Ray::new(vec3(0.125, 0.5, 2.0), vec3(0.0, 0.0, -0.5));
     let drawn = TriangleQuery { ray, triangle: unit };
@@ -70,7 +70,8 @@ pub(super) fn triangle_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(6000, aimed(triangle(), point(8)), |queries| method.judge(trial, queries))
 }
 
-/// T1, T2, T7: the three regions beyond the sides and the three beyond the corners, seen along an axis and aslant.
+/// T1, T2, T7: the three regions beyond the sides and the three beyond the corners, for rays along an axis and for
+/// slanted rays.
 pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let places = [
@@ -90,7 +91,7 @@ pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
         });
         method.judge(trial, &queries).into_iter().collect::<Outcome>()?;
     }
-    // The slide's determinant is right for the rays along z above, and wrong here: t is 2.
+    // The slide's determinant is right for the rays along z above and wrong for this ray, whose t is 2.
     let slanted = TriangleQuery {
         ray: Ray::new(vec3(-2.5, -4.5, -6.25), vec3(1.0, 2.0, 3.0)),
         triangle: Triangle { a: Vec3::ZERO, b: vec3(-1.0, -1.0, 0.0), c: vec3(-1.0, -1.0, -1.0) },
@@ -105,7 +106,7 @@ pub(super) fn triangle_windings(trial: &Trial<'_>, method: Method) -> Outcome {
         triangle: unit,
     });
     method.judge(trial, &sides).into_iter().collect::<Outcome>()?;
-    // The corners in all six orders: the same verdict and the same t, from the front and from the back.
+    // All six orders of the corners must give the same verdict and the same t, from the front and from the back.
     trial.forall(1000, aimed(triangle(), point(8)), |queries| {
         let orders = |query: &TriangleQuery| {
             let Triangle { a, b, c } = query.triangle;
@@ -141,7 +142,7 @@ pub(super) fn triangle_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 pub(super) fn triangle_edges(trial: &Trial<'_>, method: Method) -> Outcome {
-    // Sides are powers of two and the ray runs along an axis, so every method gets these weights exactly.
+    // The sides are powers of two and the ray runs along an axis, so every method computes β and γ exactly.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
     let at = |x: f32, y: f32| {
         let ray = Ray::new(vec3(x, y, 2.0), Vec3::NEG_Z);
@@ -156,7 +157,7 @@ pub(super) fn triangle_edges(trial: &Trial<'_>, method: Method) -> Outcome {
     method.judge_exact(trial, &on_the_rim.map(|(x, y)| at(x, y)))
 }
 
-/// T11: a scene a million times smaller or larger gives the same verdict, the same weights, and `t` times the factor.
+/// T11: a scene a million times smaller or larger gives the same verdict, the same β and γ, and `t` times the factor.
 pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(1000, aimed(triangle(), point(8)), |queries| {
         let answers = (method.ask)(trial.kit, queries);
@@ -186,9 +187,8 @@ pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
                     describe(expected),
                     "the answer at scale 1",
                 );
-                let diagnosis = yours
-                    .is_none()
-                    .then_some("a fixed limit such as |det| < 1e-6 makes small triangles vanish");
+                let diagnosis =
+                    yours.is_none().then_some("a fixed limit such as |det| < 1e-6 rejects small triangles");
                 Err(broken.looks_like(diagnosis))
             });
             outcomes = outcomes.into_iter().zip(judged).map(|(one, other)| one.and(other)).collect();
@@ -197,7 +197,7 @@ pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
     })
 }
 
-/// T4: a small mesh at (148376, 1234, -223423), with the ray's origin near it.
+/// T4: small triangles at (148376, 1234, -223423), with the ray's origin near them.
 pub(super) fn triangle_far(trial: &Trial<'_>, method: Method) -> Outcome {
     let place = vec3(148_376.0, 1_234.0, -223_423.0);
     let triangles = (rough_point(4.0), rough_point(4.0), rough_point(4.0))
@@ -210,7 +210,7 @@ pub(super) fn triangle_far(trial: &Trial<'_>, method: Method) -> Outcome {
             .map(|outcome| {
                 outcome.map_err(|broken| match broken.diagnosis {
                     None => broken.looks_like(Some(
-                        "far from the origin o + t d rounds too coarsely: subtract o first",
+                        "far from the origin, o + t d is rounded too coarsely: subtract o first",
                     )),
                     Some(_) => broken,
                 })
@@ -226,7 +226,7 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
     let with = |a, b, c| TriangleQuery { ray: down, triangle: Triangle { a, b, c } };
     let p = vec3(0.25, 0.25, 0.0);
     let flat = "a triangle without area, or a ray along its plane, divides by 0: that is a miss";
-    let nan = "NaN is no hit: compare so that NaN fails";
+    let nan = "NaN is never a hit: compare so that NaN fails";
     method.judge_exact(
         trial,
         &[
@@ -254,7 +254,7 @@ pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
         },
     };
     method.judge_exact(trial, &[(sliver, None, flat)])?;
-    // Sizes that overflow single precision may hit or miss, but never with a NaN.
+    // For sizes that overflow single precision both a hit and a miss are accepted, but a hit must not contain NaN.
     let huge = with(-1e20 * Vec3::ONE, 1e20 * Vec3::X, 1e20 * Vec3::Y);
     for yours in (method.ask)(trial.kit, &[huge]).into_iter().flatten() {
         if !(yours.t.is_finite() && yours.beta.is_finite() && yours.gamma.is_finite()) {

@@ -1,4 +1,4 @@
-//! The three ways to intersect a triangle: how their answers are judged, and what a wrong one looks like.
+//! The three methods of intersecting a triangle: how the checks judge their answers, and the diagnosis of a wrong one.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -11,7 +11,7 @@ use raykata::kit::{Kit, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// One of the ways to intersect a triangle.
+/// One of the three methods of intersecting a triangle.
 #[derive(Clone, Copy)]
 pub(super) struct Method {
     pub(super) name: &'static str,
@@ -28,6 +28,7 @@ pub(super) const CHOICE: Method =
     Method { name: "triangle_choice", ask: |kit, queries| kit.triangle_choice(queries) };
 
 impl Method {
+    /// Compares answers with the result in double precision.
     pub(super) fn judge(self, trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Outcome> {
         compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
             let expected = double::triangle(&query.ray, &query.triangle);
@@ -44,6 +45,7 @@ impl Method {
         })
     }
 
+    /// Compares answers with results that are known exactly.
     pub(super) fn judge_exact(
         self,
         trial: &Trial<'_>,
@@ -81,17 +83,21 @@ pub(super) fn triangle_diagnosis(
     let (beta, gamma) = (expected.beta, expected.gamma);
     let alpha = 1.0 - beta - gamma;
     Some(match (yours, expected.t) {
-        (Some(hit), _) if hit.t.is_nan() || hit.beta.is_nan() => "NaN is no hit: compare so that NaN fails",
+        (Some(hit), _) if hit.t.is_nan() || hit.beta.is_nan() => "you return NaN: compare so that NaN fails",
         (Some(hit), _) if hit.t <= query.ray.t_min => {
-            "a hit at or behind the start of the ray: ask ray.contains(t)"
+            "you return a t at or before t_min: ask ray.contains(t)"
         }
-        (Some(hit), _) if hit.t >= query.ray.t_max => "a hit beyond the end of the ray: ask ray.contains(t)",
+        (Some(hit), _) if hit.t >= query.ray.t_max => {
+            "you return a t at or beyond t_max: ask ray.contains(t)"
+        }
         (Some(_), Expected::Miss) if beta < 0.0 || gamma < 0.0 => {
-            "a point outside with one weight below 0: 0 ≤ s + t ≤ 1 is not enough, s ≥ 0 and t ≥ 0 as well"
+            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well"
         }
-        (Some(_), Expected::Miss) if alpha < 0.0 => "a point beyond the third side: β + γ ≤ 1 is not tested",
+        (Some(_), Expected::Miss) if alpha < 0.0 => {
+            "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"
+        }
         _ if method == CRAMER.name && slide_determinant_explains(query, yours, expected) => {
-            "the determinant as the slide prints it: it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
+            "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)"
         }
         (Some(hit), _) if !near(hit.beta, beta) && near(hit.beta, gamma) && near(hit.gamma, beta) => {
             "β and γ look swapped"
@@ -100,7 +106,7 @@ pub(super) fn triangle_diagnosis(
             if !near(hit.beta, beta) && near(hit.beta, alpha)
                 || !near(hit.gamma, gamma) && near(hit.gamma, alpha) =>
         {
-            "a weight of corner a: β belongs to b and γ to c"
+            "you return α, a weight of corner a: β belongs to b and γ to c"
         }
         (Some(hit), Expected::Hit { t, .. }) if f64::from(hit.t) * t < 0.0 => "the sign of t is wrong",
         (Some(hit), Expected::Hit { t, .. })
@@ -109,13 +115,14 @@ pub(super) fn triangle_diagnosis(
             "your t counts world units; it must count lengths of direction"
         }
         (None, Expected::Hit { .. }) => {
-            "a hit was lost: is the triangle tested from one side only, or a - o turned around?"
+            "you return None for a hit: is the triangle tested from one side only, or a - o turned around?"
         }
         _ => return None,
     })
 }
 
-/// Whether the determinant that the slide prints differs much from the true one here, and gives this answer.
+/// Whether the determinant that the slide prints explains this answer: it differs clearly from the right one, and the
+/// answer follows from it.
 fn slide_determinant_explains(
     query: &TriangleQuery,
     yours: Option<TriangleHit>,
@@ -130,7 +137,7 @@ fn slide_determinant_explains(
     if (slide - right).abs() <= 1e-3 * right.abs() {
         return false;
     }
-    // Numerators are right, so all three results are off by one factor.
+    // The numerators are right, so the same factor is wrong in all three results.
     let factor = f64::from(right) / f64::from(slide);
     let [t, beta, gamma] = [t, expected.beta, expected.gamma].map(|value| factor * value);
     match yours {
@@ -141,7 +148,7 @@ fn slide_determinant_explains(
     }
 }
 
-/// A ray that is aimed at the point `(β, γ)` of a triangle, inside or out.
+/// Rays that are aimed at a point `(β, γ)` in the plane of a triangle, inside or outside of it.
 pub(super) fn aimed(
     triangles: impl Strategy<Value = Triangle> + Clone,
     origins: impl Strategy<Value = Vec3> + Clone,

@@ -1,4 +1,4 @@
-//! Boxes: bounds, union, centroid, area.
+//! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
 use checks::broken::{Broken, Outcome};
 use checks::double::{self};
@@ -18,9 +18,9 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> Outcome {
             let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
             let diagnosis = match () {
                 () if yours.contains_box(&expected) => {
-                    "a padded box: slabs are closed, so a flat box needs none"
+                    "you return a padded box: boxes are closed, so even a flat box needs no padding"
                 }
-                () if expected.contains_box(&yours) => "a corner is left out",
+                () if expected.contains_box(&yours) => "your box leaves out a corner",
                 () => "",
             };
             let input = call("triangle_bounds", &[triangle]);
@@ -40,7 +40,7 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, spheres, |spheres| {
         compare(spheres, trial.kit.sphere_bounds(spheres), |sphere, yours| {
             let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
-            // Half a step for the rounding and two steps outwards; a step is two roundings at most.
+            // Allow half a float for the rounding and two floats outwards; a float is two roundings at most.
             let slack = (center.abs() + radius) * 5.0 * double::U;
             let near = |yours: Vec3, exact: glam::DVec3| (yours.as_dvec3() - exact).abs().cmple(slack).all();
             let right = near(yours.min, center - radius) && near(yours.max, center + radius);
@@ -52,10 +52,10 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
             );
             let diagnosis = match yours.max - yours.min {
                 size if (size - 2.0 * sphere.radius).abs().max_element() < 1e-3 * sphere.radius => {
-                    "the box is elsewhere: go one radius either way from the centre"
+                    "your box has the right size but the wrong place: go one radius from the centre"
                 }
                 size if size.max_element() < 2.0 * sphere.radius => {
-                    "the box is too small: one radius, not half of one, either way"
+                    "your box is too small: go one whole radius from the centre to each side"
                 }
                 _ => "",
             };
@@ -68,7 +68,7 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-/// A box, possibly flat.
+/// Boxes; some of them are flat.
 pub(super) fn aabb() -> impl Strategy<Value = Aabb> + Clone {
     (point(4), point(4)).prop_map(|(p, q)| Aabb::new(p.min(q), p.max(q)))
 }
@@ -84,7 +84,9 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> Outcome {
                 () if first.is_empty() != second.is_empty() => {
                     "the empty box (inf, -inf) must change nothing"
                 }
-                () if yours == shared => "what both boxes share: take the smaller min and the larger max",
+                () if yours == shared => {
+                    "you return what both boxes share: take the smaller min and the larger max"
+                }
                 () => "",
             };
             if yours == expected {
@@ -99,11 +101,14 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> Outcome {
 pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, aabb(), |boxes| {
         compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
-            let expected = 0.5 * (bounds.min + bounds.max); // eighths: exact
+            // Exact, because all coordinates are multiples of 1/8.
+            let expected = 0.5 * (bounds.min + bounds.max);
             let input = call("centroid", &[bounds]);
             let diagnosis = match () {
-                () if yours == bounds.min + bounds.max => "min + max, not halved",
-                () if yours == 0.5 * (bounds.max - bounds.min) => "half the size of the box, not its middle",
+                () if yours == bounds.min + bounds.max => "you return min + max, not halved",
+                () if yours == 0.5 * (bounds.max - bounds.min) => {
+                    "you return half the size of the box, not its middle"
+                }
                 () => "",
             };
             if yours == expected {
@@ -119,11 +124,14 @@ pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> Outcome {
     let boxes = prop_oneof![9 => aabb(), 1 => Just(Aabb::EMPTY)];
     trial.forall(1000, boxes, |boxes| {
         compare(boxes, trial.kit.surface_area(boxes), |bounds, yours| {
-            let expected = 2.0 * tree::half_area(bounds) as f32; // products of eighths: exact
+            // Exact, because the products are multiples of 1/64.
+            let expected = 2.0 * tree::half_area(bounds) as f32;
             let diagnosis = match yours {
-                _ if bounds.is_empty() => "an empty box has no faces; inf - -inf makes nonsense",
-                _ if yours == (bounds.max - bounds.min).element_product() => "the volume, not the area",
-                _ if 2.0 * yours == expected => "half of it: each face counts twice",
+                _ if bounds.is_empty() => "an empty box has no faces: return 0 (its size max - min is -inf)",
+                _ if yours == (bounds.max - bounds.min).element_product() => {
+                    "you return the volume, not the area"
+                }
+                _ if 2.0 * yours == expected => "you return half of the area: each face counts twice",
                 _ => "",
             };
             let input = call("surface_area", &[bounds]);

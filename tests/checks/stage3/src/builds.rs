@@ -1,4 +1,4 @@
-//! Whole trees.
+//! `build`: whole trees.
 
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
@@ -19,23 +19,27 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Out
             Some((yours, expected)) => {
                 let diagnosis = build_diagnosis(&yours);
                 let broken =
-                    Broken::with_texts(query.call("build"), yours, expected, "what makes a hierarchy");
+                    Broken::with_texts(query.call("build"), yours, expected, "the invariants of a hierarchy");
                 Err(broken.looks_like(known(diagnosis)))
             }
         }
     })
 }
 
-/// What goes wrong where a tree has this fault.
+/// The mistake that gives a tree this fault.
 fn build_diagnosis(fault: &str) -> &'static str {
     match fault {
-        _ if fault.ends_with("in 0 leaves") => "a primitive was left out: both halves together must hold all",
-        _ if fault.ends_with("leaves") => "a primitive got into both halves: where one ends the other begins",
-        _ if fault.contains(" holds ") => {
-            "the wrong leaf size: a leaf is made if n ≤ leaf_size, and only then"
+        _ if fault.ends_with("in 0 leaves") => {
+            "a primitive was left out: both halves together must hold all of them"
         }
-        _ if fault.contains("sticks out") => "the box of a node must be around all that lies below it",
-        _ if fault.ends_with("nodes") => "nothing needs no tree: add no node",
+        _ if fault.ends_with("leaves") => {
+            "a primitive is in both halves: the right half begins where the left half ends"
+        }
+        _ if fault.contains(" holds ") => {
+            "a leaf must hold 1 to leaf_size primitives: stop only at n ≤ leaf_size"
+        }
+        _ if fault.contains("sticks out") => "the box of a node must contain everything below it",
+        _ if fault.ends_with("nodes") => "without primitives there is nothing to build: add no node",
         _ => "",
     }
 }
@@ -53,7 +57,7 @@ pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> Outcome {
     trial.forall(400, inputs, |queries| judge_builds(trial, queries))
 }
 
-/// Builds with every split and two leaf sizes.
+/// Judges builds with every split strategy and two leaf sizes.
 pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
     for split in Split::ALL {
         for leaf_size in [1, 4] {
@@ -62,12 +66,18 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
                 Ok(outcomes) => outcomes.into_iter().collect::<Outcome>()?,
                 Err(KitError::Panicked { message, place }) => {
                     let diagnosis = match bounds.len() <= leaf_size {
-                        true => "so few primitives are a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
-                        false => "a split put everything on one side: fall back on one that divides",
+                        true => {
+                            "so few primitives fit into a leaf: stop at n ≤ leaf_size, not at n < leaf_size"
+                        }
+                        false => "did a split put everything on one side? fall back on one that does not",
                     };
                     let panic = format!("a panic at {place}: {message}");
-                    let broken =
-                        Broken::with_texts(query.call("build"), panic, "a tree", "what makes a hierarchy");
+                    let broken = Broken::with_texts(
+                        query.call("build"),
+                        panic,
+                        "a tree",
+                        "the invariants of a hierarchy",
+                    );
                     return Err(broken.looks_like(Some(diagnosis)));
                 }
                 Err(error) => kit_error::unwind(error),
@@ -85,7 +95,7 @@ pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Outco
     let line: Vec<Aabb> =
         (0..64).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32, 0.0, 0.0))).collect();
     build_all_ways(trial, &line)?;
-    // Halving each time: a spatial median takes one box off at every level.
+    // Each coordinate is half of the one before, so a spatial median splits off one box per level.
     let halving: Vec<Aabb> = (0..100)
         .map(|i| {
             let x = 2f32.powi(-i);
@@ -99,7 +109,7 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> Outcome {
     build_all_ways(trial, &[])?;
     build_all_ways(trial, &[UNIT_BOX])?;
     build_all_ways(trial, &[UNIT_BOX, Aabb::new(Vec3::splat(3.0), Vec3::splat(4.0))])?;
-    // A leaf of exactly leaf_size is a leaf.
+    // Exactly leaf_size primitives still fit into a leaf.
     let four: Vec<Aabb> =
         (0..4).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 1.0, 1.0, 1.0))).collect();
     build_all_ways(trial, &four)
@@ -112,7 +122,7 @@ pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> Outcome 
     bounds[13] = Aabb::new(Vec3::NAN, Vec3::NAN);
     build_all_ways(trial, &bounds).map_err(|broken| {
         broken.looks_like(Some(
-            "a NaN got into a box: Vec3::min keeps NaN in some orders, f32::min on each axis drops it",
+            "a NaN got into a box (use f32::min and f32::max on each axis) or into a sort (use total_cmp)",
         ))
     })
 }
@@ -141,7 +151,7 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> Outcome {
-    // Along x at 1, 2, 3, 4, 10, 20, 40, 80: no ties, so each rule has one tree.
+    // The boxes are at x = 1, 2, 3, 4, 10, 20, 40, 80. No two are equal, so each split strategy has exactly one tree.
     let bounds: Vec<Aabb> = [40.0, 1.0, 3.0, 20.0, 2.0, 80.0, 4.0, 10.0]
         .map(|x| Aabb::new(vec3(x, 0.0, 0.0), vec3(x + 0.5, 1.0, 1.0)))
         .to_vec();

@@ -1,4 +1,4 @@
-//! The cheapest cut, and what a dearer one looks like.
+//! The cheapest cut of the surface area heuristic, and the diagnosis of a more expensive one.
 
 use super::divided::{boxes, divided, judge_splits};
 use checks::broken::Outcome;
@@ -9,7 +9,7 @@ use raykata::bvh::PrimitiveRef;
 use raykata::scene::Split;
 
 pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> Outcome {
-    // First two sets on which each way to go wrong gives another cut: scattered boxes of all sizes, and a row with gaps.
+    // First test two sets on which each mistake gives another cut: scattered boxes of all sizes, and a row with gaps.
     let cubes = |all: &[(f32, f32, f32, f32)]| -> Vec<Aabb> {
         all.iter()
             .map(|&(x, y, z, size)| Aabb::new(vec3(x, y, z), vec3(x, y, z) + Vec3::splat(size)))
@@ -39,14 +39,14 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
 
 const AXES: [usize; 3] = [0, 1, 2];
 
-/// What is wrong with a cut: yours, expected, and the diagnosis.
+/// The error of a cut, if it has one: yours, expected, and the diagnosis. A `middle` of 0 is a leaf.
 fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, &'static str)> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
     let leaf = tree::leaf_is_cheaper(ordered, best);
     if middle == 0 {
         let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
         let too_soon =
-            "the leaf is taken too soon: C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) against C_i A(P) n(P)";
+            "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)";
         return (leaf == Some(false)).then(|| (String::new(), expected, too_soon));
     }
     if leaf == Some(true) {
@@ -55,15 +55,15 @@ fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, 
         return Some((yours, "None: a leaf is cheaper than any cut".into(), left_out));
     }
     let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
-    // Coincident centroids may be sorted in any order, which changes the cost of cuts between them; those sets are
-    // judged by the best cut that some order gives only if centroids differ.
+    // Equal centroids may be sorted in any order, which changes the cost of the cuts between them. So the check judges
+    // the cost only if all centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
         let describe = format!("cost {yours:.4} (cut before {middle})");
         (describe, format!("cost {best:.4}"), cut_diagnosis(ordered, middle))
     })
 }
 
-/// The rule by which such a cut would be the best.
+/// The mistake that makes this cut the best one.
 fn cut_diagnosis(ordered: &[PrimitiveRef], middle: usize) -> &'static str {
     let area = |part: &[PrimitiveRef]| tree::half_area(&tree::around(part.iter().map(|p| &p.bounds)));
     let areas = |left: &[PrimitiveRef], right: &[PrimitiveRef]| area(left) + area(right);
@@ -76,18 +76,20 @@ fn cut_diagnosis(ordered: &[PrimitiveRef], middle: usize) -> &'static str {
         left.len() == middle && tree::cut_cost(left, right) <= best * 1.0001
     };
     match () {
-        () if !(0..3).any(|axis| divided(ordered, middle, axis)) => "not sorted along any axis",
+        () if !(0..3).any(|axis| divided(ordered, middle, axis)) => {
+            "the primitives are not sorted along any axis"
+        }
         () if (0..3).any(|axis| divided(ordered, middle, axis) && is_least(&[axis], &tree::cut_cost)) => {
-            "only one axis tried: the best cut is along another"
+            "only one axis is tried: the best cut is along another"
         }
         () if AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)) => {
-            "sorted along another axis than that of the cut: sort again along the best axis"
+            "sorted along another axis than that of the best cut: sort again along that axis"
         }
-        () if is_least(&AXES, &areas) => "a cut by areas alone: the counts are left out",
+        () if is_least(&AXES, &areas) => "your cut is the best by areas alone: the counts are left out",
         () if ordered.len() > 3 && is_least(&AXES, &counts) => {
-            "a cut by counts alone: the areas are left out"
+            "your cut is the best by counts alone: the areas are left out"
         }
-        () => "not every cut is tried",
+        () => "a cheaper cut exists: not every cut is tried, or the cost has a wrong term",
     }
 }
 

@@ -1,4 +1,4 @@
-//! How divisions are judged: nothing is lost, something is on either side, and then the law of the strategy.
+//! How the checks judge a split: every primitive is kept, neither side is empty, and the rule of the strategy holds.
 
 use checks::broken::{Broken, Outcome};
 use checks::generate::{point, rough_point};
@@ -12,7 +12,7 @@ use raykata::bvh::PrimitiveRef;
 use raykata::kit::{SplitAnswer, SplitQuery};
 use raykata::scene::Split;
 
-/// Two boxes or more; every third set is on a coarse grid, so that many centroids coincide.
+/// Sets of two boxes or more. Two of five sets are on a coarse grid or along a line, so that many centroids coincide.
 pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let small = (rough_point(8.0), point(1)).prop_map(|(p, size)| Aabb::new(p, p + size.abs()));
     let coarse = point(1).prop_map(|p| Aabb::new(p.round(), p.round() + 1.0));
@@ -24,7 +24,8 @@ pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     ]
 }
 
-/// Judges splits: both sides hold something, and nothing is lost; then `law` looks at `(order, middle)`.
+/// Judges splits: every primitive is kept and neither side is empty. Then `law` judges the order and the middle, which
+/// is 0 for a leaf; it returns `(yours, expected, diagnosis)` if they are wrong.
 pub(super) fn judge_splits(
     trial: &Trial<'_>,
     split: Split,
@@ -41,8 +42,8 @@ pub(super) fn judge_splits(
         ids.sort_unstable();
         if ids != (0..n as u32).collect::<Vec<_>>() {
             let all = format!("the primitives 0..{n} in some order");
-            let broken = Broken::with_texts(input, format!("{order:?}"), all, "nothing may be lost");
-            return Err(broken.looks_like(Some("a primitive was overwritten: swap the two")));
+            let broken = Broken::with_texts(input, format!("{order:?}"), all, "each primitive once");
+            return Err(broken.looks_like(Some("a primitive was overwritten: swap two primitives instead")));
         }
         let Some(middle) = middle else {
             return match law(&query.primitives, 0) {
@@ -57,8 +58,8 @@ pub(super) fn judge_splits(
             let broken = Broken::with_texts(
                 input,
                 format!("{middle} left, {} right", n - middle.min(n)),
-                "something on both sides",
-                "or the build never ends",
+                "at least one on each side",
+                "otherwise the build never ends",
             );
             return Err(broken
                 .looks_like(Some("all centroids are on one side of the cut: fall back on another split")));
@@ -73,14 +74,15 @@ pub(super) fn judge_splits(
     })
 }
 
-/// Whether all centroids before `middle` are at or before all others, along `axis`.
+/// Whether, along `axis`, no centroid before `middle` is above a centroid from `middle` on.
 pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
     let left = ordered[..middle].iter().map(|p| p.centroid[axis]).fold(f32::NEG_INFINITY, f32::max);
     let right = ordered[middle..].iter().map(|p| p.centroid[axis]).fold(f32::INFINITY, f32::min);
     left <= right
 }
 
-/// Axes along which a median split may cut: the longest of the box around all boxes, or around all centroids.
+/// Axes along which a median split may cut: the longest axes of the box around all boxes, and of the box around all
+/// centroids.
 pub(super) fn split_axes(primitives: &[PrimitiveRef]) -> Vec<usize> {
     let all = tree::around(primitives.iter().map(|p| &p.bounds));
     let centroids: Vec<Aabb> = primitives.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();

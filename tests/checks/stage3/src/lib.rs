@@ -1,7 +1,7 @@
 //! Stage 3: bounding volume hierarchies.
 //!
-//! `boxes` · `slabs` · `splits` · `cuts` (how they are judged is in `divided`) · `builds` · `searches` · `stadium` (what it all
-//! costs, counted) · `picture`
+//! `boxes` · `slabs` · `splits` · `cuts` (`divided` judges the answers of both) · `builds` · `searches` · `stadium`
+//! (counted costs) · `picture`
 
 mod boxes;
 mod builds;

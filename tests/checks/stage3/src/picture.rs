@@ -1,4 +1,4 @@
-//! What stage 3 can show.
+//! The picture of stage 3.
 
 use checks::broken::Outcome;
 use checks::{Trial, picture, tree};
@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 
 const TARGET: Vec3 = vec3(1.0, 1.0, 0.3);
 
-/// Two turns of a spiral of spheres. Each ray brings the whole tree and all answers along, so it is a small one.
+/// Two turns of a spiral of spheres. It has few spheres, because each query contains the whole tree and all answers.
 fn spiral() -> Vec<Sphere> {
     let sphere = |i: u8| {
         let turns = f32::from(i) / 12.0;
@@ -26,7 +26,7 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
     let bvh = tree::joined(&boxes, 2);
     let rays = picture::rays(vec3(4.0, 5.0, 6.0), TARGET);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect();
-    // White near the eye, black behind the spheres.
+    // White is near the camera, black is the background.
     let depths = trial
         .kit
         .closest_hit(&queries)

@@ -1,4 +1,4 @@
-//! The three searches, against brute force over tables of answers.
+//! The three searches, compared with brute force. A table holds the answers of the probe.
 
 use checks::broken::{Broken, Outcome};
 use checks::generate::{point, unit};
@@ -13,27 +13,27 @@ use raykata::kit::{SearchAnswer, SearchQuery, Table};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// Questions about up to 30 spheres and a ray, with a tree and a table.
+/// Searches: a ray, up to 60 spheres (0 to 29, in some scenes each of them twice), a tree and a table of answers.
 pub(super) fn searches() -> impl Strategy<Value = SearchQuery> + Clone {
     let spheres = prop::collection::vec((point(6), 1..=8i32), 0..30);
     (spheres, point(10), unit(), 1..=4usize, 0..=4i32, 0..=9i32).prop_map(
         |(spheres, origin, direction, leaf_size, t_min, t_max)| {
             let spheres: Vec<Sphere> =
                 spheres.into_iter().map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 }).collect();
-            // Every third scene has each sphere twice: two hits at one t.
+            // Some scenes have each sphere twice, for two hits at the same t.
             let times = if t_min % 3 == 0 { 2 } else { 1 };
             let spheres: Vec<Sphere> =
                 spheres.into_iter().flat_map(|sphere| std::iter::repeat_n(sphere, times)).collect();
             let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
             let mut bvh = tree::joined(&boxes, leaf_size);
             if t_min % 2 == 0 {
-                // Numbered from the other end, so that of two hits at one t the larger number may come first.
+                // Number the primitives from the other end: of two hits at the same t the larger number may come first.
                 let last = spheres.len() as u32;
                 bvh.order.iter_mut().for_each(|id| *id = last - 1 - *id);
             }
             let spheres: Vec<Sphere> =
                 if t_min % 2 == 0 { spheres.into_iter().rev().collect() } else { spheres };
-            // Half of the rays look at the middle of things.
+            // Aim half of the rays at the middle of the scene.
             let direction = if leaf_size % 2 == 0 && origin != Vec3::ZERO {
                 (-origin.normalize() + 0.2 * direction).normalize()
             } else {
@@ -75,12 +75,12 @@ pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> Outcome
         return Ok(());
     }
     let diagnosis = match (found, expected) {
-        (Some((_, t)), _) if !query.ray.contains(t) => "a hit outside of the ray's range",
+        (Some((_, t)), _) if !query.ray.contains(t) => "you return a hit outside the ray's range",
         (Some((_, yours)), Some((_, best))) if yours == best => {
-            "of two hits at one t the smaller primitive number wins"
+            "of two hits at the same t the smaller primitive number wins"
         }
         (Some(_), Some(_)) => {
-            "the search stopped before it had seen the nearer hit (all of a leaf? the other child?)"
+            "the search stopped before it had seen the nearer hit (in the same leaf? in the other child?)"
         }
         (None, Some(_)) => "a subtree or part of a leaf was left out",
         _ => "",
@@ -89,7 +89,7 @@ pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> Outcome
         .looks_like(known(diagnosis)))
 }
 
-/// Two trees so small that an answer tells the mistake: a leaf of four, and two boxes that overlap.
+/// Two trees so small that the answer shows the mistake: a leaf of four primitives, and two boxes that overlap.
 fn drawn_searches() -> [SearchQuery; 2] {
     let bounds = Aabb::new(Vec3::ZERO, Vec3::splat(9.0));
     let ids = tree::references(&[bounds; 4]);
@@ -113,7 +113,9 @@ fn judge_drawn_searches(yours: &[SearchAnswer]) -> Outcome {
     let queries = drawn_searches();
     let diagnosis = |index: usize, yours: &SearchAnswer| match (index, yours.hit.map(|hit| hit.t)) {
         (_, None) => "a subtree or part of a leaf was left out",
-        (0, _) if yours.counts.primitive_tests == 1 => "the first hit of a leaf is taken: ask all of a leaf",
+        (0, _) if yours.counts.primitive_tests == 1 => {
+            "you take the first hit: ask all of a leaf's primitives"
+        }
         (0, Some(5.0)) | (1, Some(6.0)) if yours.counts.primitive_tests >= 2 => {
             "the farther of two hits is kept"
         }
@@ -154,7 +156,7 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
                 format!("at most {met}: the ray meets no more boxes"),
                 "counted",
             )
-            .looks_like(Some("nodes are opened whose box the ray misses: ask probe.enter first")))
+            .looks_like(Some("you open nodes whose box the ray misses: ask probe.enter first")))
         })
     })
 }
@@ -172,11 +174,11 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
             let expected = closest_in_table(query).is_some();
             let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
             let diagnosis = if yours && nothing {
-                "nothing is hit: to enter a box is not yet a hit"
+                "no primitive is hit: to enter a box is not yet a hit"
             } else if yours {
-                "a hit beyond t_max, or before t_min, hides nothing"
+                "you count a hit beyond t_max or before t_min"
             } else {
-                "a hit was overlooked"
+                "you return false: a hit was overlooked"
             };
             if yours == expected {
                 Ok(())
@@ -186,7 +188,7 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
             }
         })
     };
-    // First a leaf that is entered and holds nothing that is hit.
+    // First test a leaf that the ray enters without hitting any of its primitives.
     let [mut nothing, _] = drawn_searches();
     nothing.table.primitives.fill(f32::INFINITY);
     judge(&[nothing]).into_iter().collect::<Outcome>()?;
@@ -196,11 +198,11 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
-            let describe = |n: u64| format!("{n} primitives asked about after the first hit");
+            let describe = |n: u64| format!("{n} primitive tests after the first hit");
             match answer.tests_after_hit {
                 0 => Ok(()),
                 n => Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
-                    .looks_like(Some("the search goes on after a hit: one is enough"))),
+                    .looks_like(Some("the search goes on after a hit: return true at once"))),
             }
         })
     })

@@ -1,4 +1,4 @@
-//! Ray against box.
+//! Ray-box intersection: `slab`.
 
 use super::boxes::aabb;
 use checks::Trial;
@@ -17,7 +17,7 @@ pub(super) fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery], diagnosis: &
     compare(queries, trial.kit.slab(queries), |query, yours| {
         let (near, far) = box_interval(&query.ray, &query.bounds);
         let (near, far) = (near.max(f64::from(query.ray.t_min)), far.min(f64::from(query.ray.t_max)));
-        // A difference, a reciprocal and a product, and room for methods that widen the box.
+        // Allow for the roundings of a difference, a reciprocal and a product, and for methods that widen the box.
         let slack = |t: f64| if t.is_finite() { 32.0 * double::U * t.abs() } else { 0.0 };
         let room = slack(near) + slack(far);
         let same = |yours: f32, exact: f64| {
@@ -53,27 +53,27 @@ pub(super) fn slab_diagnosis(
     });
     match yours {
         Some((enter, leave)) if enter.is_nan() || leave.is_nan() => {
-            "0 · ∞ is NaN: order the comparison so that it drops NaN"
+            "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN"
         }
         Some(_) if otherwise.is_empty() && misses_by_one_axis(query) => {
-            "an axis is left out: the ray must be between all three pairs of planes at once"
+            "is an axis left out? the ray must be between the planes of all three axes at once"
         }
         _ if within_a_face => {
-            "the ray runs within the plane of a face: 0 · ∞ is NaN, and a min or max dropped the wrong side"
+            "the ray runs within the plane of a face: 0 · ∞ is NaN, and min or max may drop the wrong operand"
         }
-        Some((enter, _)) if enter < query.ray.t_min => "the ray enters before it starts: begin with t_min",
-        Some((_, leave)) if leave > query.ray.t_max => "the ray leaves after it ends: begin with t_max",
+        Some((enter, _)) if enter < query.ray.t_min => "your entry is before t_min: start with near = t_min",
+        Some((_, leave)) if leave > query.ray.t_max => "your exit is beyond t_max: start with far = t_max",
         None if inside && !zero && otherwise.is_empty() => {
             "the ray starts inside: its entry is behind it (test the exit, not t_b⁻ ≥ 0)"
         }
         None if query.ray.direction.min_element() < 0.0 && !zero && otherwise.is_empty() => {
-            "for a negative direction the near plane is the max one: swap"
+            "for a negative direction component the ray enters at max: swap the two planes"
         }
         _ => otherwise,
     }
 }
 
-/// Whether the ray would hit the box if it were endless along some axis.
+/// Whether the ray misses the box, but would hit it if the box were infinite along some axis.
 fn misses_by_one_axis(query: &SlabQuery) -> bool {
     let meets = |bounds: &Aabb| {
         let (near, far) = box_interval(&query.ray, bounds);
@@ -89,12 +89,12 @@ fn misses_by_one_axis(query: &SlabQuery) -> bool {
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
     let inputs =
         (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, direction, bounds, at)| {
-            // Half of the rays are aimed at the box.
+            // Aim half of the rays at the box.
             let target = 0.5 * (bounds.min + bounds.max) + 0.5 * at * (bounds.max - bounds.min);
             let direction = if at.x > 0.0 && target != origin { target - origin } else { direction };
             SlabQuery { ray: Ray::new(origin, direction), bounds }
         });
-    // First what every formula gets right that minds signs and axes: random rays shrink to rays along an axis.
+    // First test slanted rays that need each axis and each sign, because random rays shrink to rays along an axis.
     let drawn = [
         (vec3(-2.0, -1.5, -1.0), vec3(1.0, 1.0, 0.75)),
         (vec3(-2.0, -2.0, 2.0), vec3(1.0, 1.0, 0.25)),
@@ -122,7 +122,7 @@ pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> Outcome 
 
 pub(super) const UNIT_BOX: Aabb = Aabb::new(Vec3::ZERO, Vec3::ONE);
 
-/// Judges rays through the box `0..1` by what is known exactly.
+/// Judges rays whose verdict, a hit or a miss, is known exactly.
 pub(super) fn judge_slabs_exactly(
     trial: &Trial<'_>,
     cases: &[(Ray, Aabb, bool)],
@@ -142,7 +142,7 @@ pub(super) fn judge_slabs_exactly(
 }
 
 pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
-    // B3: every sign of zero on the two axes along which the ray does not move; inside the box's shadow and beside it.
+    // B3: every sign of zero on the two axes along which the ray does not move, for rays that hit and rays that miss.
     let mut cases = Vec::new();
     for axis in 0..3 {
         for (first, second) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0)] {
@@ -162,7 +162,7 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
             }
         }
     }
-    // First without -0.0: what fails there does not fail for its sign.
+    // First test the rays without -0.0: a failure there has another cause than the sign of zero.
     let negative_zero = |case: &(Ray, Aabb, bool)| {
         case.0.direction.to_array().iter().any(|d| *d == 0.0 && d.is_sign_negative())
     };
@@ -170,24 +170,24 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(
         trial,
         &positive,
-        "1/d is ∞ for a direction of 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
+        "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
     )?;
     judge_slabs_exactly(
         trial,
         &negative,
-        "d = -0.0 is ≥ 0 but 1 / -0.0 is -∞: the planes must swap for it, too",
+        "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d",
     )?;
-    // So small a direction that 1/d overflows: from inside it hits, from beside it never gets there.
+    // A direction component so small that 1/d overflows: the ray hits if it starts between the planes of that axis.
     let creep = vec3(1.0, 1e-40, -1e-40);
     let cases = [
         (Ray::new(vec3(-1.0, 0.5, 0.5), creep), UNIT_BOX, true),
         (Ray::new(vec3(-1.0, -0.5, 0.5), creep), UNIT_BOX, false),
     ];
-    judge_slabs_exactly(trial, &cases, "1/d overflows to ∞ for a tiny d: treat it like 0")
+    judge_slabs_exactly(trial, &cases, "1/d overflows to ∞ for a tiny d: treat d like 0")
 }
 
 pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
-    // B4: the origin lies in the plane of a face and the ray stays there: (b - o)/d is 0/0 on that axis.
+    // B4: the origin lies in the plane of a face and the ray stays there, so (b - o)/d is 0/0 on that axis.
     let mut cases = Vec::new();
     for axis in 0..3 {
         for plane in [0.0, 1.0] {
@@ -202,14 +202,14 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
         }
     }
     let diagnosis =
-        "0 · ∞ is NaN, and NaN took part in a min or max: the ray lies in a face, which belongs to the box";
+        "0 · ∞ is NaN, and NaN takes part in a min or max: a ray within a face hits the closed box";
     judge_slabs_exactly(trial, &cases, diagnosis)
 }
 
 pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
     let mut cases = Vec::new();
     for axis in 0..3 {
-        // B6: a box that is padded by a fixed amount is flat again at 100,000.
+        // B6: at 100,000 a fixed padding is rounded away, and the box is flat again.
         for height in [0.0, 0.25, -3.0, 1e5] {
             let mut flat = UNIT_BOX;
             flat.min[axis] = height;
@@ -229,7 +229,7 @@ pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(
         trial,
         &cases,
-        "entry equals exit in a flat box: ≤, not < (and no padding, which is rounded away far from the origin)",
+        "entry equals exit in a flat box: ≤, not < (and no padding, which is rounded away far off)",
     )
 }
 
@@ -247,14 +247,17 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(
         trial,
         &cases,
-        "the box is closed, and only what lies in t_min..t_max counts (exit at t_min is a hit)",
+        "only the part within t_min..t_max counts, and the box is closed (exit at t_min is a hit)",
     )?;
     let inside = SlabQuery { ray: ray.with_range(2.25, 2.5), bounds: UNIT_BOX };
-    judge_slabs(trial, &[inside], "the interval is that of the box and of the ray").into_iter().collect()
+    judge_slabs(trial, &[inside], "return the part of the box's interval that lies within t_min..t_max")
+        .into_iter()
+        .collect()
 }
 
 pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome {
-    // A10: all numbers are eighths, so o + 1 d is the corner exactly, and the closed box is hit: no tolerance.
+    // A10: all numbers are multiples of 1/8, so o + 1 d is exactly the corner. The closed box must be hit, without
+    // tolerance.
     let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
         let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
         let direction = vec3(pick(0), pick(1), pick(2)) - origin;
@@ -265,8 +268,8 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
             Some(_) => Ok(()),
             None => Err(Broken::with_texts(query.call("slab"), "None", "a hit", "exact arithmetic")
                 .looks_like(Some(
-                    "1/d, the difference and the product are rounded, so far may fall just short of near: \
-                     make far a little longer, (1 + 2 γ₃) times",
+                    "1/d, the difference and the product are rounded, so far may be slightly below near: \
+                     multiply far by 1 + 2 γ₃",
                 ))),
         })
     })
@@ -278,6 +281,6 @@ pub(super) fn slab_of_nothing_is_missed(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(
         trial,
         &cases,
-        "the empty box (inf, -inf) holds nothing: a min and max of both planes turns it inside out, so ask is_empty()",
+        "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()",
     )
 }

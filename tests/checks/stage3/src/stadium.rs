@@ -1,4 +1,4 @@
-//! A teapot in a stadium: what trees and searches cost there, counted.
+//! A teapot in a stadium: the counted costs of trees and searches.
 
 use checks::broken::{Broken, Outcome};
 use checks::{Trial, tree};
@@ -11,7 +11,7 @@ use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Sphere;
 
-/// A small, dense object in a huge, sparse surrounding: where the surface area heuristic earns its keep.
+/// A small, dense object in a huge, sparse surrounding, where the surface area heuristic saves the most work.
 pub(super) fn stadium() -> Vec<Sphere> {
     let seats = (0..60).map(|i| {
         let angle = i as f32 / 60.0 * std::f32::consts::TAU;
@@ -25,7 +25,7 @@ pub(super) fn stadium() -> Vec<Sphere> {
     seats.chain(teapot).collect()
 }
 
-/// Rays through the stadium from three eyes: outside, in the seats, beside the teapot.
+/// Rays through the stadium from three points: outside, in the seats, and beside the teapot.
 pub(super) fn stadium_rays() -> Vec<Ray> {
     let eyes = [vec3(120.0, 8.0, 7.0), vec3(-3.0, 5.0, -90.0), vec3(4.0, 3.0, 4.0)];
     let target = |i: i32| vec3((i % 10) as f32 * 0.3 - 0.5, (i / 10) as f32 * 0.3, 0.5);
@@ -33,7 +33,7 @@ pub(super) fn stadium_rays() -> Vec<Ray> {
     eyes.into_iter().flat_map(looks).collect()
 }
 
-/// The same as questions.
+/// The same rays as searches, with a tree and a table of answers.
 pub(super) fn stadium_searches() -> Vec<SearchQuery> {
     let spheres = stadium();
     let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
@@ -41,13 +41,13 @@ pub(super) fn stadium_searches() -> Vec<SearchQuery> {
     stadium_rays().iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect()
 }
 
-/// The expected cost of a tree over the stadium with at most four in a leaf: cut in half at the median of the centroids.
+/// The expected cost of a tree over the stadium with at most four primitives per leaf, split by the object median.
 const EXPECTED_BY_MEDIAN: f64 = 7.947;
 
-/// The same, with the cheapest cut at every node.
+/// The same, split by the cheapest cut at every node.
 const EXPECTED_BY_AREA: f64 = 5.341;
 
-/// [`counted_cost`] of a tree over the stadium by each rule, with at most four in a leaf.
+/// [`counted_cost`] of the reference's tree over the stadium by each split strategy, at most four primitives per leaf.
 fn counted(split: Split) -> u64 {
     match split {
         Split::ObjectMedian => 5780,
@@ -56,7 +56,7 @@ fn counted(split: Split) -> u64 {
     }
 }
 
-/// Nodes opened and primitives tested by [`stadium_searches`] if the nearer child comes first.
+/// The numbers of nodes opened and primitives tested by [`stadium_searches`] if the nearer child is searched first.
 const SEARCHED: (u64, u64) = (4481, 1178);
 
 pub(super) fn total(answers: &[SearchAnswer]) -> Counts {
@@ -72,14 +72,15 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
         tree::expected_cost(&trial.kit.build(&[query])[0])
     };
     let (yours, median, best) = (cost(Split::SurfaceArea), EXPECTED_BY_MEDIAN, EXPECTED_BY_AREA);
-    // Equally cheap cuts may lead to different trees below; the reference's own variants are within 1 %.
+    // Equally cheap cuts may lead to different trees below. Variants of the reference are within 1 %.
     if yours <= 1.05 * best {
         return Ok(());
     }
-    let diagnosis = (yours > 0.8 * median)
-        .then_some("no better than an object median: always the same axis, or areas left out?");
+    let diagnosis = (yours > 0.8 * median).then_some(
+        "hardly better than an object median: do you always cut one axis, or leave out the areas?",
+    );
     let (yours, best) = (
-        format!("expected cost {yours:.3} a ray"),
+        format!("expected cost {yours:.3} per ray"),
         format!("at most {:.3} (object median: {median:.3})", 1.05 * best),
     );
     Err(Broken::with_texts(
@@ -91,7 +92,7 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
     .looks_like(diagnosis))
 }
 
-/// Nodes and primitives that the rays through the stadium have to look at, in this tree.
+/// The number of nodes and primitives that the rays through the stadium have to visit in this tree.
 pub(super) fn counted_cost(bvh: &Bvh, spheres: &[Sphere]) -> u64 {
     let cost = |ray: &Ray| {
         let (nodes, primitives) = tree::needed(&tree::search_query(bvh, spheres, ray));
@@ -106,7 +107,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
     for split in Split::ALL {
         let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 4 };
         let yours = counted_cost(&trial.kit.build(std::slice::from_ref(&query))[0], &spheres);
-        // Along which axis a nearly cubic box is cut, and who gets the odd one, moves the cost by a tenth.
+        // The cost changes by a tenth with the axis of a nearly cubic box and with the side that gets one more.
         let most = counted(split) * 5 / 4;
         if yours > most {
             let describe = |n: u64| format!("{n} nodes opened and primitives tested");
@@ -115,17 +116,17 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
                 input,
                 describe(yours),
                 format!("at most {}", describe(most)),
-                "a tree by the same rule",
+                "the reference tree, plus a quarter",
             );
             return Err(broken.looks_like(Some(
-                "the tree is sound but costs too much: is the rule applied at every node?",
+                "the tree is valid but costs too much: do you apply the strategy at every node?",
             )));
         }
     }
     Ok(())
 }
 
-/// A row of 64 spheres along the ray: the first is hit, and of each pair of nodes the farther one lies behind that hit.
+/// A row of 64 spheres along the ray. The first one is hit, and of each pair of nodes the farther one lies behind it.
 fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
     let spheres: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
@@ -134,13 +135,13 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
     let needed = tree::needed(&query).0.len() as u64;
     let yours = trial.kit.closest_hit(std::slice::from_ref(&query))[0].counts.node_visits;
     let describe = |n: u64| format!("{n} nodes opened");
-    // No two boxes overlap, so there is one order, and no room for another count.
+    // No two boxes overlap, so there is only one order of search and only one right count.
     if yours <= needed {
         return Ok(());
     }
     let diagnosis = match yours {
         visits if visits >= bvh.nodes.len() as u64 => {
-            "nothing is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
+            "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
         }
         _ => "the farther box is not tested again after a nearer hit was found",
     };
@@ -154,14 +155,14 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
     let queries = stadium_searches();
     let yours = total(&trial.kit.closest_hit(&queries));
     let all: u64 = queries.iter().map(|query| tree::overlapped(query).len() as u64).sum();
-    // Where both children are entered at once either may come first: a tenth covers what that changes here.
+    // If a ray enters both children at the same t, either may come first. This changes the counts by less than a tenth.
     let (most_visits, most_tests) = (SEARCHED.0 * 11 / 10, SEARCHED.1 * 11 / 10);
     if yours.node_visits <= most_visits && yours.primitive_tests <= most_tests {
         return Ok(());
     }
     let diagnosis = match yours.node_visits {
         visits if visits >= all => {
-            "boxes beyond the best hit are entered, too: let ray.t_max shrink with each hit"
+            "you also open boxes beyond the best hit: let ray.t_max shrink with each hit"
         }
         _ => "the farther child is entered first, or a box is not tested again after a nearer hit was found",
     };
@@ -172,7 +173,7 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
         format!("{} rays through a stadium", queries.len()),
         yours,
         format!("at most {most}"),
-        "nearer child first",
+        "the nearer child first",
     )
     .looks_like(Some(diagnosis)))
 }
