@@ -105,8 +105,8 @@ fn black() -> Material {
     }
 }
 
-/// Materials with few colours, each with a `max_depth` and the effects that it needs under a red, a green, a faint blue, a
-/// white and a black light. Derived by hand from the doc comment of `material_effects`.
+/// Materials with few colours, each with a `max_depth` and the effects that it needs under a red, a green, a faint
+/// blue, a white and a black light. Derived by hand from the doc comment of `material_effects`.
 fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     let (red, green, blue) = (vec3(0.5, 0.0, 0.0), vec3(0.0, 0.5, 0.0), vec3(0.0, 0.0, 0.5));
     let faint = vec3(0.0, 0.0, 1e-4);
@@ -394,9 +394,9 @@ fn describe(query: &MaterialQuery) -> String {
     )
 }
 
-/// Compares simple materials with recorded answers, and other materials with the student's own answers for simpler ones: a
-/// material needs the union of what its colours need, and the union of what its channels need. Each setting changes only
-/// its own effect.
+/// Compares simple materials with recorded answers, and other materials with the student's own answers for simpler
+/// ones: a material needs the union of what its colours need, and the union of what its channels need. Each setting
+/// changes only its own effect.
 pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> Outcome {
     let recorded = recorded();
     let queries: Vec<MaterialQuery> = recorded.iter().map(|(query, _)| query.clone()).collect();

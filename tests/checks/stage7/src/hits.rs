@@ -70,8 +70,8 @@ fn drawn() -> HitsQuery {
     }
 }
 
-/// The rays of [`drawn`], counted by hand. Shadow: the glass needs lights 0 and 1 (3 + 20), the plain material light 0 (4);
-/// light 2 casts no shadows. Each of the 10 hits of rough glass spawns 3 reflected and 3 refracted rays.
+/// The rays of [`drawn`], counted by hand. Shadow: the glass needs lights 0 and 1 (3 + 20), the plain material light 0
+/// (4); light 2 casts no shadows. Each of the 10 hits of rough glass spawns 3 reflected and 3 refracted rays.
 const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
 
 /// The counts that mistakes give for [`drawn`], counted by hand in the same way, each with its diagnosis.

@@ -178,7 +178,8 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
 /// Points on an image of 4 by 3 pixels with [`Wrap::Mirror`]: between four pixels, at the upper left corner, and outside.
 const DRAWN: [(f32, f32); 3] = [(0.55, 0.7), (0.05, 0.95), (1.3, -0.2)];
 
-/// The colours there. These and the colours of the mistakes were computed once in double precision and rounded to 6 digits.
+/// The colours there. These and the colours of the mistakes were computed once in double precision and rounded to 6
+/// digits.
 const COLORS: [[f64; 3]; 3] =
     [[0.405_333, 0.653_333, 0.286_667], [0.0; 3], [0.361_333, 0.833_333, 0.226_667]];
 
@@ -225,7 +226,8 @@ const MISTAKES: [([[f64; 3]; 3], &str); 12] = [
     ),
 ];
 
-const ANOTHER_WRAP: &str = "you use another wrap mode than the image: get the column and row of all four from texel with texture.wrap";
+const ANOTHER_WRAP: &str =
+    "you use another wrap mode than the image: call texel with texture.wrap for all four";
 
 /// An interval between two pixel centres, in which the colour must change linearly.
 #[derive(Clone, Debug)]
@@ -297,8 +299,8 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
     Ok(())
 }
 
-/// Checks the two laws of bilinear interpolation: at the centre of each pixel, also outside of the image, the colour is that
-/// of the pixel, and between four centres it changes linearly along both axes.
+/// Checks the two laws of bilinear interpolation: at the centre of each pixel, also outside of the image, the colour is
+/// that of the pixel, and between four centres it changes linearly along both axes.
 pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
     let image = texture(4, 3, Wrap::Mirror);
     let drawn = DRAWN.map(|(u, v)| TextureQuery { texture: image.clone(), uv: vec2(u, v) });
@@ -349,7 +351,7 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
                     "bilinear interpolation",
                 );
                 return Err(broken.looks_like(Some(match (u.is_finite(), v.is_finite()) {
-                    (true, true) => "the product of coordinate and size overflows: test is_finite after the multiplication",
+                    (true, true) => "coordinate * size overflows: test is_finite after the product",
                     _ => "a coordinate that is NaN or infinite counts as 0",
                 })));
             }

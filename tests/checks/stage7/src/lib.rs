@@ -1,7 +1,7 @@
 //! Checks of stage 7: effects.
 //!
-//! `decisions` (lights and materials) · `whole` (scenes) · `rays` (the bound on rays) · `hits` (rays of known hits, number of
-//! samples) · `images` (textures) · `scenes` (test scenes)
+//! `decisions` (lights and materials) · `whole` (scenes) · `rays` (the bound on rays) · `hits` (rays of known hits,
+//! number of samples) · `images` (textures) · `scenes` (test scenes)
 
 mod decisions;
 mod hits;
