@@ -45,7 +45,7 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
             light(vec3(1e-6, 0.0, 0.0), 1.0),
             quality(1),
             one,
-            "a faint light still emits: only a radiance of 0 needs nothing",
+            "a faint red light still emits: only a radiance of 0 in all channels needs nothing",
         ),
         (
             "a spherical area light",

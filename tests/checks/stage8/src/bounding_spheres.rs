@@ -24,7 +24,7 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
         let Some(outside) = outside else { return Ok(()) };
         let beyond = outside.as_dvec3().distance(center) - f64::from(sphere.radius);
         let diagnosis = if beyond < 1e-5 {
-            "you round the radius to nearest, which is too small in half of all cases: round up"
+            "your radius is too small by a rounding error: compute it in double and round up"
         } else {
             "your radius is too small: it is the largest distance of a point from the centre"
         };

@@ -154,8 +154,8 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
              side or on an end"
         }
         (Some(_), Some(_)) => {
-            "you return a point of the infinite surface outside of the solid: intersect with the interval \
-             between the ends"
+            "your hit is not the nearest point of the surface: check the roots, and intersect with the \
+             interval between the ends"
         }
         (None, None) => "",
     }
