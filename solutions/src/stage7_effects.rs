@@ -298,8 +298,8 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 ///
 /// `(0, 0)` is the lower left corner of the image and `(1, 1)` its upper right corner. Rows are stored from the top.
 /// Outside of the image, [`texel`] with `texture.wrap` gives the column and the row of each of the four pixels. Every
-/// `uv` gives a colour: a coordinate counts as 0 if it is NaN or infinite, or if its product with the size of the image
-/// is.
+/// `uv` gives a colour: a coordinate that is NaN or infinite counts as 0, and so does one whose product with the width
+/// or height is infinite.
 ///
 /// Pitfall: the colour of a pixel belongs to its centre, so column 0 lies at half a pixel, not at 0.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {

@@ -90,7 +90,7 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
 /// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; slide "Rotate Bounding Boxes".
 pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     // <solution>
-    // Return an empty box as it is: its corners are infinite, and their sums would be NaN.
+    // Return the empty box for an empty box, because sums of infinite corners can be NaN.
     if bounds.min.cmpgt(bounds.max).any() {
         return Aabb::EMPTY;
     }
@@ -136,8 +136,8 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 /// Computes the `t` at which `ray` enters the sphere: the slab test's counterpart for bounding spheres.
 ///
 /// The result lies in `t_min..=t_max` and counts lengths of the direction. It is `t_min` if the ray starts inside, and
-/// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. It must not be later than the exact entry,
-/// and may be earlier by a few rounding errors.
+/// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to the sphere. The result
+/// must not be later than the exact entry, and may be earlier by a few rounding errors.
 ///
 /// Pitfall: a search compares this `t` with the `t` of hits. If it is late by a rounding error, the search skips a sphere
 /// that contains a hit at the same `t`.

@@ -193,7 +193,7 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     let (first, second) = roots(a, b, c, discriminant.max(0.0).sqrt());
     let (enter, leave) = match () {
         () if a > 0.0 => (first, second),
-        // A ray steeper than the side enters this cone at a root and does not leave it again, or the reverse.
+        // A ray steeper than the side enters this cone at the larger root, or leaves it at the smaller one.
         () if a < 0.0 && rate > 0.0 => (second, f64::INFINITY),
         () if a < 0.0 => (f64::NEG_INFINITY, first),
         // For a ray parallel to the side, 2 b t + c ≤ 0 remains.
@@ -239,7 +239,7 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 ///
 /// Pitfall: a point on the plane is rounded, and near an edge this rounding decides. Test on which side of each edge
 /// the ray passes instead: the sign of `d · (p × q)` for the ends `p` and `q` of the edge relative to the ray's origin.
-/// A neighbouring polygon computes the same value for the shared edge, so no ray passes between the two.
+/// A neighbouring polygon computes the same value for the shared edge, up to the sign, so no ray passes between them.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // <solution>
     // Express the corners relative to the ray's origin.

@@ -27,7 +27,7 @@ pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// T8–T10, 35–37.
+/// Rays at edges and corners, and at an edge that two polygons share (traps T8–T10, 35–37).
 pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
     let square = Polygon {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(2.0, 2.0, 0.0), vec3(0.0, 2.0, 0.0)],

@@ -106,7 +106,7 @@ pub(super) fn judge_ties_at_the_rim<S: Solid>(
     judge_leaving(trial, &queries, 0.008..0.0096, diagnosis)
 }
 
-/// B3, B4, B7; 38–43, 46.
+/// Rays in the plane of a face, at edges and at flat boxes (traps B3, B4, B7; 38–43, 46).
 pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> Outcome {
     let unit = Cuboid { min: Vec3::ZERO, max: Vec3::ONE };
     let ask = of(&unit);
@@ -148,7 +148,7 @@ pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> Outcome {
     judge_from_inside(trial, &leaning, |random| vec3(1.3, 0.2, 0.3 + 0.8 * random.unit()), lost)
 }
 
-/// C1; 29.
+/// Rays parallel to the axis (traps C1; 29).
 pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> Outcome {
     let can = Cylinder { base: Vec3::ZERO, top: vec3(0.0, 2.0, 0.0), radius: 1.0 };
     let ask = of(&can);
@@ -170,7 +170,7 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// C1; 30, 31.
+/// Rays from inside to the rim, and rays that touch the side (traps C1; 30, 31).
 pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> Outcome {
     let can = Cylinder { base: vec3(0.25, -0.5, 0.125), top: vec3(0.75, 1.5, 0.5), radius: 0.8 };
     let (x, y) = (can.top - can.base).normalize().any_orthonormal_pair();
@@ -191,7 +191,7 @@ pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> Outcome {
 
 const HAT: Cone = Cone { base: Vec3::ZERO, apex: Vec3::Y, radius: 1.0 };
 
-/// C2; 33.
+/// Rays above the apex, where the equation describes a second cone (traps C2; 33).
 pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> Outcome {
     let ask = of(&HAT);
     let ghost =
@@ -213,7 +213,7 @@ pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// C2; 34.
+/// Rays parallel to the side, and steeper rays (traps C2; 34).
 pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> Outcome {
     let ask = of(&HAT);
     let linear = "the ray is parallel to the side, so a is 0: solve 2 b t + c = 0";
@@ -233,7 +233,7 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-/// C2; 32.
+/// Rays to the apex and to the rim (traps C2; 32).
 pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> Outcome {
     let lost = "you lose a ray at the apex: a rounded point lies above the apex; intersect intervals instead \
         of testing points";
