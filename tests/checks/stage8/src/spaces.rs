@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use raykata::kit::{NormalQuery, ObjectRayQuery};
 use raykata::ray::Ray;
 
-/// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1.
+/// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size.
 fn transform() -> impl Strategy<Value = Affine3A> + Clone {
     let column = || (-2..=2i32, -2..=2i32, -2..=2i32);
     (column(), column(), column(), point(4))
