@@ -17,8 +17,8 @@ use raykata::shape::Sphere;
 ///
 /// `to_object` is the inverse transform, from the world to the object. The origin is transformed as a point and the
 /// direction as a vector, which keeps the length that the transform gives it. `t_min`, `t_max` and `time` stay the
-/// same. For an object far from the origin of the world, the origin must not lose digits: transform it in double
-/// precision.
+/// same. For an object far from the origin of the world, single precision loses digits of the ray's origin; double
+/// precision keeps them.
 ///
 /// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
 /// the axes both give the same result, so tests with such scales do not show the mistake. A normalised direction is
