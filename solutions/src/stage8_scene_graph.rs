@@ -1,10 +1,10 @@
-//! Stage 8 · scene graph: every shape in a space of its own, and one mesh in a hundred thousand places.
+//! Stage 8 · scene graph: each shape has its own space, and one mesh can have a hundred thousand instances.
 //!
 //! Slides: "Scene Graph", "Ray-Scene Intersection", "Bounding Volumes", "Transformations" (meshes), "Rotate Bounding
 //! Boxes", "Combine Transformations".
 //!
-//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the ray enters the volume
-//! around a node) and `hit` (where it hits a primitive).
+//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the ray enters the bounding
+//! volume of a node) and `hit` (where it hits a primitive).
 
 use glam::{Affine3A, DAffine3, Vec3};
 use raykata::aabb::Aabb;
@@ -13,41 +13,60 @@ use raykata::graph::{Graph, Placement, Savings};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// The same ray in the space of an object: a hit has the same `t` in both.
+/// Transforms a ray from the world to the space of an object, so that each hit has the same `t` in both spaces.
 ///
-/// Where the formula lies: the slide sends the direction through the inverse *transpose*, which is for normals only (and
-/// the same for scales along the axes, so that such tests do not notice). And a direction that is made a unit vector again
-/// changes `t`, which can then not be compared with the `t` of another object.
+/// `to_object` is the inverse transform, from the world to the object. The origin is transformed as a point and the
+/// direction as a vector, which keeps the length that the transform gives it. `t_min`, `t_max` and `time` stay the
+/// same. For an object far from the origin of the world, single precision loses digits of the ray's origin; double
+/// precision keeps them.
+///
+/// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
+/// the axes both give the same result, so tests with such scales do not show the mistake. A normalised direction is
+/// wrong, too: it changes the unit of `t`, which then cannot be compared with the `t` of another object.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
     // <solution>
     Ray {
-        // Far from the origin large terms cancel here: in double nothing of the small rest is lost.
+        // Use double precision, because far from the origin large terms cancel.
         origin: to_object.as_daffine3().transform_point3(ray.origin.as_dvec3()).as_vec3(),
         direction: to_object.transform_vector3(ray.direction),
         ..*ray
     }
-    // <stub> todo!("carry the origin as a point and the direction as a vector; leave its length alone")
+    // <stub> todo!("transform the origin as a point and the direction as a vector; do not normalise it")
     // </solution>
 }
 
-/// The unit normal in the world of a surface whose normal in its own space is `normal`: through the transpose of
-/// `to_object`, the inverse transpose of the way to the world. Outside stays outside, in a mirror, too.
+/// Transforms the unit normal `normal` of a surface from the space of its object to the world. The result has unit
+/// length.
+///
+/// `to_object` is the inverse of the transform to the world, so its transpose is the inverse transpose that normals
+/// need. A normal that points outwards still does after the transform, also for a reflection.
+///
+/// Pitfall: a normal that is transformed like a point is not perpendicular to a stretched surface. Do not flip the result
+/// for a negative determinant.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
     // <solution>
     let rows = to_object.as_daffine3().matrix3.transpose();
     (rows * normal.as_dvec3()).normalize_or_zero().as_vec3()
-    // <stub> todo!("multiply by the transpose of to_object, then make it a unit vector")
+    // <stub> todo!("multiply by the transpose of to_object, then normalise")
     // </solution>
 }
 
-/// Where a node stands whose ancestors' transforms, from the root down to its own, are `path`: `M₁ M₂ … Mₙ` to the world,
-/// and `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹` back. `None` if one of them cannot be undone.
+/// Computes the transform from the space of a node to the world, and its inverse.
+///
+/// `path` holds the transforms `M₁ M₂ … Mₙ` from the root to the node itself, each from a node to its parent.
+/// `to_world` is their product `M₁ M₂ … Mₙ`, and `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`. An empty path gives the identity
+/// for both. The result is `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
+/// determinant is valid.
+///
+/// Pitfall: the inverse of a product is the product of the inverses in reverse order.
 pub fn placement(path: &[Affine3A]) -> Option<Placement> {
     // <solution>
+    // Multiply the transforms from the root to the node, and the inverses in reverse order.
     let (mut to_world, mut to_object) = (DAffine3::IDENTITY, DAffine3::IDENTITY);
     for to_parent in path {
         let to_parent = to_parent.as_daffine3();
+        // Reject a transform without an inverse.
         let from_parent = to_parent.inverse();
         if to_parent.matrix3.determinant() == 0.0 || !from_parent.is_finite() {
             return None;
@@ -56,17 +75,22 @@ pub fn placement(path: &[Affine3A]) -> Option<Placement> {
         to_object = from_parent * to_object;
     }
     Some(Placement { to_world: to_world.as_affine3a(), to_object: to_object.as_affine3a() })
-    // <stub> todo!("multiply the transforms from the root down, and the inverses the other way round")
+    // <stub> todo!("multiply the transforms from the root to the node, and the inverses in reverse order")
     // </solution>
 }
 
-/// A box around `bounds` after the transform `to_world`, with no point of it outside and little room: its eight corners,
-/// rounded outwards. The empty box stays empty.
+/// Computes an axis-aligned box that contains all points of `bounds` after the transform `to_world`.
 ///
-/// Where the formula lies: rounded to nearest, the largest corner ends up inside the true box in half of all cases, and
-/// a ray at it misses.
+/// It is the box around the eight transformed corners, rounded outwards, and larger than the exact box by a few rounding
+/// errors of the terms at most. An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
+///
+/// Pitfall: rounded to nearest, the largest corner lies inside the exact box in half of all cases, and a ray that hits
+/// the object there misses the box.
+///
+/// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; slide "Rotate Bounding Boxes".
 pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     // <solution>
+    // Return the empty box for an empty box, because sums of infinite corners can be NaN.
     if bounds.min.cmpgt(bounds.max).any() {
         return Aabb::EMPTY;
     }
@@ -74,7 +98,7 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
     let translation = Vec3::from(to_world.translation);
     let (mut min, mut max) = (Vec3::ZERO, Vec3::ZERO);
     for row in 0..3 {
-        // Each axis of the box goes to one end or the other (Arvo, "Transforming axis-aligned bounding boxes", 1990).
+        // Sum the smaller and the larger product per axis of the box (Arvo), in double precision.
         let (mut low, mut high) = (f64::from(translation[row]), f64::from(translation[row]));
         for (axis, column) in columns.iter().enumerate() {
             let factor = f64::from(column[row]);
@@ -82,17 +106,21 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
             low += ends[0].min(ends[1]);
             high += ends[0].max(ends[1]);
         }
-        // Rounding to single precision may go inwards, one step at most; the sums in double by much less.
+        // Round outwards by one float. The conversion to single precision errs by less than that.
         min[row] = (low as f32).next_down();
         max[row] = (high as f32).next_up();
     }
     Aabb::new(min, max)
-    // <stub> todo!("transform what matters of the eight corners, and round outwards")
+    // <stub> todo!("sum the smaller and the larger product per axis, and round outwards")
     // </solution>
 }
 
-/// A sphere that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
-/// large as that: around the middle of their box is small enough.
+/// Computes a sphere that contains all `points`, of which there is at least one.
+///
+/// It need not be the smallest such sphere, but its radius must be at most twice as large. The sphere around the centre
+/// of the points' bounding box is small enough. No point may lie outside, also not by a rounding error.
+///
+/// Pitfall: a radius that is rounded to nearest is too small in half of all cases. Round it up.
 pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     // <solution>
     let min = points.iter().fold(Vec3::INFINITY, |low, point| low.min(*point));
@@ -101,43 +129,60 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
     let distance = |point: &Vec3| point.as_dvec3().distance(center.as_dvec3());
     let radius = points.iter().map(distance).fold(0.0, f64::max);
     Sphere { center, radius: (radius as f32).next_up() }
-    // <stub> todo!("take a centre, and the largest distance from it, rounded up")
+    // <stub> todo!("take the centre of the points' box and the largest distance from it, rounded up")
     // </solution>
 }
 
-/// Where `ray` enters the sphere, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
-/// it. The like of the slab test for spheres.
+/// Computes the `t` at which `ray` enters the sphere: the slab test's counterpart for bounding spheres.
+///
+/// The result lies in `t_min..=t_max` and counts lengths of the direction. It is `t_min` if the ray starts inside, and
+/// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to the sphere. The result
+/// must not be later than the exact entry, and may be earlier by a few rounding errors.
+///
+/// Pitfall: a search compares this `t` with the `t` of hits. If it is late by a rounding error, the search skips a sphere
+/// that contains a hit at the same `t`.
 pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // <solution>
     let (direction, to_center) = (ray.direction.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
     let radius = f64::from(sphere.radius);
-    // The line comes closest to the centre at t = b / a, and |to_center × direction|² / a is the square of that distance.
+    // Compare the distance of the line from the centre with the radius. The line is closest to the centre at t = b / a,
+    // and the square of this distance is |to_center × direction|² / a.
     let (a, b) = (direction.length_squared(), to_center.dot(direction));
     let reach = a * radius * radius - to_center.cross(direction).length_squared();
     if !(reach >= 0.0) {
         return None;
     }
+    // Compute both roots, widen the interval by the rounding errors, and clamp it to the ray's range.
     let (enter, leave) = ((b - reach.sqrt()) / a, (b + reach.sqrt()) / a);
     let enter = ((enter - ROOM * enter.abs()) as f32).max(ray.t_min);
     let leave = ((leave + ROOM * leave.abs()) as f32).min(ray.t_max);
     (enter <= leave).then_some(enter)
-    // <stub> todo!("the nearer root, or t_min from inside; nothing if the ray passes or ends before")
+    // <stub> todo!("return the nearer root, or t_min from inside; None if the ray misses the sphere")
     // </solution>
 }
 
 // <solution>
-/// The way in is compared with the `t` of hits, which is rounded in another way: four roundings earlier, no sphere is skipped
-/// that holds a hit at the very `t` of the best one.
+/// The relative widening of the interval in a sphere. A search compares the entry with the `t` of hits, which has other
+/// rounding errors. With an entry four rounding errors earlier, the search does not skip a sphere that contains a hit at
+/// exactly the best `t`.
 const ROOM: f64 = 4.0 * f32::EPSILON as f64;
 // </solution>
 
-/// The closest hit in a scene graph: a node's own primitives, then the nodes below. Of two hits at the same `t` the smaller
-/// primitive number wins. `savings` says which questions are to be saved; the hit is the same for all of them.
+/// Finds the closest hit of `ray` in a scene graph: tests a node's own primitives first, then visits its children. Node
+/// 0 is the root; a graph without nodes gives `None`.
 ///
-/// - `volumes`: ask `enter` for a node first, the root included, and leave out what the ray does not enter. Without it,
-///   `enter` is never asked, and there is nothing to skip or to sort by.
-/// - `skip`: what is entered beyond the closest hit so far is left out.
-/// - `sort`: of the children that are entered, the nearest is looked into first.
+/// Of two hits at the same `t` the smaller primitive number wins. `probe.hit` tests a primitive; test each one at most
+/// once. `savings` switches on three optimisations, and the hit is the same for all combinations:
+///
+/// - `volumes`: call `probe.enter` once for each node before its primitives are tested, also for the root, and skip a
+///   node that the ray does not enter, with all nodes below. Without `volumes`, `enter` is never called, and every node
+///   is visited.
+/// - `skip`: skip a node that the ray enters beyond the closest hit so far. Decide this when you are about to visit the
+///   node. A node that begins exactly at the closest hit must be visited.
+/// - `sort`: visit the entered children in the order in which the ray enters them. Without `sort`, visit them as listed.
+///
+/// Pitfall: a hit at exactly `t_max` does not count. If the range shrinks to the closest hit, a hit at the same `t`
+/// with a smaller number is lost.
 pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,
@@ -150,25 +195,29 @@ pub fn closest_hit_in_graph(
         search.node(0, probe);
     }
     search.closest
-    // <stub> todo!("hit the node's primitives, then look into the children that are worth it")
+    // <stub> todo!("test the node's primitives, then visit the children as savings says")
     // </solution>
 }
 
 // <solution>
+/// The state of a search.
 struct GraphSearch<'a> {
     graph: &'a Graph,
-    savings: Savings, // which questions not to ask
-    /// With `skip`, its range ends at the closest hit.
+    savings: Savings,
+    /// The ray. With `skip`, its range ends one float beyond the closest hit.
     ray: Ray,
     closest: Option<PrimitiveHit>,
 }
 
 impl GraphSearch<'_> {
+    /// Where the ray enters a node; without `volumes` it enters every node at its start.
     fn enter(&self, node: u32, probe: &mut impl Probe) -> Option<f32> {
         if self.savings.volumes { probe.enter(node, &self.ray) } else { Some(self.ray.t_min) }
     }
 
+    /// Visits a node and the nodes below it.
     fn node(&mut self, node: u32, probe: &mut impl Probe) {
+        // Test the node's own primitives.
         let node = &self.graph.nodes[node as usize];
         for &primitive in &node.primitives {
             let Some(t) = probe.hit(primitive, &self.ray) else { continue };
@@ -176,17 +225,18 @@ impl GraphSearch<'_> {
                 self.closest = Some(PrimitiveHit { t, primitive });
             }
             if self.savings.skip {
-                // One step beyond t, so that another primitive at the very same t is still heard.
+                // Set t_max one float above t, so that a primitive at exactly the same t is still reported.
                 self.ray.t_max = t.next_up().min(self.ray.t_max);
             }
         }
+        // Collect the children that the ray enters, and sort them by their entry.
         let mut entered: Vec<(f32, u32)> =
             node.children.iter().filter_map(|&child| Some((self.enter(child, probe)?, child))).collect();
         if self.savings.sort {
             entered.sort_by(|first, second| first.0.total_cmp(&second.0));
         }
         for (enter, child) in entered {
-            // A hit in an earlier child may have made this one too far.
+            // Skip a child that begins beyond the closest hit, which an earlier child may have changed.
             if enter < self.ray.t_max {
                 self.node(child, probe);
             }

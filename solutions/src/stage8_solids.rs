@@ -1,11 +1,16 @@
 //! Stage 8 · solids: boxes, cylinders, cones, disks and polygons, each in its own space.
 //!
-//! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to sphere, must also check
-//! end caps; convex polygon: same as triangle).
+//! Slides: "Ray-Box Intersection", "Other Ray-Primitive Intersections" (cone, cylinder: similar to sphere, must also
+//! check end caps; convex polygon: same as triangle).
 //!
-//! A convex solid is what several simpler sets have in common: a box is three slabs, a cylinder an infinite cylinder and a
-//! slab. A line is in each of them for one interval of `t`, so it is in the solid where all intervals overlap, and there is
-//! no cap to be forgotten. The first end of the overlap in the range of the ray is the hit.
+//! A convex solid is the intersection of simpler convex sets: a box of three slabs, a cylinder of an infinite cylinder
+//! and a slab. A line lies in each of them for one interval of `t`, so it lies in the solid where all intervals
+//! overlap, and no end cap needs a test of its own. The first end of the overlap in the ray's range is the hit.
+//!
+//! All functions have the same contract. `t` counts lengths of the direction, which may have any length but 0. A hit
+//! counts if [`Ray::contains`] accepts its `t`. From inside a solid the hit is the point where the ray leaves. The
+//! normal has unit length and points out of the solid; at edges, rims and tips each of the possible normals is right.
+//! The result is `None` for a ray or shape with NaN or infinite coordinates, and for a direction of 0.
 
 use glam::{DVec3, Vec3};
 use raykata::kit::SolidHit;
@@ -13,8 +18,8 @@ use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 // <solution>
-/// The part of a line that lies in a convex set, with the outward normals at its ends. In double precision: the numbers of
-/// the input are single, so that products of two are exact and cancellation leaves digits enough.
+/// The part of a line that lies in a convex set, with the outward normals at its ends. It is in double precision: the
+/// product of two input numbers of single precision is then exact, and enough digits remain after cancellation.
 #[derive(Clone, Copy)]
 struct Span {
     enter: f64,
@@ -31,7 +36,7 @@ impl Span {
         leave_normal: DVec3::ZERO,
     };
 
-    /// What it has in common with another one; `None` if nothing. To touch is to hit.
+    /// The overlap with another span; `None` if there is none. A common end is an overlap.
     fn and(self, other: Span) -> Option<Span> {
         let first = if other.enter > self.enter { other } else { self };
         let last = if other.leave < self.leave { other } else { self };
@@ -53,10 +58,10 @@ impl Span {
     }
 }
 
-/// Where a line whose height is `start + t rate` lies between two heights. `up` is the direction of height.
+/// The span in which a line of height `start + t rate` lies between two heights. `up` is the direction of height.
 fn slab(start: f64, rate: f64, [low, high]: [f64; 2], up: DVec3) -> Option<Span> {
     if rate == 0.0 {
-        // Along the slab: inside all the way or never. No division, so neither 0/0 nor -0.0 can do harm.
+        // A line parallel to the slab is inside for all t or for no t. Do not divide by a rate of 0 or -0.0.
         return (low <= start && start <= high).then_some(Span::WHOLE_LINE);
     }
     let (at_low, at_high) = ((low - start) / rate, (high - start) / rate);
@@ -66,29 +71,33 @@ fn slab(start: f64, rate: f64, [low, high]: [f64; 2], up: DVec3) -> Option<Span>
     })
 }
 
-/// The roots of `a t² + 2 b t + c` with `root = √(b² - ac)`, the smaller first: never a difference of like numbers.
+/// The roots of `a t² + 2 b t + c` with `root = √(b² - ac)`, the smaller first, without cancellation.
 fn roots(a: f64, b: f64, c: f64, root: f64) -> (f64, f64) {
     let q = -(b + root.copysign(b));
-    // q is 0 only if b and the root are: both roots of a t² are 0.
+    // q is 0 only if b and the root are 0; then both roots of a t² are 0.
     let (first, second) = if q == 0.0 { (0.0, 0.0) } else { (q / a, c / q) };
     (first.min(second), first.max(second))
 }
 
+/// Whether the ray and the points have no NaN or infinite coordinates.
 fn all_finite(ray: &Ray, points: &[Vec3]) -> bool {
     ray.origin.is_finite() && ray.direction.is_finite() && points.iter().all(|point| point.is_finite())
 }
 // </solution>
 
-/// Ray against a solid box: the nearest point of its surface within the range of the ray. From inside that is where the
-/// ray leaves. The box may be flat.
+/// Intersects a ray with a solid box: returns the nearest point of its surface in the ray's range. Faces, edges and
+/// corners belong to the box, which may be flat (`min` equal to `max` on an axis). The normal is that of the face that
+/// is hit.
 ///
-/// Where the formula lies: "check front-facing sides" loses every ray that starts inside, and a point computed on one face
-/// is tested against the others' edges with its rounding, so rays at edges are lost. Cut three intervals instead.
+/// Pitfall: the slide's "check front-facing sides" loses every ray that starts inside. A rounded point on one face can
+/// lie outside of the face's edges, so a test of points loses rays at edges. Intersect three intervals instead.
 pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
     // <solution>
+    // Reject invalid input.
     if !all_finite(ray, &[cuboid.min, cuboid.max]) || ray.direction == Vec3::ZERO {
         return None;
     }
+    // Intersect the intervals of the three slabs.
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let (min, max) = (cuboid.min.as_dvec3(), cuboid.max.as_dvec3());
     let mut span = Span::WHOLE_LINE;
@@ -96,42 +105,48 @@ pub fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit> {
         span = span.and(slab(origin[axis], direction[axis], [min[axis], max[axis]], up)?)?;
     }
     span.first_hit(ray)
-    // <stub> todo!("cut the intervals of the three axes; the first end in the range of the ray is the hit")
+    // <stub> todo!("intersect the intervals of the three axes; the first end in the ray's range is the hit")
     // </solution>
 }
 
-/// Ray against a cylinder with both ends closed.
+/// Intersects a ray with a cylinder whose ends are closed: returns the nearest point of side or ends in the ray's
+/// range. Side, ends and rims belong to the cylinder, and a ray that only touches the side hits it.
 ///
 /// With the axis `A` from base to top and the moment `L = (o - base) × d`, the line passes the axis at the distance
 /// `|A·L| / |d × A|`, so the discriminant of the infinite cylinder is `|d × A|² r² - (A·L)²`.
 ///
-/// Where the formula lies: "similar to sphere": for a ray along the axis `a = |d × A|²` is 0, and 0/0 is NaN. And caps
-/// tested as disks on their own leak at the rim.
+/// Pitfall: the slide's "similar to sphere" is not enough. For a ray parallel to the axis, `a = |d × A|²` is 0, and 0/0
+/// is NaN. Caps that are tested as separate disks leak at the rim.
 pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
     // <solution>
+    // Reject invalid input.
     if !all_finite(ray, &[cylinder.base, cylinder.top]) || ray.direction == Vec3::ZERO {
         return None;
     }
+    // Compute the interval between the planes of the two ends.
     let direction = ray.direction.as_dvec3();
     let from_base = ray.origin.as_dvec3() - cylinder.base.as_dvec3();
     let axis = cylinder.top.as_dvec3() - cylinder.base.as_dvec3();
     let between_caps = slab(from_base.dot(axis), direction.dot(axis), [0.0, axis.length_squared()], axis)?;
 
-    // |(p + t d) × A|² ≤ r² |A|²
+    // Compute the quadratic's coefficients for the infinite cylinder |(p + t d) × A|² ≤ r² |A|².
     let radius_squared = f64::from(cylinder.radius).powi(2);
     let (m, n) = (direction.cross(axis), from_base.cross(axis));
     let (a, b, c) = (m.dot(m), n.dot(m), n.dot(n) - radius_squared * axis.length_squared());
     let round = if a == 0.0 {
+        // A line parallel to the axis is inside for all t or for no t.
         if c > 0.0 {
             return None;
         }
         Span::WHOLE_LINE
     } else {
+        // Compute the discriminant from the distance to the axis, and the two roots.
         let discriminant = a * radius_squared - axis.dot(from_base.cross(direction)).powi(2);
         if discriminant < 0.0 {
             return None;
         }
         let (enter, leave) = roots(a, b, c, axis.length() * discriminant.sqrt());
+        // The normal of the side is the part of the point that is perpendicular to the axis.
         let outwards = |t: f64| {
             let at = from_base + t * direction;
             at - at.project_onto(axis)
@@ -139,20 +154,22 @@ pub fn cylinder(ray: &Ray, cylinder: &Cylinder) -> Option<SolidHit> {
         Span { enter, leave, enter_normal: outwards(enter), leave_normal: outwards(leave) }
     };
     between_caps.and(round)?.first_hit(ray)
-    // <stub> todo!("cut the interval between the caps and the interval in the infinite cylinder")
+    // <stub> todo!("intersect the interval between the ends with the interval in the infinite cylinder")
     // </solution>
 }
 
-/// Ray against a cone with its base closed.
+/// Intersects a ray with a cone whose base is closed: returns the nearest point of side or base in the ray's range. Side,
+/// base, rim and apex belong to the cone.
 ///
 /// With the axis `A` from apex to base and the moment `L = (o - apex) × d`, the discriminant of the double cone
 /// `|x × A|² ≤ k (x·A)²`, `k = r²/|A|²`, is `|A|² (k |A × L|² - (A·L)²)`.
 ///
-/// Where the formula lies: the equation describes two cones, tip to tip, and a ray that passes above the tip meets the
-/// mirror image. A ray along the side makes `a` 0, and one steeper than the side makes it negative: then it is inside
-/// *outside* of the roots.
+/// Pitfall: the equation describes two cones, apex to apex, and a ray that passes above the apex meets the second cone.
+/// For a ray parallel to the side `a` is 0. For a steeper ray `a` is negative, and the ray is inside *beyond* the
+/// roots, not between them.
 pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     // <solution>
+    // Reject invalid input.
     if !all_finite(ray, &[cone.base, cone.apex]) || ray.direction == Vec3::ZERO {
         return None;
     }
@@ -160,9 +177,10 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     let from_apex = ray.origin.as_dvec3() - cone.apex.as_dvec3();
     let axis = cone.base.as_dvec3() - cone.apex.as_dvec3();
     let (height_squared, start, rate) = (axis.length_squared(), from_apex.dot(axis), direction.dot(axis));
-    // This also cuts off the mirror image, whose points lie below 0.
+    // Compute the interval between apex and base. It excludes the second cone, whose points have negative heights.
     let below_apex = slab(start, rate, [0.0, height_squared], axis)?;
 
+    // Compute the quadratic's coefficients for the double cone, and its discriminant.
     let k = f64::from(cone.radius).powi(2) / height_squared;
     let (m, n) = (direction.cross(axis), from_apex.cross(axis));
     let (a, b, c) = (m.dot(m) - k * rate * rate, n.dot(m) - k * start * rate, n.dot(n) - k * start * start);
@@ -171,19 +189,20 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     if a > 0.0 && discriminant < 0.0 {
         return None;
     }
+    // Choose the interval in which the line lies in this cone.
     let (first, second) = roots(a, b, c, discriminant.max(0.0).sqrt());
     let (enter, leave) = match () {
         () if a > 0.0 => (first, second),
-        // Steeper than the side: from the tip's side in, and never out of this one of the two cones.
+        // A ray steeper than the side enters this cone at the larger root, or leaves it at the smaller one.
         () if a < 0.0 && rate > 0.0 => (second, f64::INFINITY),
         () if a < 0.0 => (f64::NEG_INFINITY, first),
-        // Along the side, 2 b t + c ≤ 0 is left.
+        // For a ray parallel to the side, 2 b t + c ≤ 0 remains.
         () if b > 0.0 => (f64::NEG_INFINITY, -c / (2.0 * b)),
         () if b < 0.0 => (-c / (2.0 * b), f64::INFINITY),
         () if c <= 0.0 => (f64::NEG_INFINITY, f64::INFINITY),
         () => return None,
     };
-    // Half the gradient of |x × A|² - k (x·A)².
+    // Compute the normal: half the gradient of |x × A|² - k (x·A)², or -axis at the apex, where the gradient is 0.
     let outwards = |t: f64| {
         let at = from_apex + t * direction;
         let gradient = height_squared * at - at.dot(axis) * (1.0 + k) * axis;
@@ -191,47 +210,57 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     };
     let round = Span { enter, leave, enter_normal: outwards(enter), leave_normal: outwards(leave) };
     below_apex.and(round)?.first_hit(ray)
-    // <stub> todo!("cut the interval between tip and base and the interval in the right one of the two cones")
+    // <stub> todo!("intersect the interval between apex and base with the interval in the right one of the cones")
     // </solution>
 }
 
-/// Ray against a flat disk, from either side. The rim belongs to it.
+/// Intersects a ray with a flat disk, from both sides. The rim belongs to the disk. The normal is `disk.normal` as a
+/// unit vector, also if the ray comes from the other side. The result is `None` for a radius that is NaN, and for a ray
+/// parallel to the disk.
+///
+/// Pitfall: `t` is infinite or NaN for a ray parallel to the disk. Write comparisons that are false for NaN.
 pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
     // <solution>
     let (direction, normal) = (ray.direction.as_dvec3(), disk.normal.as_dvec3());
     let to_center = disk.center.as_dvec3() - ray.origin.as_dvec3();
     let t = to_center.dot(normal) / direction.dot(normal);
     let from_center = t * direction - to_center;
-    // Written so that NaN, the t of a ray along the disk, fails.
+    // This comparison is false for NaN, which is the t of a ray in the plane of the disk.
     let inside = from_center.length_squared() <= f64::from(disk.radius).powi(2);
     let hit = SolidHit { t: t as f32, normal: normal.normalize_or_zero().as_vec3() };
     (inside && ray.contains(hit.t)).then_some(hit)
-    // <stub> todo!("meet the plane of the disk, then compare the distance to the centre with the radius")
+    // <stub> todo!("intersect the plane of the disk, then compare the distance from the centre with the radius")
     // </solution>
 }
 
-/// Ray against a flat convex polygon, from either side. Edges and corners belong to it.
+/// Intersects a ray with a flat convex polygon, from both sides. Edges and corners belong to the polygon, and three
+/// corners may lie on a line. The normal points to the side from which the corners run anticlockwise, also if the ray
+/// comes from the other side. A ray in the plane of the polygon does not hit it.
 ///
-/// Where the formula lies: a point on the plane is rounded, and the rounding decides at the edges. Ask on which side of each
-/// edge the ray passes, `d · (p × q)` for its ends `p` and `q` as seen from the origin, and a neighbour agrees.
+/// Pitfall: a point on the plane is rounded, and near an edge this rounding decides. Test on which side of each edge
+/// the ray passes instead: the sign of `d · (p × q)` for the ends `p` and `q` of the edge relative to the ray's origin.
+/// A neighbouring polygon computes the same value for the shared edge, up to the sign, so no ray passes between them.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     // <solution>
+    // Express the corners relative to the ray's origin.
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let seen: Vec<DVec3> = polygon.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
     let edges = || (0..seen.len()).map(|i| (seen[i], seen[(i + 1) % seen.len()]));
 
+    // Test whether the ray passes all edges on the same side.
     let passes: Vec<f64> = edges().map(|(p, q)| direction.dot(p.cross(q))).collect();
     let (left, right) = (passes.iter().all(|&side| side >= 0.0), passes.iter().all(|&side| side <= 0.0));
     if !(left || right) {
         return None;
     }
-    // Newell: the areas that all edges sweep around a corner add up to the normal, and none of them needs to be large.
+    // Compute the normal by Newell's method: sum the areas between each edge and one corner. Single areas may be 0.
     let normal: DVec3 = edges().map(|(p, q)| (p - seen[0]).cross(q - seen[0])).sum();
+    // Intersect the plane of the polygon.
     let hit = SolidHit {
         t: (seen[0].dot(normal) / direction.dot(normal)) as f32,
         normal: normal.normalize_or_zero().as_vec3(),
     };
     ray.contains(hit.t).then_some(hit)
-    // <stub> todo!("the ray must pass all edges on the same side; t comes from the plane of the polygon")
+    // <stub> todo!("test that the ray passes all edges on the same side; take t from the polygon's plane")
     // </solution>
 }

@@ -1,4 +1,4 @@
-//! Stage 8 · curved surfaces: what no formula intersects is made of triangles first.
+//! Stage 8 · curved surfaces: surfaces without a simple formula for ray hits are approximated by triangles.
 //!
 //! Slides: "Ray-tracing other primitives" (surfaces by subdivision); Loop, "Smooth Subdivision Surfaces Based on
 //! Triangles", 1987; Hoppe et al. 1994 for its borders.
@@ -8,37 +8,51 @@ use raykata::mesh::Mesh;
 use raykata::shape::BezierPatch;
 use std::collections::HashMap;
 
-/// The point of a bicubic Bézier patch at `u` along its rows and `v` along its columns, both `0..=1`, by de Casteljau's
-/// repeated blending. At the corners it is the corner of the control net, to the last bit.
+/// Computes a point of a bicubic Bézier patch by de Casteljau's algorithm, which is repeated linear interpolation.
+///
+/// `u` runs along the rows and `v` along the columns, both in `0..=1`. For `u` and `v` of 0 or 1 the result is exactly
+/// the corner of the control net: (0, 0) gives `rows[0][0]`, (1, 0) gives `rows[0][3]` and (0, 1) gives `rows[3][0]`.
+///
+/// Pitfall: `p + t (q - p)` is not always exactly `q` at t = 1, and then neighbouring patches have gaps. Use
+/// `(1 - t) p + t q`.
 pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
     // <solution>
     let across = patch.rows.map(|row| on_curve(row, uv.x));
     on_curve(across, uv.y)
-    // <stub> todo!("blend neighbours three times along each row, then the four results along the column")
+    // <stub> todo!("interpolate three times along each row with u, then the four results with v")
     // </solution>
 }
 
 // <solution>
+/// A point of a cubic Bézier curve.
 fn on_curve([p0, p1, p2, p3]: [Vec3; 4], t: f32) -> Vec3 {
-    // Both factors, and not p + t (q - p): at t = 1 this is q exactly.
+    // Use both factors instead of p + t (q - p), because the result is then exactly q at t = 1.
     let blend = |p: Vec3, q: Vec3| (1.0 - t) * p + t * q;
     let (q0, q1, q2) = (blend(p0, p1), blend(p1, p2), blend(p2, p3));
     blend(blend(q0, q1), blend(q1, q2))
 }
 // </solution>
 
-/// One step of Loop's subdivision: every triangle becomes four. The vertices of `mesh` keep their numbers and move; behind
-/// them comes one new vertex for each edge.
+/// Computes one step of Loop subdivision, which replaces each triangle by four. The old vertices keep their numbers and
+/// move; after them comes one new vertex per edge, which the triangles of the edge share.
 ///
-/// - New vertex of an edge `p q` between triangles with the third corners `r` and `s`: `3/8 (p + q) + 1/8 (r + s)`; of an
-///   edge with a triangle on one side only: its middle.
-/// - Old vertex with `n` neighbours `pᵢ`: `(1 - n β) p + β Σ pᵢ` with `β = 3/16` for `n = 3` and `3 / 8n` otherwise; on a
-///   border, with the neighbours `p₁`, `p₂` along it: `3/4 p + 1/8 (p₁ + p₂)`. A vertex that belongs to no triangle stays.
+/// - New vertex of an edge `p q` between two triangles with the third corners `r` and `s`: `3/8 (p + q) + 1/8 (r + s)`.
+/// - New vertex of a border edge, which has one triangle only: its midpoint `1/2 (p + q)`.
+/// - Old vertex `p` with `n` neighbours `pᵢ`: `(1 - n β) p + β Σ pᵢ` with `β = 3/16` for `n = 3` and `3 / (8 n)`
+///   otherwise. On a border, with the neighbours `p₁` and `p₂` along it: `3/4 p + 1/8 (p₁ + p₂)`. A vertex that belongs
+///   to no triangle stays.
+/// - The four triangles have their corners in the order of the old triangle, and its material. The new vertices and the
+///   triangles may come in any order.
+/// - The texture coordinates of an old vertex stay; those of a new vertex are the mean of the ends of its edge. A mesh
+///   without texture coordinates or materials gets none. Normals are dropped, because the surface changes.
 ///
-/// Texture coordinates of new vertices are the mean of their edge's ends; materials of faces are passed on; normals are
-/// dropped, because the surface is another one.
+/// Pitfall: all formulas use positions from before the step. A border may depend only on its own vertices, or a gap opens
+/// between two meshes that share it.
+///
+/// Source: Loop 1987; Hoppe et al. 1994 for the border.
 pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
     // <solution>
+    // Place a new vertex on each edge.
     let edges = Edges::of(mesh);
     let position = |vertex: u32| mesh.positions[vertex as usize];
     let on_edge = |edge: &Edge| {
@@ -48,9 +62,11 @@ pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
             _ => 0.5 * ends,
         }
     };
+    // Move the old vertices, and append the new ones.
     let mut positions = moved_vertices(mesh, &edges);
     positions.extend(edges.list.iter().map(on_edge));
 
+    // Average the texture coordinates of the ends of each edge.
     let mut uvs = mesh.uvs.clone();
     if !uvs.is_empty() {
         uvs.extend(edges.list.iter().map(|edge| {
@@ -58,6 +74,7 @@ pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
             0.5 * (p + q)
         }));
     }
+    // Replace each triangle by four.
     let n_old = mesh.positions.len() as u32;
     let middle = |p: u32, q: u32| n_old + edges.numbers[&(p.min(q), p.max(q))];
     let quarters = |&[a, b, c]: &[u32; 3]| {
@@ -72,28 +89,31 @@ pub fn loop_subdivide(mesh: &Mesh) -> Mesh {
         face_materials: mesh.face_materials.iter().flat_map(|&material| [material; 4]).collect(),
         material_names: mesh.material_names.clone(),
     }
-    // <stub> todo!("find the edges, place a vertex on each, move the old ones, make four triangles of each")
+    // <stub> todo!("find the edges, place a vertex on each, move the old vertices, make four triangles of each")
     // </solution>
 }
 
 // <solution>
+/// An edge of a mesh.
 struct Edge {
     ends: [u32; 2],
     /// The third corners of the triangles at this edge.
     opposite: Vec<u32>,
 }
 
-/// The edges of a mesh, in the order in which its triangles name them.
+/// The edges of a mesh, in the order in which its triangles first name them.
 struct Edges {
     list: Vec<Edge>,
-    /// By ends, the smaller first.
+    /// The index of each edge in `list`, by its ends, the smaller first.
     numbers: HashMap<(u32, u32), u32>,
 }
 
 impl Edges {
+    /// Finds the edges of all triangles.
     fn of(mesh: &Mesh) -> Edges {
         let mut edges = Edges { list: Vec::new(), numbers: HashMap::new() };
         for &[a, b, c] in &mesh.triangles {
+            // Add each edge of the triangle that is new, and store the third corner.
             for (p, q, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
                 let next = edges.list.len() as u32;
                 let number = *edges.numbers.entry((p.min(q), p.max(q))).or_insert(next);
@@ -107,9 +127,10 @@ impl Edges {
     }
 }
 
+/// The new positions of the old vertices.
 fn moved_vertices(mesh: &Mesh, edges: &Edges) -> Vec<Vec3> {
     let n = mesh.positions.len();
-    // For each vertex how many neighbours it has and their sum: all of them, and those along a border.
+    // For each vertex, count its neighbours and sum their positions: all of them, and those along a border.
     let (mut around, mut along) = (vec![(0u32, Vec3::ZERO); n], vec![(0u32, Vec3::ZERO); n]);
     for edge in &edges.list {
         let [p, q] = edge.ends;
@@ -125,6 +146,7 @@ fn moved_vertices(mesh: &Mesh, edges: &Edges) -> Vec<Vec3> {
             }
         }
     }
+    // Apply the rule for a vertex of no triangle, for an inner vertex, or for a vertex on a border.
     let moved = |vertex: usize| {
         let (old, (count, sum)) = (mesh.positions[vertex], around[vertex]);
         match along[vertex] {
@@ -134,7 +156,7 @@ fn moved_vertices(mesh: &Mesh, edges: &Edges) -> Vec<Vec3> {
                 (1.0 - count as f32 * beta) * old + beta * sum
             }
             (2, ends) => 0.75 * old + 0.125 * ends,
-            // Two borders meet here: no curve goes through.
+            // Several borders meet at this vertex, so it stays.
             _ => old,
         }
     };

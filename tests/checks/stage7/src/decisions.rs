@@ -1,4 +1,4 @@
-//! What lights and materials call for.
+//! Checks of `light_effects` and `material_effects`.
 
 use super::scenes::{light, sphere_light};
 use checks::Trial;
@@ -18,62 +18,62 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
     let nothing = LightEffects::default();
     let silent = Light { shadows: false, ..light(Vec3::ONE, 1.0) };
     let cases = [
-        (
-            "a white light",
-            light(Vec3::ONE, 1.0),
-            quality(4),
-            one,
-            "a light without extent shines from 1 place",
-        ),
+        ("a white light", light(Vec3::ONE, 1.0), quality(4), one, "a point light needs 1 sample"),
         (
             "a light that casts no shadows",
             silent,
             quality(1),
             LightEffects { shadows: false, ..one },
-            "it shines all the same, and shadows is as light.shadows says",
+            "a light without shadows still needs 1 sample, and shadows = light.shadows",
         ),
         (
             "a light of intensity 0",
             light(Vec3::ONE, 0.0),
             quality(1),
             nothing,
-            "it gives no light: it takes nothing",
+            "a light that emits nothing needs nothing: LightEffects::default()",
         ),
         (
             "a black light",
             light(Vec3::ZERO, 3.0),
             quality(1),
             nothing,
-            "black light is none: it takes nothing",
+            "a black light emits nothing, so it needs nothing: LightEffects::default()",
         ),
-        ("a faint red light", light(vec3(1e-6, 0.0, 0.0), 1.0), quality(1), one, "faint light is light"),
         (
-            "a sphere of light",
+            "a faint red light",
+            light(vec3(1e-6, 0.0, 0.0), 1.0),
+            quality(1),
+            one,
+            "a faint red light still emits: only a radiance of 0 in all channels needs nothing",
+        ),
+        (
+            "a spherical area light",
             sphere_light(Vec3::ONE),
             quality(16),
             LightEffects { samples: 16, area: true, shadows: true },
-            "a light with an extent is asked light_samples times",
+            "an area light needs quality.light_samples samples",
         ),
         (
-            "a sphere of light with light_samples = 1",
+            "a spherical area light with light_samples = 1",
             sphere_light(Vec3::ONE),
             quality(1),
             LightEffects { samples: 1, area: true, shadows: true },
-            "one place is drawn at random as well",
+            "a single sample is drawn at random, too: area is true if light_samples is above 0",
         ),
         (
-            "a sphere of light with light_samples = 0",
+            "a spherical area light with light_samples = 0",
             sphere_light(Vec3::ONE),
             quality(0),
             one,
-            "it shines from its middle",
+            "with light_samples = 0 an area light needs 1 sample, and area is false",
         ),
         (
-            "a black sphere",
+            "a black spherical area light",
             sphere_light(Vec3::ZERO),
             quality(16),
             nothing,
-            "it gives no light: it takes nothing",
+            "a light that emits nothing needs nothing: LightEffects::default()",
         ),
     ];
     let queries: Vec<LightQuery> = cases
@@ -89,7 +89,7 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-/// A material that shows nothing.
+/// A material that reflects, transmits and emits no light.
 fn black() -> Material {
     Material {
         ambient: Vec3::ZERO,
@@ -105,8 +105,8 @@ fn black() -> Material {
     }
 }
 
-/// Materials with few colours, `max_depth`, and what they take under a red, a green, a faint blue, a white and a black
-/// light. Written down from the doc comment of `material_effects`.
+/// Materials with few colours, each with a `max_depth` and the effects that it needs under a red, a green, a faint
+/// blue, a white and a black light. Derived by hand from the doc comment of `material_effects`.
 fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     let (red, green, blue) = (vec3(0.5, 0.0, 0.0), vec3(0.0, 0.5, 0.0), vec3(0.0, 0.0, 0.5));
     let faint = vec3(0.0, 0.0, 1e-4);
@@ -175,7 +175,7 @@ fn recorded() -> Vec<(MaterialQuery, MaterialEffects)> {
     cases.into_iter().map(query).collect()
 }
 
-/// The material with all but one of its colours black, for each of them.
+/// For each colour of the material: the same material with all other colours black.
 fn by_color(query: &MaterialQuery) -> Vec<MaterialQuery> {
     let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
     let colors = [ambient, diffuse, specular, mirror, transmission];
@@ -193,7 +193,7 @@ fn with_colors(query: &MaterialQuery, colors: [Vec3; N_COLORS]) -> MaterialQuery
     MaterialQuery { material, ..query.clone() }
 }
 
-/// The same with every colour changed, of the material and of its lights.
+/// The same query with every colour of the material and of its lights changed.
 fn recolored(query: &MaterialQuery, change: impl Fn(Vec3) -> Vec3) -> MaterialQuery {
     let Material { ambient, diffuse, specular, mirror, transmission, .. } = query.material;
     let changed = with_colors(query, [ambient, diffuse, specular, mirror, transmission].map(&change));
@@ -201,7 +201,7 @@ fn recolored(query: &MaterialQuery, change: impl Fn(Vec3) -> Vec3) -> MaterialQu
     MaterialQuery { lights: lights.collect(), ..changed }
 }
 
-/// The same in one channel only, for each of them.
+/// For each channel: the same query with all other channels black.
 fn by_channel(query: &MaterialQuery) -> Vec<MaterialQuery> {
     [Vec3::X, Vec3::Y, Vec3::Z].map(|channel| recolored(query, |color| color * channel)).to_vec()
 }
@@ -209,11 +209,11 @@ fn by_channel(query: &MaterialQuery) -> Vec<MaterialQuery> {
 const N_COLORS: usize = 5;
 const N_CHANNELS: usize = 3;
 
-/// The other materials that a material is compared with.
+/// The other materials whose answers are compared with the answer for a material.
 struct Others {
-    /// Its colours alone, its channels alone, and its variants.
+    /// The material with each colour alone, with each channel alone, and its variants.
     asked: Vec<MaterialQuery>,
-    /// What the variants must take.
+    /// The effects that the variants must need.
     expected: Vec<MaterialEffects>,
 }
 
@@ -224,7 +224,7 @@ impl Others {
     }
 }
 
-/// Whatever any of the answers says.
+/// The union of the answers: an effect is set if any answer sets it.
 fn together(answers: &[MaterialEffects]) -> MaterialEffects {
     let any = |said: fn(&MaterialEffects) -> bool| answers.iter().any(said);
     let mut lights: Vec<usize> = answers.iter().flat_map(|one| one.lights.clone()).collect();
@@ -239,12 +239,12 @@ fn together(answers: &[MaterialEffects]) -> MaterialEffects {
     }
 }
 
-/// Other channels in other amounts, and black where it was black.
+/// Rotates the channels and changes their amounts. Channels of 0 stay 0.
 fn turned(color: Vec3) -> Vec3 {
     vec3(color.z, color.x, color.y).map(|share| if share > 0.0 { 1e-5 / share } else { 0.0 })
 }
 
-/// Variants of a material, each with what it must take if the material takes `yours`.
+/// Variants of a material, each with the effects that it must need if the material needs `yours`.
 fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuery, MaterialEffects)> {
     let with = |material: Material| MaterialQuery { material, ..query.clone() };
     let material = || query.material.clone();
@@ -261,14 +261,14 @@ fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuer
         Fresnel::Exact => Fresnel::Schlick,
     };
     let mut variants = vec![
-        // Neither the order of channels matters, nor how much of a colour there is.
+        // The order of the channels and the amount of a colour do not matter.
         (recolored(query, turned), same()),
         (with(Material { index_of_refraction: 1.25, ..material() }), same()),
         (with(Material { fresnel, ..material() }), same()),
         (with(Material { texture: None, ..material() }), MaterialEffects { texture: false, ..same() }),
         (with(Material { roughness: 0.0, ..material() }), MaterialEffects { glossy: false, ..same() }),
         (depth(0), MaterialEffects { mirror: false, transmission: false, glossy: false, ..same() }),
-        // Each light matters or not by itself.
+        // Whether a light matters does not depend on the other lights.
         (
             under(first),
             MaterialEffects { lights: yours.lights.iter().copied().filter(|i| *i == 0).collect(), ..same() },
@@ -287,27 +287,33 @@ fn variants(query: &MaterialQuery, yours: &MaterialEffects) -> Vec<(MaterialQuer
     variants
 }
 
-/// What the difference looks like.
+/// The mistake that explains the difference, or an empty text.
 fn diagnosis(query: &MaterialQuery, yours: &MaterialEffects, expected: &MaterialEffects) -> &'static str {
     let shown = query.quality.max_depth > 0;
     match () {
         () if yours.lights.len() > expected.lights.len() => {
-            "a light whose every channel meets a 0 adds nothing: no ray should ask for it"
+            "you list a light that adds nothing: in each channel, its radiance or diffuse and specular are 0"
         }
         () if yours.lights.len() < expected.lights.len() => {
-            "a light is missing: one channel is enough, diffuse or specular, and faint light is light"
+            "you leave out a light that matters: one channel of diffuse or specular is enough, and so is \
+             faint light"
         }
-        () if !shown && (yours.mirror || yours.transmission) => "with max_depth 0 no ray goes on",
+        () if !shown && (yours.mirror || yours.transmission) => {
+            "with max_depth 0 a surface spawns no secondary rays"
+        }
         () if yours.mirror != expected.mirror && query.material.mirror == Vec3::ZERO => {
-            "with fresnel, what lets light through mirrors part of it; without any light through, nothing"
+            "with fresnel, a material reflects if its transmission is not 0, and only then"
         }
-        () if yours.mirror != expected.mirror => "rays are mirrored if some channel of mirror is not 0",
+        () if yours.mirror != expected.mirror => "rays are reflected if some channel of mirror is not 0",
         () if yours.transmission != expected.transmission => {
-            "rays go through if some channel of transmission is not 0, whatever the index and the angle"
+            "rays are refracted if some channel of transmission is not 0, for every index of refraction"
         }
-        () if yours.glossy != expected.glossy => "rough matters only where rays are mirrored or go through",
+        () if yours.glossy != expected.glossy => {
+            "glossy is true if roughness is above 0 and the material reflects or refracts rays"
+        }
         () if yours.texture != expected.texture => {
-            "an image matters if diffuse or ambient, which it multiplies, is not 0"
+            "an image matters if diffuse or ambient, which it multiplies, is not 0: otherwise texture is \
+             false"
         }
         () => "",
     }
@@ -372,7 +378,8 @@ fn describe(query: &MaterialQuery) -> String {
     let m = &query.material;
     let lights: Vec<String> = query.lights.iter().map(|light| light.radiance().paste()).collect();
     format!(
-        "material_effects of ambient {}, diffuse {}, specular {}, mirror {}, transmission {}, index {},\nfresnel {:?}, roughness {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
+        "material_effects of ambient {}, diffuse {}, specular {}, mirror {}, transmission {}, index \
+         {},\nfresnel {:?}, roughness {}, texture {:?}, max_depth {},\nunder lights of radiance [{}]",
         m.ambient,
         m.diffuse,
         m.specular,
@@ -387,8 +394,9 @@ fn describe(query: &MaterialQuery) -> String {
     )
 }
 
-/// Recorded answers for simple materials, and laws that lead from any material to simple ones: it takes what its colours
-/// take one by one, and what its channels take one by one; and settings change only what they are about.
+/// Compares simple materials with recorded answers, and other materials with the student's own answers for simpler
+/// ones: a material needs the union of what its colours need, and the union of what its channels need. Each setting
+/// changes only its own effect.
 pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> Outcome {
     let recorded = recorded();
     let queries: Vec<MaterialQuery> = recorded.iter().map(|(query, _)| query.clone()).collect();
@@ -408,9 +416,9 @@ pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> Outcome {
                 query,
                 yours,
                 &together(colors),
-                "your answers for each of its colours, together",
+                "the union of your answers for each of its colours",
             )?;
-            compare_effects(query, yours, &together(channels), "your answers for each channel, together")?;
+            compare_effects(query, yours, &together(channels), "the union of your answers for each channel")?;
             let asked = &others.asked[N_COLORS + N_CHANNELS..];
             asked.iter().zip(&others.expected).zip(variants).try_for_each(|((variant, expected), yours)| {
                 compare_effects(variant, yours, expected, "what your answer for another material implies")

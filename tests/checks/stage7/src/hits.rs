@@ -1,4 +1,4 @@
-//! Rays of known hits, and samples for a known error.
+//! Checks of `rays_of_hits` and `samples_for_error`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -8,8 +8,8 @@ use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
 use raykata::scene::Quality;
 
-/// What one hit sends on: `(mirror, transmission, glossy)`, then the rays mirrored and the rays that go through with
-/// `glossy_samples` 1, and with `glossy_samples` 4. Written down from the doc comment of `rays_of_hits`.
+/// The secondary rays of one hit: `(mirror, transmission, glossy)`, then the reflected and the refracted rays with
+/// `glossy_samples` 1, and with `glossy_samples` 4. Derived by hand from the doc comment of `rays_of_hits`.
 type Kind = ([bool; 3], [u64; 2], [u64; 2]);
 
 const KINDS: [Kind; 7] = [
@@ -55,7 +55,7 @@ fn hits_query() -> impl Strategy<Value = HitsQuery> + Clone {
     })
 }
 
-/// A table on which all mistakes give different counts.
+/// A table for which each known mistake gives different counts.
 fn drawn() -> HitsQuery {
     let plain = material(&KINDS[0], vec![0, 2]);
     let glass = material(&KINDS[6], vec![0, 1]);
@@ -70,46 +70,53 @@ fn drawn() -> HitsQuery {
     }
 }
 
-/// The rays of [`drawn`], counted by hand. Shadow: the glass asks lights 0 and 1 (3 + 20), the plain material light 0 (4);
-/// light 2 casts no shadows. The 10 hits of rough glass send 3 rays each way.
+/// The rays of [`drawn`], counted by hand. Shadow: the glass needs lights 0 and 1 (3 + 20), the plain material light 0
+/// (4); light 2 casts no shadows. Each of the 10 hits of rough glass spawns 3 reflected and 3 refracted rays.
 const DRAWN: RayCounts = RayCounts { primary: 17, shadow: 27, reflection: 30, transmission: 30 };
 
-/// What mistakes make of [`drawn`], counted by hand in the same way, and how they are describe.
+/// The counts that mistakes give for [`drawn`], counted by hand in the same way, each with its diagnosis.
 const MISTAKES: [(RayCounts, &str); 10] = [
     // 3 + 20, 4 + 31; and light 2 casts no shadows.
-    (RayCounts { shadow: 58, ..DRAWN }, "lights that do not matter to the material cost no ray"),
+    (RayCounts { shadow: 58, ..DRAWN }, "you count lights that do not matter to the material"),
     // 3 + 20, 4 + 6.
-    (RayCounts { shadow: 33, ..DRAWN }, "lights that cast no shadows cost no ray"),
+    (RayCounts { shadow: 33, ..DRAWN }, "you count lights that cast no shadows"),
     // 10 hits times 1 + 4 samples, and 7 times 1.
     (
         RayCounts { shadow: 57, ..DRAWN },
-        "hits times lights: in_front says how many places really lie on the lit side",
+        "you count hits times light samples: in_front says how many samples lie in front of the surface",
     ),
     // 3 + 4 · 20 + 4.
     (
         RayCounts { shadow: 87, ..DRAWN },
-        "in_front counts places on lights already, over all hits: do not multiply it again",
+        "you multiply in_front by the samples of the light: it already counts samples, over all hits",
     ),
-    (RayCounts { reflection: 10, transmission: 10, ..DRAWN }, "a rough surface sends glossy_samples rays"),
+    (
+        RayCounts { reflection: 10, transmission: 10, ..DRAWN },
+        "you count one ray of each kind per hit of a rough surface: it spawns glossy_samples",
+    ),
     (
         RayCounts { transmission: 10, ..DRAWN },
-        "a rough surface sends glossy_samples rays through as well as back",
+        "you count one refracted ray per hit of a rough surface: it spawns glossy_samples refracted rays, \
+         too",
     ),
     // 3 · 10 + 7.
     (
         RayCounts { reflection: 37, transmission: 37, ..DRAWN },
-        "only what mirrors sends mirrored rays, only what lets light through sends rays through",
+        "you count secondary rays for a material whose mirror and transmission are false",
     ),
     (
         RayCounts { primary: 7, shadow: 4, reflection: 0, transmission: 0 },
-        "the rows of the table add up, and this is but the last one",
+        "you return the counts of the last row: add up all rows",
     ),
-    // The plain material asks light 0 (3), the glass lights 0 and 1 (4 + 31) and sends 3 · 7 rays each way.
+    // The plain material needs light 0 (3), the glass lights 0 and 1 (4 + 31); the glass spawns 3 · 7 rays of each kind.
     (
         RayCounts { primary: 17, shadow: 38, reflection: 21, transmission: 21 },
-        "each row names its material: effects.materials[row.material]",
+        "you use the number of the row as its material: take effects.materials[row.material]",
     ),
-    (RayCounts { primary: 2, ..DRAWN }, "each hit was made by one ray: primary is the sum of hits"),
+    (
+        RayCounts { primary: 2, ..DRAWN },
+        "you count rows: one ray made each hit, so primary is the sum of hits",
+    ),
 ];
 
 fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'static str) -> Broken {
@@ -120,7 +127,7 @@ fn broken(query: &HitsQuery, yours: RayCounts, expected: RayCounts, source: &'st
     Broken::new(input, yours, expected, source)
 }
 
-/// A single hit of each kind, and a single place on a light, each with the rays that it takes.
+/// Tables of a single hit of each kind and of a single light sample, each with the rays that it needs.
 fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
     let query =
         |kind: &Kind, lights: Vec<usize>, casts: bool, row: MaterialHits, glossy_samples: u32| HitsQuery {
@@ -139,7 +146,7 @@ fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
             let hit = query(kind, vec![0, 1, 2], true, row(0, 1, [0, 0, 0]), glossy_samples);
             singles.push((hit, expected));
         }
-        // A place on light 1: whether that light matters and casts shadows, and the shadow rays.
+        // One sample of light 1: the lights that matter, whether they cast shadows, and the number of shadow rays.
         for (lights, casts, shadow) in [
             (vec![0, 1, 2], true, 1),
             (vec![0, 1, 2], false, 0),
@@ -153,10 +160,10 @@ fn single_hits_and_places() -> Vec<(HitsQuery, RayCounts)> {
     singles
 }
 
-/// Tables of a single hit or a single place, each with how often it is in a larger table.
+/// Tables of a single hit or a single light sample, each with its number in a larger table.
 type Parts = Vec<(HitsQuery, u64)>;
 
-/// The table in parts: for each row one hit alone, and one place on each light alone, each with how often it is there.
+/// The table in parts: for each row one hit alone, and one sample of each light alone, each with its number in the row.
 fn parts(query: &HitsQuery) -> Parts {
     let mut parts = Vec::new();
     for MaterialHits { material, hits, in_front } in &query.hits {
@@ -172,7 +179,7 @@ fn parts(query: &HitsQuery) -> Parts {
     parts
 }
 
-/// Checks known counts: the drawn table, single hits and single places. All other tables must be sums of those.
+/// Checks known counts: the fixed table, single hits and single light samples. All other tables must be sums of those.
 pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
     let query = drawn();
     let yours = trial.kit.rays_of_hits(std::slice::from_ref(&query)).remove(0);
@@ -184,7 +191,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
     let queries: Vec<HitsQuery> = singles.iter().map(|(query, _)| query.clone()).collect();
     for ((query, expected), yours) in singles.iter().zip(trial.kit.rays_of_hits(&queries)) {
         if yours != *expected {
-            return Err(broken(query, yours, *expected, "a single hit, or a single place on a light"));
+            return Err(broken(query, yours, *expected, "a single hit, or a single light sample"));
         }
     }
     trial.forall(2000, hits_query(), |queries| {
@@ -195,7 +202,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
         let judge = |((query, parts), yours): ((&HitsQuery, &Parts), RayCounts)| {
             let mut sum = RayCounts::default();
             for ((_, times), one) in parts.iter().zip(alone.by_ref()) {
-                // Saturating: a wrong answer can be any number.
+                // Saturating, because a wrong answer can be any number.
                 let add = |sum: &mut u64, one: u64| *sum = sum.saturating_add(times.saturating_mul(one));
                 add(&mut sum.primary, one.primary);
                 add(&mut sum.shadow, one.shadow);
@@ -204,9 +211,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
             }
             match yours == sum {
                 true => Ok(()),
-                false => {
-                    Err(broken(query, yours, sum, "your counts for each hit and each place alone, added up"))
-                }
+                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")),
             }
         };
         queries.iter().zip(&parts).zip(whole).map(judge).collect()
@@ -233,20 +238,20 @@ pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Ou
         if yours != expected {
             let root = f64::from(deviation) / f64::from(error);
             let diagnosis = match () {
-                () if yours == 0 => "at least one sample",
+                () if yours == 0 => "you return 0: one sample is the minimum",
                 () if expected == 1 => "one sample is enough here",
-                () if expected == u32::MAX => "no number is enough: as many as there can be",
+                () if expected == u32::MAX => "no number of samples is enough: return u32::MAX",
                 () if f64::from(yours) == (root * root).recip().ceil() => {
-                    "upside down: the deviation over the error"
+                    "you divide the error by the deviation: it is deviation / error"
                 }
                 () if f64::from(yours) == (root * root).floor() + 1.0 => {
-                    "one too many where the quotient is whole"
+                    "you return one sample too many: if (deviation / error)² is whole, it is the answer"
                 }
                 () if f64::from(yours) == root.ceil() => {
-                    "the error falls with the root of n, not with n: square the quotient"
+                    "you do not square deviation / error: the error falls with √n, not with n"
                 }
                 () if f64::from(yours) == (root * root).floor() => {
-                    "rounded down, the error is still too large"
+                    "you round down, so the error is still too large: round up"
                 }
                 () => "",
             };

@@ -1,4 +1,4 @@
-//! Colours from images.
+//! Checks of `texel` and `texture_color`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
 
-/// Indices within this of 0 are asked for.
+/// The largest absolute index that is tested.
 const REACH: i64 = 40;
 
-/// The texels of `-reach..=reach`: one goes step by step from 0 to either side and turns or starts again at the ends.
+/// The texels of `-reach..=reach`, counted step by step from 0 to either side, with a turn or a restart at the ends.
 fn row(size: u32, wrap: Wrap, reach: i64) -> Vec<u32> {
     let walk = |step: i64| {
         let (mut place, mut step) = (0, step);
@@ -23,7 +23,7 @@ fn row(size: u32, wrap: Wrap, reach: i64) -> Vec<u32> {
             match wrap {
                 Wrap::Repeat => place = (place + step + i64::from(size)) % i64::from(size),
                 Wrap::Clamp => place = (place + step).clamp(0, i64::from(size) - 1),
-                // The border is shown twice.
+                // Each border pixel appears twice in a row.
                 Wrap::Mirror if !(0..i64::from(size)).contains(&(place + step)) => step = -step,
                 Wrap::Mirror => place += step,
             }
@@ -49,26 +49,28 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> Outcome {
             let size = i64::from(query.size);
             let yours_64 = i64::from(yours);
             let diagnosis = match query.wrap {
-                _ if yours_64 >= size && query.wrap != Wrap::Repeat => "the last one is size - 1",
+                _ if yours_64 >= size && query.wrap != Wrap::Repeat => {
+                    "you return an index of size or more: the last one is size - 1"
+                }
                 Wrap::Repeat | Wrap::Mirror if yours_64 == query.index.clamp(0, size - 1) => {
-                    "that is Wrap::Clamp, which draws out the border"
+                    "you continue the border, as Wrap::Clamp does"
                 }
                 Wrap::Clamp | Wrap::Mirror if yours_64 == query.index.rem_euclid(size) => {
-                    "that is Wrap::Repeat, which begins again"
+                    "you repeat the image, as Wrap::Repeat does"
                 }
                 Wrap::Repeat if query.index < 0 && i64::from(yours) != remainder => {
-                    "the remainder of a negative number is negative: take rem_euclid"
+                    "the remainder of a negative number is negative: use rem_euclid"
                 }
                 Wrap::Mirror if yours + 1 == expected || yours == expected + 1 => {
-                    "the border is shown twice, once on the way there and once on the way back"
+                    "you are off by one: Wrap::Mirror shows each border pixel twice in a row"
                 }
                 _ => "",
             };
             let input = format!("texel({}, {}, Wrap::{:?})", query.index, query.size, query.wrap);
-            Err(Broken::new(input, yours, expected, "walked step by step").looks_like(known(diagnosis)))
+            Err(Broken::new(input, yours, expected, "counted step by step").looks_like(known(diagnosis)))
         })
     };
-    // Indices at which all mistakes give different columns.
+    // Indices at which each known mistake gives another column.
     let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)];
     judge(&drawn.map(|(index, wrap)| TexelQuery { index, size: 4, wrap }))
         .into_iter()
@@ -90,10 +92,10 @@ fn at(texture: &Texture, x: i64, y: i64) -> DVec3 {
     texture.pixels[(y * texture.width + x) as usize].as_dvec3()
 }
 
-/// Colours go from 0 to 1. A place is rounded to a few units of 1e-7 of a coordinate up to 20 pixels.
+/// Colours go from 0 to 1. A coordinate of up to 20 pixels is rounded to a few units of 1e-7 of its size.
 const NEAR: f64 = 2e-5;
 
-/// A diagnosis may be coarse: gamma makes a rounding of black 1e-4 large.
+/// Answers this near to those of a mistake get its diagnosis: gamma enlarges a rounding error of black to 1e-4.
 const NEAR_A_MISTAKE: f64 = 1e-3;
 
 fn apart(yours: Vec3, right: DVec3) -> f64 {
@@ -110,7 +112,7 @@ fn broken(query: &TextureQuery, yours: Vec3, expected: DVec3, source: &'static s
     Broken::new(input, yours, expected.as_vec3(), source)
 }
 
-/// The middle of a pixel, which may lie far outside, moved right and down by shares of a pixel.
+/// The centre of a pixel, which may lie far outside, moved right and down by fractions of a pixel.
 fn place(texture: &Texture, [column, row]: [i64; 2], [right, down]: [f64; 2]) -> TextureQuery {
     let u = (column as f64 + 0.5 + right) / f64::from(texture.width);
     let v = 1.0 - (row as f64 + 0.5 + down) / f64::from(texture.height);
@@ -129,7 +131,7 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
     let all = |shown: &dyn Fn([i64; 2]) -> DVec3| {
         (0..12).all(|i| apart(yours[i], shown(pixels[i])) < NEAR_A_MISTAKE)
     };
-    // The mean of a pixel and those beside it, as it is seen where four or two of them meet.
+    // The mean of a pixel and its neighbours, which is the colour where four or two of them meet.
     let shifted = |x: i64, y: i64| {
         all(&|[column, row]| {
             let corners = [[0, 0], [x, 0], [0, y], [x, y]];
@@ -137,107 +139,110 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
         })
     };
     let signs = [-1, 1];
-    // The colour 3/8 right of and 1/3 below the first middle, worked out once in double precision.
+    // The colour 3/8 right of and 1/3 below the centre of the first pixel, computed once in double precision.
     let corner_to_corner = DVec3::new(0.255_556, 0.402_778, 0.238_889);
     let diagnosis = match () {
         () if all(&|[column, row]| color([column, 2 - row])) => {
-            "upside down: v points up, and rows are stored from the top"
+            "your image is upside down: v points up, and rows are stored from the top"
         }
         () if all(&|[column, row]| {
             let number = 3 * column + row;
             color([number % 4, number / 4])
         }) =>
         {
-            "column by column: the image is stored row by row"
+            "you read the pixels column by column: they are stored row by row"
         }
         () if [2.0, 2.2, 0.5, 1.0 / 2.2]
             .into_iter()
             .any(|power| all(&|pixel| color(pixel).map(|channel| channel.powf(power)))) =>
         {
-            "gamma: the pixels of the image are linear light already"
+            "you apply gamma: the pixels are linear light already"
         }
         () if signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y))) => {
-            "half a pixel off: the colour of a pixel belongs to its middle"
+            "you are half a pixel off: the colour of a pixel belongs to its centre"
         }
         () if signs.iter().any(|&one| shifted(one, 0) || shifted(0, one)) => {
-            "half a pixel off along one axis: the colour of a pixel belongs to its middle"
+            "you are half a pixel off along one axis: the colour of a pixel belongs to its centre"
         }
         () if apart(yours[0], corner_to_corner) < NEAR_A_MISTAKE => {
-            "from the first middle to the last: (0, 0) and (1, 1) are corners of the image"
+            "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the \
+             image"
         }
-        () if yours[wrong].is_nan() => "NaN",
+        () if yours[wrong].is_nan() => "you return NaN",
         () => "",
     };
-    let broken = broken(&queries[wrong], yours[wrong], color(pixels[wrong]), "the pixel");
+    let broken = broken(&queries[wrong], yours[wrong], color(pixels[wrong]), "the pixel's colour");
     Err(broken.looks_like(known(diagnosis)))
 }
 
-/// Places on an image of 4 by 3 pixels with [`Wrap::Mirror`]: between four pixels, at the upper left corner, and outside.
+/// Points on an image of 4 by 3 pixels with [`Wrap::Mirror`]: between four pixels, at the upper left corner, and outside.
 const DRAWN: [(f32, f32); 3] = [(0.55, 0.7), (0.05, 0.95), (1.3, -0.2)];
 
-/// The colours there. Like those of the mistakes they were worked out once in double precision and rounded to 6 digits.
+/// The colours there. These and the colours of the mistakes were computed once in double precision and rounded to 6
+/// digits.
 const COLORS: [[f64; 3]; 3] =
     [[0.405_333, 0.653_333, 0.286_667], [0.0; 3], [0.361_333, 0.833_333, 0.226_667]];
 
-/// What mistakes make of the three places.
+/// The colours that mistakes give at the three points, each with its diagnosis.
 const MISTAKES: [([[f64; 3]; 3], &str); 12] = [
     (
         [[0.365_333, 0.553_333, 0.186_667], [0.0; 3], [0.481_333, 0.393_333, 0.466_667]],
-        "the shares of columns and rows are exchanged",
+        "you exchange the weights of columns and rows",
     ),
     (
         [[0.352, 0.613_333, 0.18], [0.0; 3], [0.468, 0.3, 0.44]],
-        "the shares are turned around: the nearer a pixel, the more it counts",
+        "you exchange the weights w and 1 - w: the nearer a pixel, the larger its weight",
     ),
     (
         [[0.32, 0.84, 0.34], [0.0; 3], [0.333_333, 0.893_333, 0.213_333]],
-        "blended along x only: blend the two rows as well",
+        "you interpolate along x only: interpolate between the two rows, too",
     ),
     (
         [[0.386_667, 0.746_667, 0.146_667], [0.0; 3], [0.753_333, 0.74, 0.413_333]],
-        "blended along y only: blend the two columns as well",
+        "you interpolate along y only: interpolate between the two columns, too",
     ),
     (
         [COLORS[0], [-0.448_333, -0.571_667, -0.468_333], COLORS[2]],
-        "rounded towards 0: left of the first middle the pixel before begins, so take floor",
+        "you round towards 0: left of the first pixel's centre x is negative, so use floor",
     ),
     ([COLORS[0], COLORS[1], [0.8, 0.8, 0.4]], ANOTHER_WRAP),
     ([COLORS[0], COLORS[1], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
     ([COLORS[0], [0.498, 0.230_333, 0.351_667], [0.396_667, 0.636_667, 0.156_667]], ANOTHER_WRAP),
     (
         [COLORS[0], COLORS[1], [0.753_333, 0.74, 0.413_333]],
-        "the pixel beside the last one is where the wrap says: take all four through texel",
+        "you do not wrap the pixel next to the last one: get the column and row of all four from texel",
     ),
     (
         [[0.6, 0.933_333, 0.2], [0.0; 3], [0.8, 0.8, 0.4]],
-        "the upper left of the four pixels alone: blend them",
+        "you return the upper left of the four pixels: interpolate all four",
     ),
     (
         [[0.2, 0.8, 0.4], [0.0; 3], [0.133_333, 0.933_333, 0.133_333]],
-        "the nearest pixel alone: blend the four around",
+        "you return the nearest pixel: interpolate the four around the point",
     ),
     (
         [[0.365_333, 0.721_333, 0.318_667], [1.0, 0.066_667, 0.733_333], [0.421_333, 0.713_333, 0.466_667]],
-        "upside down: v points up, and rows are stored from the top",
+        "your image is upside down: v points up, and rows are stored from the top",
     ),
 ];
 
-const ANOTHER_WRAP: &str = "another wrap than the image has: take each of the four pixels through texel";
+const ANOTHER_WRAP: &str =
+    "you use another wrap mode than the image: call texel with texture.wrap for all four";
 
-/// Half a pixel of an image, in which the colour must change evenly.
+/// An interval between two pixel centres, in which the colour must change linearly.
 #[derive(Clone, Debug)]
 struct Stretch {
     texture: Texture,
-    /// The pixel whose middle is the upper left corner of the four; it may lie outside.
+    /// The upper left of the four pixels around the interval; it may lie outside of the image.
     pixel: [i64; 2],
-    /// Where the stretch begins and ends between two middles, in sixteenths.
+    /// The ends of the interval between the two centres, in sixteenths.
     ends: [u32; 2],
-    /// Where it is along the other axis, in eighths.
+    /// The position along the other axis, in eighths.
     across: u32,
 }
 
 impl Stretch {
-    /// The middle of the pixel; then beginning, middle and end along x; then the same along y.
+    /// The centre of the pixel; then begin, middle and end of the interval along x; then the same along y.
     fn queries(&self) -> [TextureQuery; 7] {
         let [begin, end] = self.ends.map(|end| f64::from(end) / 16.0);
         let across = f64::from(self.across) / 8.0;
@@ -274,18 +279,18 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
     if !(apart(yours[0], pixel) < NEAR) {
         let other = |wrap: &Wrap| at(&Texture { wrap: *wrap, ..stretch.texture.clone() }, column, row);
         let another = WRAPS.iter().any(|wrap| apart(yours[0], other(wrap)) < NEAR);
-        let broken = broken(&queries[0], yours[0], pixel, "the pixel, in its middle");
+        let broken = broken(&queries[0], yours[0], pixel, "the pixel's colour, at its centre");
         return Err(broken.looks_like(another.then_some(ANOTHER_WRAP)));
     }
     for (first, diagnosis) in [
-        (1, "between the middles of two columns the colour must change evenly along x"),
-        (4, "between the middles of two rows the colour must change evenly along y"),
+        (1, "between the centres of two columns the colour must change linearly along x"),
+        (4, "between the centres of two rows the colour must change linearly along y"),
     ] {
         let mean = 0.5 * (yours[first].as_dvec3() + yours[first + 2].as_dvec3());
-        // Each of the three is rounded as in NEAR, which leaves room for that.
+        // Each of the three is rounded as NEAR allows.
         if !(apart(yours[first + 1], mean) < NEAR) {
             let ends = [&queries[first], &queries[first + 2]].map(|query| query.uv);
-            let source = "the mean of your colours at both ends of a stretch around it";
+            let source = "the mean of your colours at the ends of an interval";
             let broken = broken(&queries[first + 1], yours[first + 1], mean, source);
             let diagnosis = format!("{diagnosis}; the ends are {:?} and {:?}", ends[0], ends[1]);
             return Err(broken.looks_like(Some(diagnosis)));
@@ -294,8 +299,8 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
     Ok(())
 }
 
-/// What makes an image bilinear: in the middle of each pixel, also outside, it has the colour of the pixel, and between
-/// four middles the colour changes evenly along both axes.
+/// Checks the two laws of bilinear interpolation: at the centre of each pixel, also outside of the image, the colour is
+/// that of the pixel, and between four centres it changes linearly along both axes.
 pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
     let image = texture(4, 3, Wrap::Mirror);
     let drawn = DRAWN.map(|(u, v)| TextureQuery { texture: image.clone(), uv: vec2(u, v) });
@@ -306,7 +311,7 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
     if let Some(wrong) = unlike(&COLORS, NEAR) {
         let mistake = MISTAKES.iter().find(|(colors, _)| unlike(colors, NEAR_A_MISTAKE).is_none());
         let expected = DVec3::from_array(COLORS[wrong]);
-        let broken = broken(&drawn[wrong], yours[wrong], expected, "recorded, from double precision");
+        let broken = broken(&drawn[wrong], yours[wrong], expected, "double precision");
         return Err(broken.looks_like(mistake.map(|(_, diagnosis)| *diagnosis)));
     }
     trial.forall(2000, stretches(), |stretches| {
@@ -322,7 +327,7 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
     for wrap in WRAPS {
         let image = texture(3, 2, wrap);
         let query = |u, v| TextureQuery { texture: image.clone(), uv: vec2(u, v) };
-        // One at a time first, so that it is clear which coordinate it is.
+        // Test one coordinate at a time first, so that the message shows which one is wrong.
         let single = strange.iter().flat_map(|&share| [(share, 0.5), (0.5, share)]);
         for (u, v) in single.chain(strange.iter().flat_map(|&u| strange.map(|v| (u, v)))) {
             let input = format!("texture_color of 3 by 2 pixels, Wrap::{wrap:?}, at {:?}", vec2(u, v));
@@ -332,19 +337,22 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
                     let yours = format!("a panic at {place}: {message}");
                     let broken = Broken::with_texts(input, yours, "a colour", "the definition");
                     let overflow = message.contains("overflow");
-                    return Err(broken
-                        .looks_like(overflow.then_some(
-                            "the column beside the last number there is: add with saturating_add",
-                        )));
+                    return Err(broken.looks_like(overflow.then_some(
+                        "an integer overflows: compute the next column and row with saturating_add",
+                    )));
                 }
                 Err(error) => kit_error::unwind(error),
             };
             if !(yours.min_element() >= -1e-6 && yours.max_element() <= 1.0 + 1e-6) {
-                let broken =
-                    Broken::new(input, yours, "a colour between those of the image", "a blend of them");
+                let broken = Broken::new(
+                    input,
+                    yours,
+                    "a colour between those of the image",
+                    "bilinear interpolation",
+                );
                 return Err(broken.looks_like(Some(match (u.is_finite(), v.is_finite()) {
-                    (true, true) => "NaN: the place overflows, so look at it after multiplying by the size",
-                    _ => "NaN: a coordinate that is not finite counts as 0",
+                    (true, true) => "coordinate * size overflows: test is_finite after the product",
+                    _ => "a coordinate that is NaN or infinite counts as 0",
                 })));
             }
             let finite = [u, v].map(|share| if share.is_finite() { share } else { 0.0 });
@@ -354,13 +362,12 @@ pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
             let [expected, top] =
                 [finite[1], 1.0].map(|v| trial.kit.texture_color(&[query(finite[0], v)])[0]);
             if !(apart(yours, expected.as_dvec3()) < NEAR) {
-                let source =
-                    "your own colour with 0 in its place: a coordinate that is not finite counts as 0";
+                let source = "your own colour with 0 in place of NaN or infinity";
                 let broken = Broken::new(input, yours, expected, source);
                 let upper = !v.is_finite() && apart(yours, top.as_dvec3()) < NEAR;
-                return Err(
-                    broken.looks_like(upper.then_some("v counts as 1: 0 is the lower border of the image"))
-                );
+                return Err(broken.looks_like(upper.then_some(
+                    "you treat an invalid v as 1: it counts as 0, the lower border of the image",
+                )));
             }
         }
     }

@@ -1,6 +1,7 @@
-//! Stage 7: only what the scene calls for.
+//! Checks of stage 7: effects.
 //!
-//! `decisions` (of lights and materials) · `whole` (scenes) · `rays` (at most) · `hits` (rays of known ones) · `images`
+//! `decisions` (lights and materials) · `whole` (scenes) · `rays` (the bound on rays) · `hits` (rays of known hits,
+//! number of samples) · `images` (textures) · `scenes` (test scenes)
 
 mod decisions;
 mod hits;

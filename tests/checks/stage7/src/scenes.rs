@@ -1,4 +1,4 @@
-//! Scenes to be looked at.
+//! The scenes that the checks of stage 7 analyse.
 
 use glam::{Affine3A, Vec2, Vec3, vec3};
 use raykata::camera::{Camera, Lens, Shutter};
@@ -39,7 +39,7 @@ pub(super) fn one_sphere(material: Material) -> Scene {
     scene
 }
 
-/// A scene that calls for every effect that is built.
+/// A scene that needs every effect of [`BUILT`].
 pub(super) fn everything() -> Scene {
     let mut scene = one_sphere(Material {
         mirror: Vec3::splat(0.3),
@@ -81,7 +81,7 @@ pub(super) fn one_triangle() -> Mesh {
     }
 }
 
-/// Effects that [`everything`] calls for.
+/// The effects that [`everything`] needs.
 pub(super) const BUILT: [Effect; 9] = [
     Effect::Shadows,
     Effect::AreaLights,

@@ -1,4 +1,4 @@
-//! What whole scenes call for.
+//! Checks of `effects` for whole scenes.
 
 use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
 use checks::Trial;
@@ -13,7 +13,7 @@ use raykata::scene::{Node, Scene, SceneMesh};
 use raykata::shape::Shape;
 use std::sync::Arc;
 
-/// What a scene with nothing special takes.
+/// The effects of one diffuse sphere under one light.
 fn plain() -> Effects {
     let lit = MaterialEffects { lights: vec![0], ..MaterialEffects::default() };
     Effects {
@@ -48,13 +48,13 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome 
     let scene = one_sphere(Material::default());
     judge(
         trial,
-        "a dull sphere under a light",
+        "a diffuse sphere under a light",
         scene.clone(),
         &plain(),
-        "no shape is of the default material",
+        "materials[0] needs nothing, because no shape of the scene has it",
     )?;
     let indirect = Scene { indirect_light: true, ..scene };
-    let as_it_says = "indirect_light is as the scene says";
+    let as_it_says = "copy indirect_light from the scene";
     let expected = Effects { indirect_light: true, ..plain() };
     judge(trial, "the same with indirect light", indirect, &expected, as_it_says)?;
 
@@ -64,24 +64,30 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome 
     expected.lights.insert(0, LightEffects::default());
     expected.materials[1].lights = vec![1];
     let in_place =
-        "a light without light takes nothing and keeps its place: one entry for each light of the scene";
-    judge(trial, "a dull sphere under a black light and a white one", dark, &expected, in_place)
+        "a black light needs nothing but keeps its entry: there is one entry per light of the scene";
+    judge(trial, "a diffuse sphere under a black light and a white one", dark, &expected, in_place)
 }
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
-    let shown = "only what is reached from a root is shown: ask scene.shown()";
+    let shown = "only shapes that a root reaches are shown: use scene.shown()";
     let mut scene = one_sphere(Material::default());
     scene.materials.push(Material { mirror: Vec3::ONE, ..Material::default() });
     scene.material_names.push("mirror".into());
     let mut expected = plain();
     expected.materials.push(MaterialEffects::default());
-    judge(trial, "a dull sphere, and a mirror that nothing is made of", scene.clone(), &expected, shown)?;
+    judge(
+        trial,
+        "a diffuse sphere, and a mirror material that no shape has",
+        scene.clone(),
+        &expected,
+        shown,
+    )?;
 
-    // The same mirror on a node that no root leads to.
+    // Add a node with this mirror that no root reaches.
     scene.nodes.push(super::scenes::sphere(2));
     judge(
         trial,
-        "a dull sphere, and a mirror sphere that is not in the scene",
+        "a diffuse sphere, and a mirror sphere that no root reaches",
         scene.clone(),
         &expected,
         shown,
@@ -94,17 +100,17 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
         materials: Vec::new(),
     });
     expected.smooth_meshes = vec![false];
-    judge(trial, "a dull sphere, and a smooth mesh that stands nowhere", scene.clone(), &expected, shown)?;
+    judge(trial, "a diffuse sphere, and a smooth mesh that no node holds", scene.clone(), &expected, shown)?;
 
-    // The mesh stands there, half of it of the mirror.
+    // Show the mesh; half of it has the mirror material.
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 2], face_materials: vec![0, 1], ..one_triangle() };
     scene.meshes =
         vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: vec![1, 2] }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     expected.materials[2] = MaterialEffects { mirror: true, ..expected.materials[1].clone() };
-    let several = "a mesh may be of several materials: look at all of shape.materials";
-    judge(trial, "a dull sphere, and a mesh that is half a mirror", scene, &expected, several)
+    let several = "a mesh can have several materials: use all of shape.materials";
+    judge(trial, "a diffuse sphere, and a mesh that is half a mirror", scene, &expected, several)
 }
 
 pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> Outcome {
@@ -131,32 +137,37 @@ pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -
             lens,
             "an aperture above 0 blurs, with or without a shutter",
         ),
-        ("a shutter before a still sphere", with(&still, None, Some((0.0, 1.0))), plain(), "nothing moves"),
+        ("a shutter, and a sphere at rest", with(&still, None, Some((0.0, 1.0))), plain(), "no shape moves"),
         (
             "a moving sphere without a shutter",
             with(&moving, None, None),
             plain(),
-            "the picture is taken at time 0",
+            "without a shutter all rays have time 0",
         ),
         (
-            "a moving sphere, and a shutter that closes when it opens",
+            "a moving sphere, and a shutter that closes at the time at which it opens",
             with(&moving, None, Some((0.5, 0.5))),
             plain(),
             "all rays have the same time",
         ),
         (
-            "a moving sphere before a shutter",
+            "a moving sphere, and a shutter",
             with(&moving, None, Some((0.25, 0.5))),
             motion,
             "it moves while the shutter is open, with or without a lens",
         ),
         (
-            "a shutter, and a moving sphere that is not in the scene",
+            "a shutter, and a moving sphere that no root reaches",
             elsewhere,
             plain(),
-            "only what is shown moves",
+            "a shape that no root reaches does not count: use scene.shown()",
         ),
-        ("a sphere that moves to where it is", in_place, plain(), "it does not move: ask scene.shown()"),
+        (
+            "a shutter, and a sphere whose transform is the same at both times",
+            in_place,
+            plain(),
+            "equal transforms at both times are no motion: use shape.moves of scene.shown()",
+        ),
     ];
     for (what, scene, expected, diagnosis) in cases {
         judge(trial, what, scene, &expected, diagnosis)?;
@@ -165,7 +176,7 @@ pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -
 }
 
 pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcome {
-    // All 2⁹ scenes that have some of nine effects and lack the others.
+    // Test all 2⁹ scenes that have a subset of the nine effects.
     let all = everything();
     let subset =
         |bits: u32| BUILT.iter().enumerate().filter(move |(i, _)| bits >> i & 1 == 1).map(|(_, e)| *e);
@@ -175,7 +186,7 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
     for (bits, effects) in trial.kit.effects(&scenes).into_iter().enumerate() {
         let wanted: Vec<Effect> = subset(bits as u32).collect();
         for effect in BUILT {
-            // Only mirrors and glass can be rough.
+            // Roughness matters only for reflected and refracted rays.
             let possible = effect != Effect::Glossy
                 || wanted.contains(&Effect::Mirrors)
                 || wanted.contains(&Effect::Transmission);
@@ -185,7 +196,7 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
                 let says = |calls: bool| {
                     format!("{} {effect}", if calls { "calls for" } else { "does not call for" })
                 };
-                let input = format!("effects of a scene with just these: {}", names.join(", "));
+                let input = format!("effects of a scene with exactly these: {}", names.join(", "));
                 let broken =
                     Broken::with_texts(input, says(!expected), says(expected), "how the scene was made");
                 return Err(broken.looks_like(Some(clue(effect, expected))));
@@ -195,20 +206,20 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcom
     Ok(())
 }
 
-/// What an effect depends on that is missed, or is called for in vain.
+/// The diagnosis for an effect that is missing or that the scene does not need: what the effect depends on.
 fn clue(effect: Effect, missed: bool) -> String {
     let depends_on = match effect {
-        Effect::Shadows => "lights that give light and cast shadows",
-        Effect::AreaLights => "lights with an extent, and quality.light_samples",
-        Effect::Mirrors => "material.mirror, and fresnel of what lets light through",
+        Effect::Shadows => "lights that emit light and cast shadows",
+        Effect::AreaLights => "area lights and quality.light_samples",
+        Effect::Mirrors => "material.mirror, and fresnel of materials with transmission",
         Effect::Transmission => "material.transmission",
-        Effect::Glossy => "roughness of what is mirrored or seen through",
+        Effect::Glossy => "the roughness of materials that reflect or refract rays",
         Effect::Lens => "the aperture of the lens",
-        Effect::Motion => "what moves while the shutter is open",
+        Effect::Motion => "shapes that move while the shutter is open",
         Effect::SmoothNormals => "smooth meshes that are shown",
         Effect::Textures => "images of materials that are shown",
         Effect::IndirectLight => "scene.indirect_light",
     };
-    let fate = if missed { "left out" } else { "called for in vain" };
-    format!("{effect} {fate}, and nothing else decides about it: {depends_on}")
+    let fate = if missed { "missing" } else { "not needed here" };
+    format!("{effect}: {fate}; this effect depends only on {depends_on}")
 }

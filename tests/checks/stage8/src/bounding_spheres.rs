@@ -1,4 +1,4 @@
-//! Spheres around points, and rays into spheres.
+//! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -24,14 +24,14 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
         let Some(outside) = outside else { return Ok(()) };
         let beyond = outside.as_dvec3().distance(center) - f64::from(sphere.radius);
         let diagnosis = if beyond < 1e-5 {
-            "rounded to nearest, the radius is too small in half of all cases"
+            "your radius is too small by a rounding error: compute it in double and round up"
         } else {
-            "the radius is the largest distance of a point from the centre: no other measure holds all of them"
+            "your radius is too small: it is the largest distance of a point from the centre"
         };
         Err(Broken::with_texts(
             format!("bounding_sphere(&{})", list(points)),
-            format!("radius {:?} around {}, which leaves {outside} outside", sphere.radius, sphere.center),
-            "a sphere with all points in it",
+            format!("radius {:?} around {}, and {outside} lies outside", sphere.radius, sphere.center),
+            "a sphere that contains all points",
             "double precision",
         )
         .looks_like(Some(diagnosis)))
@@ -49,7 +49,8 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
         compare(queries, trial.kit.bounding_sphere(queries), |points, sphere| {
             let pairs = points.iter().flat_map(|p| points.iter().map(move |q| p.distance(*q)));
             let widest = pairs.fold(0.0, f32::max);
-            // Jung: the smallest sphere around points no farther apart than this has √(3/8) of it as its radius at most.
+            // Jung's theorem: if no two points are farther apart than `widest`, the smallest sphere around them has a
+            // radius of √(3/8) · widest at most.
             let most = 2.0 * (3.0f32 / 8.0).sqrt() * widest + 1e-5;
             if sphere.radius <= most {
                 return Ok(());
@@ -61,7 +62,7 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
                 "Jung's theorem",
             )
             .looks_like(Some(
-                "the larger the sphere, the more rays enter it for nothing; and 0 is not among the points",
+                "your sphere is too large: use the centre of the points' box, and do not include the origin",
             )))
         })
     })
@@ -85,14 +86,14 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
                 Some(t) if t == ray.t_min => Ok(()),
                 _ => broken(
                     format!("Some({:?})", ray.t_min),
-                    "a ray that starts in the sphere is in it from its start",
+                    "a ray that starts inside the sphere enters it at t_min",
                 ),
             };
         }
         match (first(smaller), first(larger), yours) {
-            // Through the inside: the way in must not be late.
+            // The ray passes through the inside: the entry must not be late.
             (Some(_), Some(early), None) => {
-                broken(format!("Some({early:?})"), "a sphere is missed that the ray enters")
+                broken(format!("Some({early:?})"), "you return None, but the ray enters the sphere")
             }
             (Some(late), Some(early), Some(t)) => {
                 let exact = first(sphere.radius).unwrap_or(late);
@@ -100,28 +101,29 @@ fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outc
                 let other_units = near(t / length, exact) || near(t, exact * length);
                 if t > exact {
                     let diagnosis = match () {
-                        () if near(t, exact) => "late by roundings: a hit at this very t would be skipped",
-                        () if other_units => "t counts lengths of direction",
-                        () => {
-                            "the way out, or something else that is too late: the way in is the nearer root"
+                        () if near(t, exact) => {
+                            "you are late by a rounding error, and a search would skip a hit at this t: \
+                             return a slightly earlier t"
                         }
+                        () if other_units => "your t has another unit: it counts lengths of direction",
+                        () => "your t is later than the entry, which is the nearer root",
                     };
                     return broken(format!("Some({exact:?}), or a little less"), diagnosis);
                 }
-                // A ray whose range ends between the two shells may be describe anything.
+                // Accept any answer for a ray whose range ends between the two spheres.
                 if t >= ray.t_min && (t >= early || near(t, early) || starts_inside(larger)) {
                     return Ok(());
                 }
                 let diagnosis = match () {
-                    () if t < ray.t_min => "before the range of the ray",
-                    () if other_units => "t counts lengths of direction",
-                    () => "much too early: the ray is describe to look where there is nothing yet",
+                    () if t < ray.t_min => "you return a t before t_min: clamp the entry to t_min",
+                    () if other_units => "your t has another unit: it counts lengths of direction",
+                    () => "your t is much too early: the entry is the nearer root",
                 };
                 broken(format!("Some({exact:?})"), diagnosis)
             }
             (None, None, Some(_)) if !starts_inside(larger) => broken(
                 "None".into(),
-                "the ray passes, or its range ends before the sphere, or the sphere is behind it",
+                "you return an entry, but the sphere lies beside the ray, behind it or beyond t_max",
             ),
             _ => Ok(()),
         }
@@ -143,7 +145,7 @@ fn entries(aimed: bool) -> impl Strategy<Value = BoundingSphereQuery> + Clone {
 }
 
 pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> Outcome {
-    // S3: inside, with the centre behind.
+    // S3: the ray starts inside, and the centre lies behind it.
     let facing_away = BoundingSphereQuery {
         ray: Ray::new(Vec3::new(0.5, 0.0, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },

@@ -1,4 +1,4 @@
-//! Boxes after transforms.
+//! Checks of `bounds_to_world`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -26,7 +26,7 @@ fn moved(trial: &Trial<'_>) -> Vec<BoundsQuery> {
     queries
 }
 
-/// The ends along an axis in double precision, and the sum of the sizes of all terms.
+/// The exact ends along an axis in double precision, and the sum of the absolute values of all terms.
 fn ends(query: &BoundsQuery, row: usize) -> (f64, f64, f64) {
     let start = f64::from(query.to_world.translation[row]);
     let (mut low, mut high, mut size) = (start, start, start.abs());
@@ -49,7 +49,7 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
     let judge = |query: &BoundsQuery, yours: Aabb| {
         for row in 0..3 {
             let (low, high, size) = ends(query, row);
-            // The sums in double are off by 2⁻⁵¹ of their terms at most.
+            // The rounding error of the sums in double precision is at most 2⁻⁵¹ of the sum of their terms.
             let slack = size * 2f64.powi(-51);
             let (yours_low, yours_high) = (f64::from(yours.min[row]), f64::from(yours.max[row]));
             if yours_low <= low + slack && yours_high >= high - slack {
@@ -57,11 +57,12 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
             }
             let off = (yours_low - low).max(high - yours_high) / (U * size);
             let diagnosis = match () {
-                () if off.is_nan() => "NaN",
-                () if off < 8.0 => {
-                    "rounded to nearest, an end lies inside in half of all cases: round outwards"
+                () if off.is_nan() => "you return NaN",
+                () if off < 8.0 => "your box is too small by a rounding error: round outwards",
+                () => {
+                    "your box is much too small: after a rotation any of the eight corners can be the \
+                     farthest"
                 }
-                () => "two corners are not enough: a rotation may turn any of the eight into the farthest",
             };
             let axis = ["x", "y", "z"][row];
             return Err(Broken::with_texts(
@@ -82,14 +83,16 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
     let judge = |query: &BoundsQuery, yours: Aabb| {
         for row in 0..3 {
             let (low, high, size) = ends(query, row);
-            // Six roundings of each term (three products, three sums) and a step beyond, with a little to spare.
+            // Allow six rounding errors of each term (three products, three sums), one float outwards, and a small
+            // reserve.
             let room = 16.0 * U * size;
             let (yours_low, yours_high) = (f64::from(yours.min[row]), f64::from(yours.max[row]));
             if yours_low >= low - room && yours_high <= high + room {
                 continue;
             }
             let axis = ["x", "y", "z"][row];
-            let diagnosis = "larger than the roundings ask for: a ray visits what it need not";
+            let diagnosis =
+                "your box is larger than the rounding errors require, so rays enter it without need";
             return Err(Broken::with_texts(
                 describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
@@ -107,5 +110,5 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
         return Ok(());
     }
     let broken = Broken::new(describe(&empty), yours, "an empty box", "the definition");
-    Err(broken.looks_like(Some("an empty box stays empty: ∞ - ∞ is NaN")))
+    Err(broken.looks_like(Some("an empty box stays empty: its corners are infinite, and ∞ - ∞ is NaN")))
 }

@@ -1,4 +1,4 @@
-//! Where the formulas of flat shapes lie.
+//! Pitfalls of the formulas for flat shapes.
 
 use super::hard::{judge_cases, of};
 use super::solids::{agrees_flat, input};
@@ -13,21 +13,21 @@ use raykata::shape::{Disk, Polygon};
 
 pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> Outcome {
     agrees_flat::<Disk>(trial)?;
-    // The rim, which the laws leave out: at points whose distance from the centre is a whole number.
+    // Test the rim, which the general laws leave out, at points whose distance from the centre is a whole number.
     let coin = Disk { center: Vec3::ZERO, normal: 2.0 * Vec3::Z, radius: 5.0 };
     let down = |x: f32, y: f32| of(&coin)(vec3(x, y, 3.0), Vec3::NEG_Z);
-    let rim = "the rim belongs to it: compare with <= and not with <";
+    let rim = "you exclude the rim: compare with <= instead of <";
     judge_cases(
         trial,
         &[
             (down(5.0, 0.0), Some(3.0), rim),
             (down(3.0, -4.0), Some(3.0), rim),
-            (down(5.25, 0.0), None, "beside the disk"),
+            (down(5.25, 0.0), None, "the ray passes beside the disk"),
         ],
     )
 }
 
-/// T8–T10, 35–37.
+/// Rays at edges and corners, and at an edge that two polygons share (traps T8–T10, 35–37).
 pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
     let square = Polygon {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(2.0, 2.0, 0.0), vec3(0.0, 2.0, 0.0)],
@@ -37,16 +37,16 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(1.0, 2.0, 0.0)],
     };
     let down = |polygon: &Polygon, x: f32, y: f32| of(polygon)(vec3(x, y, 3.0), Vec3::NEG_Z);
-    let closed = "edges and corners belong to the polygon: to pass exactly through them is to hit";
-    let diagonal = "the diagonals of the fan are inside";
-    // T10: no other ray from there can tell, since it meets the plane at its start alone.
+    let closed = "you exclude edges or corners: a ray that passes exactly through them hits the polygon";
+    let diagonal = "you lose a ray on a diagonal of the fan: diagonals lie inside the polygon";
+    // T10: the ray starts on an edge and meets the plane only there, so its range must include t = 0.
     let on_an_edge = SolidQuery {
         ray: Ray::new(vec3(1.0, 0.0, 0.0), Vec3::NEG_Z).with_range(-1.0, 1.0),
         solid: square.clone(),
     };
-    let normalised =
-        "the eye is on the line of an edge: their plane has the normal 0, which made a unit vector is NaN";
-    let winding = "corners in the other order are the same polygon from behind";
+    let normalised = "the ray starts on the line of an edge: the plane through both has the normal 0, and \
+        normalising 0 gives NaN";
+    let winding = "the order of the corners must not matter: a ray can hit the polygon from both sides";
     judge_cases(
         trial,
         &[
@@ -54,11 +54,11 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
             (down(&square, 1.0, 1.0), Some(3.0), diagonal),
             (down(&square, 0.0, 0.0), Some(3.0), closed),
             (down(&square, 2.0, 1.0), Some(3.0), closed),
-            (down(&square, 2.25, 1.0), None, "outside"),
+            (down(&square, 2.25, 1.0), None, "the ray passes outside of the polygon"),
             (
                 down(&square, 2.0 + 2f32.powi(-13), 1.0),
                 None,
-                "an epsilon at the edges: what is beside them is no hit",
+                "the ray passes just beside an edge: do not widen the polygon by an epsilon",
             ),
             (on_an_edge, Some(0.0), normalised),
             (down(&turned, 0.5, 1.5), Some(3.0), winding),
@@ -66,19 +66,19 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
             (
                 down(&in_a_line, 1.0, 0.5),
                 Some(3.0),
-                "three corners in a line: the normal of the first three is no normal",
+                "you lose a polygon whose first three corners lie on a line: sum the normal over all edges",
             ),
             (down(&in_a_line, 1.0, 0.0), Some(3.0), closed),
-            (down(&in_a_line, 1.75, 1.0), None, "outside"),
+            (down(&in_a_line, 1.75, 1.0), None, "the ray passes outside of the polygon"),
             (
                 of(&square)(vec3(-1.0, 1.0, 0.0), Vec3::X),
                 None,
-                "a ray along the polygon meets it in no point",
+                "a ray in the plane of the polygon does not hit it",
             ),
         ],
     )?;
-    // Two polygons share an edge far from the origin: no ray at it may pass between them. The numbers are short, so that
-    // the four corners lie in a plane to the last bit; but no point of the edge except its ends is as short.
+    // Two polygons share an edge far from the origin, and no ray may pass between them. The coordinates have few bits, so
+    // that the four corners lie exactly in a plane; points on the edge between its ends need more bits.
     let place = vec3(1483.0, 12.0, -2234.0);
     let (a, b, e) =
         (place + vec3(0.125, 0.25, 0.0), place + vec3(1.25, -0.375, 0.125), place + vec3(2.875, 0.125, 0.25));
@@ -99,13 +99,14 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
     let pairs: Vec<_> = trial.kit.polygon(&left).into_iter().zip(trial.kit.polygon(&right)).collect();
     compare(&left, pairs, |query, answers| match answers {
         (None, None) => Err(Broken::with_texts(
-            format!("{}\nand its neighbour across the edge", input(query)),
+            format!("{}\nand its neighbour at the edge", input(query)),
             "None, twice",
-            "a hit of one of them at least",
+            "a hit of at least one of them",
             "they share the edge",
         )
         .looks_like(Some(
-            "a point on the plane is rounded, and falls between the two: ask on which side of the edge the ray passes",
+            "you test a rounded point on the plane, which lies between the two polygons: test on which side \
+             of each edge the ray passes",
         ))),
         _ => Ok(()),
     })

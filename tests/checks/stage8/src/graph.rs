@@ -1,4 +1,4 @@
-//! Searches of scene graphs, against tables of answers.
+//! Checks of `closest_hit_in_graph` with tables that hold the answers of `enter` and `hit`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -17,7 +17,8 @@ const SKIP: Savings = Savings { volumes: true, skip: true, sort: false };
 const SORT: Savings = Savings { volumes: true, skip: false, sort: true };
 const ALL: Savings = Savings { volumes: true, skip: true, sort: true };
 
-/// A tree of up to a dozen nodes with hits at halves, so that there are ties, and volumes that hold what they should.
+/// A tree of up to a dozen nodes with hits at multiples of 1/2, so that there are ties, and volumes that contain their
+/// hits.
 fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
     let n_nodes = 1 + random.below(12) as usize;
     let mut nodes = vec![GraphNode::default(); n_nodes];
@@ -41,7 +42,7 @@ fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
             let (enter, leave) = boxes[child as usize];
             (near, far) = (near.min(enter), far.max(leave));
         }
-        // Some boxes are entered a little earlier than their content is met; some that hold nothing are entered, too.
+        // Some volumes begin a little before their first hit, and some volumes without hits are entered, too.
         if near <= far {
             near -= 0.5 * random.below(3) as f32;
         } else if random.below(2) == 0 {
@@ -54,7 +55,7 @@ fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
     GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
 }
 
-/// The first failure is describe: that of the fewest nodes.
+/// Sorts the queries so that the reported failure, which is the first, has the fewest nodes.
 fn plainest_first(queries: &mut [GraphQuery]) {
     queries.sort_by_key(|query| (query.graph.nodes.len(), query.table.primitives.len()));
 }
@@ -103,12 +104,12 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
         }
         let diagnosis = match (found, expected) {
             (Some(found), Some(right)) if found.t == right.t => {
-                "of two hits at the same t the smaller number wins"
+                "of two hits at the same t you return the larger number: the smaller one wins"
             }
             (Some(found), Some(right)) if found.t > right.t => {
-                "a nearer hit was left out, or replaced by a farther one"
+                "you leave out a nearer hit, or you replace it by a farther one"
             }
-            (None, Some(_)) => "a hit was lost: a node's own primitives, or those of a child",
+            (None, Some(_)) => "you lose a hit: test the node's own primitives and those of its children",
             _ => "",
         };
         let named = |hit: Option<PrimitiveHit>| {
@@ -132,11 +133,9 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ou
             return Ok(());
         }
         let diagnosis = match () {
-            () if n_boxes > 0 => {
-                "without `volumes` no volume is asked for: this is what the savings are counted against"
-            }
-            () if asked.len() > all.len() => "a primitive was asked twice",
-            () => "without `skip` nothing is left out",
+            () if n_boxes > 0 => "you call enter although `volumes` is off",
+            () if asked.len() > all.len() => "you test a primitive twice",
+            () => "you leave out a primitive: without `volumes` and `skip` every primitive is tested",
         };
         Err(Broken::with_texts(
             describe(query),
@@ -155,7 +154,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
     plainest_first(&mut queries);
     let judge = |query: &GraphQuery, yours: GraphAnswer| {
         let GraphQuery { graph, ray, table, .. } = query;
-        // The nodes that are come to: those whose volumes, and all volumes above, are entered.
+        // Visit the nodes whose own volume, and all volumes above it, are entered.
         let (mut boxes, mut expected) = (0, Vec::new());
         let mut waiting: Vec<u32> = if graph.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = waiting.pop() {
@@ -175,12 +174,12 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
             return Ok(());
         }
         let diagnosis = match () {
-            () if asked.len() > expected.len() => "the content of a volume that the ray misses is asked for",
-            () if n_boxes > boxes => "a volume is asked for more than once, or below one that is missed",
+            () if asked.len() > expected.len() => "you test primitives in a volume that the ray misses",
+            () if n_boxes > boxes => "you test a volume twice, or a volume below one that the ray misses",
             () if n_boxes < boxes => {
-                "not all volumes are asked for: the root has one, too, and so has each leaf"
+                "you do not test all volumes: the root has one, too, and so has each leaf"
             }
-            () => "something was left out that the ray may meet",
+            () => "you leave out primitives that the ray may hit",
         };
         Err(Broken::with_texts(
             describe(query),
@@ -193,7 +192,8 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
     compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
 }
 
-/// A root with `n` children one behind the other, each with one primitive in its middle; listed as `order` says.
+/// A root with `n` children one behind the other along the ray, each with one primitive at its centre. The root lists
+/// them in the given order.
 fn row(order: &[u32], savings: Savings) -> GraphQuery {
     let n = order.len();
     let mut nodes =
@@ -208,7 +208,7 @@ fn row(order: &[u32], savings: Savings) -> GraphQuery {
     GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
 }
 
-/// What may be asked, in order, and what the plainest mistake looks like.
+/// Compares the primitives that are tested, in order, with the expected ones. Each case has a diagnosis.
 fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)]) -> Outcome {
     let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
     compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, diagnosis), yours| {
@@ -217,7 +217,7 @@ fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)
         }
         Err(Broken::with_texts(
             describe(query),
-            format!("asked the primitives {:?}", yours.asked),
+            format!("tested the primitives {:?}", yours.asked),
             format!("{expected:?}"),
             "the definition",
         )
@@ -228,24 +228,33 @@ fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)
 }
 
 pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Outcome {
-    let beyond = "a volume that begins beyond the closest hit cannot hold a closer one";
+    let beyond = "skip a volume that begins beyond the closest hit: it cannot contain a closer hit";
     let mut meets_again = row(&[0, 1], SKIP);
-    // The second begins where the first is hit, and is hit there: the smaller number wins, and has to be heard.
+    // The second volume begins at the t of the first hit and has a hit at the same t, so it must be visited.
     (meets_again.table.boxes[2], meets_again.table.primitives[1]) = ((1.5, 2.0), 1.5);
     judge_orders(
         trial,
         &[
             (row(&[0, 1, 2, 3], SKIP), vec![0], beyond),
-            (row(&[3, 2, 1, 0], SKIP), vec![3, 2, 1, 0], "without `sort` children are looked into as listed"),
+            (
+                row(&[3, 2, 1, 0], SKIP),
+                vec![3, 2, 1, 0],
+                "you sort the children although `sort` is off: visit them as listed",
+            ),
             (row(&[1, 3, 0, 2], SKIP), vec![1, 0], beyond),
-            (row(&[0, 1, 2], VOLUMES), vec![0, 1, 2], "without `skip` nothing is left out"),
-            (meets_again, vec![0, 1], "what begins at the very t of the hit may hold one at the same t"),
+            (row(&[0, 1, 2], VOLUMES), vec![0, 1, 2], "you skip a volume although `skip` is off"),
+            (
+                meets_again,
+                vec![0, 1],
+                "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same \
+                 t",
+            ),
         ],
     )
 }
 
 pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> Outcome {
-    let order = "of the children that are entered, the one that is entered first comes first";
+    let order = "visit first the child that the ray enters first";
     judge_orders(
         trial,
         &[
@@ -254,7 +263,7 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> Outcome {
             (
                 row(&[3, 1, 0, 2], SORT),
                 vec![0, 1, 2, 3],
-                "sorted, but nothing skipped: all four, the nearest first",
+                "with `sort` and without `skip`, visit all four children, the nearest first",
             ),
         ],
     )

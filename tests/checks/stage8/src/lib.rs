@@ -1,8 +1,8 @@
-//! Stage 8: scene graph and solids.
+//! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
-//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `spheres` (around points) · `graph` (searches) ·
-//! `solid` (what a check knows of each) · `solids` (laws for all of them) · `hard`, `flat` (where their formulas lie) · `surfaces`
-//! (patches) · `subdivision` (meshes; `quarters`: their triangles)
+//! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
+//! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `hard`, `flat` (pitfalls of
+//! their formulas) · `surfaces` (patches) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod bounding_spheres;
 mod boxes;

@@ -1,14 +1,14 @@
-//! Which triangles a step of subdivision makes: known by what they touch, not by where they lie.
+//! Checks the triangles of a subdivision step by their connections, not by their positions.
 
 use super::subdivision::Unlike;
 use raykata::mesh::Mesh;
 use std::collections::BTreeSet;
 
-/// A vertex by the edge that it is of; an old one by its number twice.
+/// Names a vertex: a new one by the two ends of its edge, an old one by its own number twice.
 type Label = (u32, u32);
 
-/// The labels of all vertices: a new one is of the edge between the two old ones that it shares triangles with. `None` if
-/// there are not two.
+/// The labels of all vertices. A new vertex belongs to the edge between the two old vertices with which it shares
+/// triangles. `None` if some new vertex shares triangles with fewer or more than two old ones.
 fn labels(mesh: &Mesh, yours: &Mesh) -> Option<Vec<Label>> {
     let n_old = mesh.positions.len() as u32;
     let mut old_ones = vec![BTreeSet::new(); yours.positions.len()];
@@ -25,12 +25,12 @@ fn labels(mesh: &Mesh, yours: &Mesh) -> Option<Vec<Label>> {
     old_ones.iter().enumerate().map(label).collect()
 }
 
-/// The same triangle, begun at its smallest corner.
+/// The same triangle, rotated so that its smallest corner comes first.
 fn begun_anew([a, b, c]: [Label; 3]) -> [Label; 3] {
     [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
 }
 
-/// By labels, so that neither the order of edges and triangles nor the place of a vertex matters.
+/// Compares the triangles by labels, so that the order of edges and triangles and the positions do not matter.
 pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
     let material = |mesh: &Mesh, face: usize| mesh.face_materials.get(face).copied();
     let quarters = |(face, &[a, b, c]): (usize, &[u32; 3])| {
@@ -41,9 +41,11 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     };
     let mut expected: Vec<_> = mesh.triangles.iter().enumerate().flat_map(quarters).collect();
     expected.sort_unstable();
-    let wiring = "each corner keeps its old vertex with the new ones of its two edges; the three new ones are the middle";
-    let unlike =
-        |diagnosis| ("other triangles".to_owned(), "the four quarters of each".to_owned(), diagnosis);
+    let wiring = "your triangles have wrong corners: three consist of an old vertex and the new ones of its \
+        two edges, one of the three new ones";
+    let unlike = |diagnosis| {
+        ("other triangles".to_owned(), "the four quarters of each triangle".to_owned(), diagnosis)
+    };
     let Some(labels) = labels(mesh, yours) else { return Err(unlike(wiring)) };
     let faces = yours.triangles.iter().enumerate();
     let mut got: Vec<_> = faces
@@ -62,25 +64,29 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
         let turned = unturned(&got) == unturned(&expected);
         return Err(match turned {
             true => (
-                "triangles that run clockwise".into(),
+                "triangles with corners in the opposite order".into(),
                 "corners in the order of the old triangle".into(),
-                "corners must stay anticlockwise in all four triangles",
+                "you reverse the corners of some triangles: all four keep the order of the old triangle",
             ),
             false => unlike(wiring),
         });
     }
     if got != expected {
-        let describe = "triangles with the material of another one";
-        return Err((describe.into(), "its own for each".into(), "the four take the material of the one"));
+        let describe = "triangles with the material of another face";
+        return Err((
+            describe.into(),
+            "the material of the old triangle for each".into(),
+            "the four triangles take the material of the old triangle",
+        ));
     }
     for (vertex, &(p, q)) in labels.iter().enumerate().take(yours.uvs.len()) {
         let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);
-        // Halves of numbers up to 1, rounded.
+        // The tolerance covers the rounding of halves of numbers up to 1.
         if (yours.uvs[vertex] - right).length() > 1e-6 {
             return Err((
                 format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]),
                 format!("{right}"),
-                "texture coordinates of a new vertex are the mean of those at the ends of its edge",
+                "the texture coordinates of a new vertex are the mean of those at the ends of its edge",
             ));
         }
     }

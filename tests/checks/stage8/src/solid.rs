@@ -1,4 +1,5 @@
-//! What a check knows of each solid: how to ask for it, its exact answer, the same a little larger, and how far it reaches.
+//! What the checks need per solid: the call, the exact answer, a scaled copy, points inside and the extent along a
+//! normal.
 
 use checks::generate::{direction, point};
 use glam::{DVec3, Vec3};
@@ -14,25 +15,25 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     /// The function that students write.
     const NAME: &'static str;
 
-    /// Whether it has no inside.
+    /// Whether the shape is flat, so that it has no inside.
     const FLAT: bool = false;
 
-    /// Asks it.
+    /// Calls the function for all queries.
     fn ask(kit: &dyn Kit, queries: &[SolidQuery<Self>]) -> Vec<Option<SolidHit>>;
 
     /// The exact answer.
     fn meet(&self, ray: &Ray) -> Option<Meeting>;
 
-    /// The same, grown by this factor around a point inside.
+    /// The same shape, scaled by this factor around a point inside.
     fn grown(&self, factor: f32) -> Self;
 
     /// A point inside for each point of the cube from -1 to 1.
     fn inside(&self, at: Vec3) -> Vec3;
 
-    /// The largest `normal · q` of all its points `q`.
+    /// The largest `normal · q` over all points `q` of the shape.
     fn reach(&self, normal: DVec3) -> f64;
 
-    /// All kinds of it, with short numbers.
+    /// Random shapes of this kind whose coordinates have few bits.
     fn any() -> BoxedStrategy<Self>;
 }
 
@@ -45,15 +46,15 @@ fn radius() -> impl Strategy<Value = f32> + Clone {
     (2..=8i32).prop_map(|quarters| quarters as f32 / 4.0)
 }
 
-/// What stays of a vector beside another.
+/// The length of the part of a vector that is perpendicular to `axis`.
 fn beside(vector: DVec3, axis: DVec3) -> f64 {
     vector.reject_from(axis.normalize()).length()
 }
 
-/// The point that is `at` in the round, as seen along `axis`.
+/// The point of a cylinder at the fraction `along` of its axis, and at `at` within its circle.
 fn in_round(base: Vec3, axis: Vec3, radius: f32, along: f32, at: Vec3) -> Vec3 {
     let (x, y) = axis.normalize().any_orthonormal_pair();
-    // The square in the disk.
+    // Scale by 0.7 so that the square from -1 to 1 fits into the circle.
     base + along * axis + 0.7 * radius * (at.x * x + at.y * y)
 }
 
@@ -127,7 +128,7 @@ impl Solid for Cone {
         Cone { base: place(self.base), apex: place(self.apex), radius: factor * self.radius }
     }
     fn inside(&self, at: Vec3) -> Vec3 {
-        // A cylinder of half the height and less than half the radius.
+        // Use a cylinder inside the cone, with less than half the height and less than half the radius.
         in_round(self.base, self.apex - self.base, 0.5 * self.radius, 0.25 + 0.2 * at.z, at)
     }
     fn reach(&self, normal: DVec3) -> f64 {
@@ -190,7 +191,8 @@ impl Solid for Polygon {
         self.corners.iter().map(|corner| normal.dot(corner.as_dvec3())).fold(f64::NEG_INFINITY, f64::max)
     }
     fn any() -> BoxedStrategy<Self> {
-        // Three to seven corners of a regular octagon of whole eighths, in the plane of two vectors at right angles.
+        // Take three to seven corners of an octagon with coordinates in eighths, in the plane of two perpendicular
+        // vectors.
         let octagon = [(8, 3), (3, 8), (-3, 8), (-8, 3), (-8, -3), (-3, -8), (3, -8), (8, -3)];
         let axes = prop_oneof![
             Just((Vec3::X, Vec3::Y)),

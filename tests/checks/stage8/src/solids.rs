@@ -1,4 +1,4 @@
-//! Laws for all solids.
+//! Laws that hold for all solids.
 
 use super::solid::Solid;
 use checks::Trial;
@@ -31,8 +31,9 @@ laws! {
     Polygon: polygon_agrees_with_exact_arithmetic agrees_flat polygon_keeps_to_the_rules keeps_to_the_rules;
 }
 
-/// A verdict is judged only if it is the same for the shape this much larger and smaller: methods in single precision are
-/// off by a few hundred roundings, 1e-5, of the coordinates here. Edges, rims and tips are looked at by other checks.
+/// An answer is judged only if the shape scaled up and down by this fraction is hit or missed alike: methods in single
+/// precision have errors of a few hundred roundings, 1e-5 of the coordinates here. Other checks test edges, rims and
+/// apexes.
 const SHELL: f32 = 1e-4;
 
 /// Rays from outside and inside, most of them aimed at a point of the solid.
@@ -55,11 +56,12 @@ fn rays<S: Solid>(range: bool) -> impl Strategy<Value = SolidQuery<S>> + Clone {
     })
 }
 
-/// The `t` that may come back, `None` if a miss may, too; nothing if the ray passes too near to an edge to say.
+/// The interval of correct `t`, or `Some(None)` for a miss. `None` if the ray passes too near to an edge to judge.
 fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
     let SolidQuery { ray, solid } = query;
-    // Shells of a flat shape lie in its plane and say nothing about a ray that does, too. A height above the plane is off by
-    // 1e-5, and by that over the slope where the ray comes through: no more than a shell.
+    // The scaled copies of a flat shape lie in its plane and cannot judge a ray that lies in this plane, too. A height
+    // above the plane has an error of 1e-5, and the point in the plane that error over the slope: demand less than a
+    // shell.
     let slope = own_normal(query).map_or(1.0, |normal| {
         let direction = ray.direction.as_dvec3();
         (direction.dot(normal).abs() / (direction.length() * normal.length())) as f32
@@ -72,13 +74,15 @@ fn expected<S: Solid>(query: &SolidQuery<S>) -> Option<Option<(f32, f32)>> {
         (None, None, None) => Some(None),
         (Some(p), Some(q), Some(r)) => {
             let (low, high) = (p.min(q).min(r), p.max(q).max(r));
-            // A method in single precision is off by a hundred roundings, 1e-5 of the way; twice that, in lengths of direction.
+            // A method in single precision has an error of a hundred roundings, 1e-5 of t; allow twice that, in lengths
+            // of direction.
             let slack = 2e-5 * (1.0 + ray.origin.length()) / (slope * ray.direction.length());
             if low - slack <= ray.t_min || ray.t_max <= high + slack {
                 return None;
             }
-            // A range that begins or ends between the shells gives different ends of the solid. Shells lie 1e-3 apart at
-            // most, slanting rays go farther; but the thinnest solid is 1/8 high, so that its ends are beyond a twentieth.
+            // If the range of the ray begins or ends between the scaled copies, their hits are different ends of the
+            // solid. The copies are at most 1e-3 apart, more along slanting rays; two ends of a solid are more than
+            // 0.05 apart.
             (high - low < 0.05 / ray.direction.length()).then_some(Some((low - slack, high + slack)))
         }
         _ => None,
@@ -115,7 +119,7 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
 fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Option<f32>) -> &'static str {
     let SolidQuery { ray, solid } = query;
     let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-    // This and the rest only word what is wrong already: near enough to recognize a mistake, far from any other number.
+    // The answer is wrong already. This tolerance only chooses the diagnosis.
     let near = |t: f32, right: f32| (t - right).abs() <= 1e-3 * right.abs().max(0.1);
     let first = solid.meet(&endless).and_then(|meeting| meeting.t);
     let inside = solid.meet(&ray.with_range(f32::NEG_INFINITY, 0.0)).is_some_and(|back| back.t.is_some())
@@ -125,29 +129,34 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
         solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -t)
     };
     match (yours.map(|hit| hit.t), exact) {
-        (Some(t), _) if t.is_nan() => "NaN is no hit: compare so that NaN fails",
-        (Some(t), _) if !ray.contains(t) => "a t that ray.contains(t) refuses",
+        (Some(t), _) if t.is_nan() => "you return NaN: write the comparisons so that they are false for NaN",
+        (Some(t), _) if !ray.contains(t) => "you return a t outside of the ray's range: test ray.contains(t)",
         (None, Some(_)) if inside => {
-            "a ray that starts inside meets the surface where it leaves, be it at a side or at an end"
+            "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or \
+             on an end"
         }
         (None, Some(_)) if first.is_some_and(|t| t <= ray.t_min) => {
-            "the way in lies before t_min, but the way out counts"
+            "you give up because the entry lies before t_min: the exit still counts"
         }
         (None, Some(_)) if S::FLAT => {
-            "a part of it is missing, or one of its two sides: it can be hit from either"
+            "you lose a part of the shape, or one of its two sides: a ray can hit it from both"
         }
-        (None, Some(_)) => "a part of the surface is missing: an end, or a side",
-        (Some(_), None) if S::FLAT => "a point of its plane, but beside it",
-        (Some(_), None) => "a point beside the solid: beyond an end, or outside of the round",
+        (None, Some(_)) => "you lose a part of the surface: an end, or a side",
+        (Some(_), None) if S::FLAT => "you return a point of the plane that lies outside of the shape",
+        (Some(_), None) => "you return a point outside of the solid: beyond an end, or beside it",
         (Some(t), Some(right))
             if near(t * ray.direction.length(), right) || near(t / ray.direction.length(), right) =>
         {
-            "t must count lengths of direction"
+            "your t has another unit: it counts lengths of direction"
         }
         (Some(t), Some(_)) if last().is_some_and(|last| near(t, last)) => {
-            "the far side: the nearest point of the surface in the range of the ray is the hit, be it on a side or on an end"
+            "you return the far side: the hit is the nearest point of the surface in the ray's range, on a \
+             side or on an end"
         }
-        (Some(_), Some(_)) => "another point of the endless surface: cut it where the solid ends",
+        (Some(_), Some(_)) => {
+            "your hit is not the nearest point of the surface: check the roots, and intersect with the \
+             interval between the ends"
+        }
         (None, None) => "",
     }
 }
@@ -156,15 +165,15 @@ fn agrees<S: Solid>(trial: &Trial<'_>) -> Outcome {
     trial.forall(4000, rays::<S>(false), |queries| judge(trial, queries))
 }
 
-/// For shapes without an inside the normal is judged as well: it is the shape's own.
+/// For flat shapes this judges the normal, too, which must be that of the shape's description.
 pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> Outcome {
     agrees::<S>(trial)?;
     outwards::<S>(trial)
 }
 
-/// At a point `p` of a convex solid, `n` is an outward normal if no point `q` has `n · (q - p) > 0`: true on faces, rims and
-/// tips alike, whichever of several normals somebody takes there. For a flat shape both sides have this, and the one is
-/// right that its own description gives.
+/// At a point `p` of a convex solid, `n` is an outward normal if no point `q` of the solid has `n · (q - p) > 0`. This
+/// holds on faces, rims and apexes, for each of the possible normals there. A flat shape has two such normals, and the
+/// one that its description gives is right.
 fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
     trial.forall(3000, rays::<S>(false), |queries| {
         compare(queries, S::ask(trial.kit, queries), |query, yours| {
@@ -172,12 +181,13 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
             let normal = hit.normal.as_dvec3();
             let at = query.ray.origin.as_dvec3() + f64::from(hit.t) * query.ray.direction.as_dvec3();
             let beyond = |normal: DVec3| query.solid.reach(normal) - normal.dot(at);
-            // The point is off by 1e-5, and the normal by as much of a radius, which is 0.5 or more: over a solid 16 across
-            // 3e-4, and some times that is let pass. A hundredth of a radius, 5e-3, would be a wrong normal.
+            // The hit point has an error of 1e-5, and the normal one of 1e-5 of a radius, which is 0.5 or more:
+            // together 3e-4 over a solid 16 across. The limit is some times that; an error of 0.01 of a radius would
+            // give 5e-3.
             let outward = beyond(normal) <= 2e-3;
-            // A normalized vector is off by 2e-7; fifty times that is no forgotten root.
+            // A normalized vector has an error of 2e-7; the limit is fifty times that.
             let unit = (normal.length() - 1.0).abs() <= 1e-5;
-            // A flat shape reaches as far along its normal as against it: nothing but roundings of coordinates up to 8.
+            // The extent of a flat shape along its normal is 0, up to rounding errors of coordinates up to 8.
             let turned = query.solid.reach(normal) + query.solid.reach(-normal) < 1e-3
                 && own_normal(query).is_some_and(|own| own.dot(normal) < 0.0);
             if outward && unit && !turned {
@@ -185,26 +195,26 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
             }
             let diagnosis = match () {
                 () if turned => {
-                    "the normal of the other side: it does not depend on where the ray comes from"
+                    "you return the normal of the other side: it does not depend on where the ray comes from"
                 }
-                () if normal.is_nan() => "NaN: a vector of length 0 was made a unit vector",
-                () if outward => "the normal is not of unit length",
-                () if beyond(-normal) <= 2e-3 => "the normal points inwards",
-                () if unit => "not the normal of this part of the surface",
-                () => "neither of unit length nor at right angles to the surface",
+                () if normal.is_nan() => "your normal is NaN: you normalised a vector of length 0",
+                () if outward => "your normal does not have unit length",
+                () if beyond(-normal) <= 2e-3 => "your normal points inwards",
+                () if unit => "you return a unit vector that is not perpendicular to the surface at the hit",
+                () => "your normal has another length than 1 and is not perpendicular to the surface",
             };
             Err(Broken::with_texts(
                 input(query),
                 format!("normal {} at t = {:?}", hit.normal, hit.t),
-                "a unit vector out of the surface there",
-                "the points of the solid all lie behind it",
+                "the outward unit normal at the hit",
+                "all points of the solid lie behind it",
             )
             .looks_like(Some(diagnosis)))
         })
     })
 }
 
-/// The normal that a flat shape gives itself, if this is one.
+/// The normal from the description of a flat shape; `None` for a solid.
 fn own_normal<S: Solid>(query: &SolidQuery<S>) -> Option<DVec3> {
     let solid: &dyn std::any::Any = &query.solid;
     if let Some(disk) = solid.downcast_ref::<Disk>() {
@@ -217,7 +227,7 @@ fn own_normal<S: Solid>(query: &SolidQuery<S>) -> Option<DVec3> {
 
 fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, rays::<S>(true), |queries| judge(trial, queries))?;
-    // A direction 1024 times as long makes t as much smaller: t counts lengths of direction, and no limit is a fixed number.
+    // A direction 1024 times as long must give 1/1024 of t, because t counts lengths of the direction.
     trial.forall(500, rays::<S>(false), |queries| {
         let answers = S::ask(trial.kit, queries);
         let longer = |query: &SolidQuery<S>| SolidQuery {
@@ -231,8 +241,8 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let t = answer.map(|hit| hit.t / 1024.0);
-            // Scaling by a power of two is exact, so t should be, too; but a method may make direction a unit vector, which rounds.
-            // 1e-5 is eighty such roundings, of t or, near the origin, of coordinates.
+            // Scaling by a power of two is exact, but a method may normalise the direction, which rounds. Allow 1e-5,
+            // which is eighty such rounding errors, of t or, near the origin, of the coordinates.
             let same = match (t, scaled) {
                 (Some(t), Some(hit)) => (hit.t - t).abs() <= 1e-5 * t.max(0.01),
                 (None, None) => true,
@@ -240,7 +250,8 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
             };
             let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
             let diagnosis = scaled.is_none().then_some(
-                "a fixed epsilon drops it: t is small because direction is long, not because the hit is near",
+                "you drop the hit by a fixed epsilon: t is small because direction is long, not because the \
+                 hit is near",
             );
             if same {
                 return Ok(());
@@ -284,7 +295,9 @@ fn nonsense<S: Solid>(trial: &Trial<'_>) -> Outcome {
     compare(&queries, S::ask(trial.kit, &queries), |query, yours| match yours {
         None => Ok(()),
         Some(hit) => Err(Broken::with_texts(input(query), format!("{hit:?}"), "None", "the definition")
-            .looks_like(Some("such a ray or shape cannot be hit; compare so that NaN fails"))),
+            .looks_like(Some(
+                "you return a hit for an invalid ray or shape: write comparisons that are false for NaN",
+            ))),
     })
     .into_iter()
     .collect()

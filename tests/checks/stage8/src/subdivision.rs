@@ -1,4 +1,4 @@
-//! Loop's subdivision: what belongs to what, and where it goes.
+//! Checks of `loop_subdivide`: the triangles and the positions of their vertices.
 
 use super::quarters::triangles_are_quarters;
 use checks::Trial;
@@ -59,7 +59,7 @@ fn sheet(n: u32) -> Mesh {
     }
 }
 
-/// By name, with what it is for.
+/// The meshes of the checks, with their names.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let round = octahedron();
     let round = Mesh { normals: round.positions.clone(), ..round };
@@ -74,23 +74,23 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-/// The edges, the smaller end first: all pairs of vertices that some triangle has.
+/// The edges, the smaller end first: all pairs of vertices that belong to a common triangle.
 fn edges(mesh: &Mesh) -> Vec<(u32, u32)> {
     let n = mesh.positions.len() as u32;
     let pairs = (0..n).flat_map(|q| (0..q).map(move |p| (p, q)));
     pairs.filter(|&edge| !opposite(mesh, edge).is_empty()).collect()
 }
 
-/// The third corners of the triangles that have both vertices.
+/// The third corners of the triangles to which both vertices belong.
 fn opposite(mesh: &Mesh, (p, q): (u32, u32)) -> Vec<u32> {
     let both = mesh.triangles.iter().filter(|triangle| triangle.contains(&p) && triangle.contains(&q));
     both.flat_map(|triangle| triangle.iter().copied().filter(|&vertex| vertex != p && vertex != q)).collect()
 }
 
-/// What came back, what should have, and what that looks like.
+/// The answer, the expected answer and a diagnosis.
 pub(super) type Unlike = (String, String, &'static str);
 
-/// Judges one thing of every mesh.
+/// Judges one law for every mesh.
 fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) -> Outcome {
     let meshes = meshes();
     let queries: Vec<Mesh> = meshes.iter().map(|(_, mesh)| mesh.clone()).collect();
@@ -112,10 +112,10 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
         if (yours.positions.len(), yours.triangles.len()) != (vertices, triangles) {
             let diagnosis = match yours.positions.len() {
                 n if n > vertices => {
-                    "one vertex an edge, not two: triangles on both sides share it, or cracks open"
+                    "you make more than one new vertex per edge: the triangles on both sides share it"
                 }
                 _ if yours.triangles.len() != triangles => {
-                    "each triangle becomes four: three at its corners and one in the middle"
+                    "you do not make four triangles of each: three at its corners and one in the middle"
                 }
                 _ => "",
             };
@@ -123,15 +123,15 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
         }
         if !yours.normals.is_empty() {
             let describe = format!("{} normals", yours.normals.len());
-            return Err((describe, "none".into(), "normals are dropped: the surface is another one"));
+            return Err((describe, "none".into(), "normals are dropped, because the surface changes"));
         }
         let lengths = [
-            (mesh.uvs.len(), yours.uvs.len(), vertices, "texture coordinates: each vertex has its own"),
+            (mesh.uvs.len(), yours.uvs.len(), vertices, "texture coordinates: there is one pair per vertex"),
             (
                 mesh.face_materials.len(),
                 yours.face_materials.len(),
                 triangles,
-                "the four take the material of the one",
+                "the four triangles take the material of the old triangle",
             ),
         ];
         for (before, yours, each, diagnosis) in lengths {
@@ -141,30 +141,33 @@ pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
                 return Err((format!("{yours} {what}"), format!("{right}"), diagnosis));
             }
         }
-        yours.validate().map_err(|message| (message, "a sound mesh".into(), ""))?;
+        yours.validate().map_err(|message| (message, "a valid mesh".into(), ""))?;
         triangles_are_quarters(mesh, yours)
     })
 }
 
-const BORDER: &str = "a border depends on its own vertices only, or two sheets side by side would part";
-const FROM_BEFORE: &str = "all places are from before the step: what has moved already pulls others too far";
+const BORDER: &str =
+    "a border may depend only on its own vertices: otherwise a gap opens between two meshes that share it";
+const FROM_BEFORE: &str =
+    "your vertex depends on vertices that are not its neighbours: use only positions from before the step";
 
-/// How far a vertex is moved to see which others follow. A fraction of an edge of all meshes, so that no two meet.
+/// The distance by which a vertex is moved to measure its weights. It is shorter than any edge, so no two vertices meet.
 const STEP: f32 = 0.25;
 
-/// A weight is a difference of two sums of a handful of numbers up to 9, each rounded to a few units of 1e-6, divided by
-/// [`STEP`]. The rule has no two weights nearer than 1/32.
+/// The tolerance of a weight: the difference of two sums of some numbers up to 9, each rounded to a few units of 1e-6,
+/// divided by [`STEP`]. Any two weights of the rule differ by at least 1/32.
 const NEAR_WEIGHT: f64 = 1e-3;
 
-/// A mesh, what came of it, and how it depends on the vertices.
+/// A mesh, the subdivided mesh, and the weights of the old vertices in the new positions.
 struct Step<'a> {
     mesh: &'a Mesh,
     yours: &'a Mesh,
-    /// For each vertex that came back how far it follows each old one, as a share of that one's way.
+    /// For each vertex of the answer its weight for each old vertex: the distance it moves per distance of the old
+    /// vertex.
     weights: Vec<Vec<f64>>,
 }
 
-/// The meshes with one vertex after the other moved by [`STEP`] along x.
+/// One mesh per vertex, in which this vertex is moved by [`STEP`] along x.
 fn moved(mesh: &Mesh) -> Vec<Mesh> {
     let with = |vertex: usize| {
         let mut moved = mesh.clone();
@@ -174,8 +177,8 @@ fn moved(mesh: &Mesh) -> Vec<Mesh> {
     (0..mesh.positions.len()).map(with).collect()
 }
 
-/// What each of `n` neighbours gives to an old vertex inside. Recorded from the rule for the vertices of these meshes: 3/16
-/// for 3 neighbours, and 3/8n otherwise.
+/// The weight of each of the `n` neighbours of an inner old vertex. Recorded from the rule for the vertices of these
+/// meshes: 3/16 for 3 neighbours, and 3/(8n) otherwise.
 fn inner_share(n: usize) -> f64 {
     match n {
         0 => 0.0,
@@ -186,10 +189,10 @@ fn inner_share(n: usize) -> f64 {
     }
 }
 
-/// How much a vertex must take of some old ones. It takes nothing of all others.
+/// The weights of some old vertices in a position. All other weights are 0.
 type Shares = Vec<(u32, f64)>;
 
-/// The shares of a vertex that takes `share` of each of the others, and the rest of itself.
+/// The weights of a vertex: `share` for each of the others, and the rest for itself.
 fn shared(vertex: u32, others: &[u32], share: f64) -> Shares {
     let own = (vertex, 1.0 - share * others.len() as f64);
     [own].into_iter().chain(others.iter().map(|&other| (other, share))).collect()
@@ -201,7 +204,7 @@ fn describe(shares: &Shares) -> String {
 }
 
 impl<'a> Step<'a> {
-    /// `moved` is what came of the meshes of [`moved`].
+    /// `moved` holds the answers for the meshes of [`moved`].
     fn new(mesh: &'a Mesh, yours: &'a Mesh, moved: &[Mesh]) -> Step<'a> {
         let weight = |vertex: usize, moved: &Mesh| {
             let place = moved.positions.get(vertex).map_or(f64::NAN, |place| f64::from(place.x));
@@ -211,44 +214,44 @@ impl<'a> Step<'a> {
         Step { mesh, yours, weights: (0..yours.positions.len()).map(weights).collect() }
     }
 
-    /// Whether a vertex takes these shares of old ones, and nothing of all others.
+    /// Whether a vertex has these weights, and the weight 0 for all other old vertices.
     fn takes(&self, vertex: usize, shares: &Shares) -> bool {
         let right =
             |old: usize| shares.iter().find(|(other, _)| *other as usize == old).map_or(0.0, |one| one.1);
         self.weights[vertex].iter().enumerate().all(|(old, yours)| (yours - right(old)).abs() <= NEAR_WEIGHT)
     }
 
-    /// Whether a vertex takes anything of old ones other than these.
+    /// Whether a vertex has a weight other than 0 for an old vertex that is not among these.
     fn takes_of_others(&self, vertex: usize, than: &[u32]) -> bool {
         let mut weights = self.weights[vertex].iter().enumerate();
         weights.any(|(old, weight)| weight.abs() > NEAR_WEIGHT && !than.contains(&(old as u32)))
     }
 
-    /// Whether every vertex lies where its weights put it, so that the weights are all there is.
+    /// Checks that every vertex is the sum of the old vertices times its weights.
     fn is_linear(&self) -> Result<(), Unlike> {
         for (vertex, weights) in self.weights.iter().enumerate() {
             let parts = weights.iter().zip(&self.mesh.positions);
             let sum: DVec3 = parts.map(|(weight, old)| *weight * old.as_dvec3()).sum();
             let place = self.yours.positions[vertex];
-            // Up to 16 weights, each off by the rounding of two sums over STEP, which is 1e-5, times coordinates up to 5.
+            // Allow 16 weights with an error of 1e-5 each, from two rounded sums over STEP, times coordinates up to 5.
             if !((place.as_dvec3() - sum).length() <= 1e-3) {
-                let expected = format!("{}, as far as it follows the old ones", sum.as_vec3());
+                let expected = format!("{}, the sum of the old vertices times its weights", sum.as_vec3());
                 return Err((format!("vertex {vertex} at {place}"), expected, ""));
             }
         }
         Ok(())
     }
 
-    /// Where a vertex is, and what it takes of the old ones.
+    /// The position of a vertex and its weights.
     fn describe(&self, vertex: usize) -> String {
         let weights = self.weights[vertex].iter().enumerate();
-        // Rounded to four digits.
+        // Round to four digits.
         let rounded = weights.map(|(old, weight)| (old as u32, (1e4 * weight).round() / 1e4));
         let shares: Shares = rounded.filter(|(_, weight)| *weight != 0.0).collect();
         format!("vertex {vertex} at {}: {}", self.yours.positions[vertex], describe(&shares))
     }
 
-    /// The vertices at the other ends of the edges of an old one: all of them, and those along a border.
+    /// The neighbours of an old vertex: all of them, and those along a border.
     fn neighbours(&self, vertex: u32) -> (Vec<u32>, Vec<u32>) {
         let others = (0..self.mesh.positions.len() as u32).filter(|&other| other != vertex);
         let joined: Vec<(u32, usize)> = others
@@ -259,7 +262,7 @@ impl<'a> Step<'a> {
         (joined.iter().map(|(other, _)| *other).collect(), border.map(|(other, _)| *other).collect())
     }
 
-    /// Judges an old vertex by what it follows.
+    /// Judges an old vertex by its weights.
     fn judge_old(&self, vertex: u32, border: bool) -> Result<(), Unlike> {
         let index = vertex as usize;
         let (around, along) = self.neighbours(vertex);
@@ -270,20 +273,26 @@ impl<'a> Step<'a> {
         }
         let sum: f64 = self.weights[index].iter().sum();
         let diagnosis = match () {
-            () if around.is_empty() => "a vertex of no triangle stays where it is",
-            () if self.takes(index, &vec![(vertex, 1.0)]) => "old vertices move, too",
+            () if around.is_empty() => "you move a vertex that belongs to no triangle: it stays",
+            () if self.takes(index, &vec![(vertex, 1.0)]) => {
+                "you do not move the old vertices: they move, too"
+            }
             () if self.takes_of_others(index, &[&around[..], &[vertex]].concat()) => FROM_BEFORE,
             () if border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))) => BORDER,
-            () if border => "3/4 of itself and 1/8 of either neighbour along the border",
-            () if (sum - 1.0).abs() > NEAR_WEIGHT => {
-                "the weights must add up to 1: each of the n neighbours takes β, and 1 - n β is left"
+            () if border => {
+                "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along \
+                 the border"
             }
-            () => "β is 3/16 for three neighbours, and 3/8 divided by their number otherwise",
+            () if (sum - 1.0).abs() > NEAR_WEIGHT => {
+                "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for \
+                 the vertex"
+            }
+            () => "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise",
         };
         Err((self.describe(index), describe(&shares), diagnosis))
     }
 
-    /// Judges the new vertex of an edge: one of the new ones has to take the right shares.
+    /// Judges the new vertex of an edge: one of the new vertices must have the right weights.
     fn judge_edge(&self, (p, q): (u32, u32), border: bool) -> Result<(), Unlike> {
         let third = opposite(self.mesh, (p, q));
         let ends = vec![(p, 0.5), (q, 0.5)];
@@ -299,10 +308,10 @@ impl<'a> Step<'a> {
         let diagnosis = match () {
             () if border => BORDER,
             () if fresh.clone().any(|vertex| self.takes(vertex, &ends)) => {
-                "the middle of the edge is for borders: inside, the third corners pull"
+                "you use the midpoint for an inner edge: there the two third corners have weights, too"
             }
             () if fresh.all(|vertex| self.takes_of_others(vertex, &around)) => FROM_BEFORE,
-            () => "3/8 of both ends and 1/8 of both third corners",
+            () => "the weights are 3/8 for each end and 1/8 for each third corner",
         };
         Err((
             format!("no new vertex for the edge {p} {q}"),
@@ -311,7 +320,7 @@ impl<'a> Step<'a> {
         ))
     }
 
-    /// Judges the vertices of a border, or those that are not.
+    /// Judges the vertices on borders, or all others.
     fn judge(&self, border: bool) -> Result<(), Unlike> {
         let n_old = self.mesh.positions.len().min(self.yours.positions.len());
         for vertex in 0..n_old as u32 {
@@ -329,7 +338,7 @@ impl<'a> Step<'a> {
     }
 }
 
-/// Moves each vertex a little: those that follow, and how far, are the weights of the rule.
+/// Measures the weights: moves each old vertex a little and compares the answers.
 fn judge_weights(trial: &Trial<'_>, border: bool) -> Outcome {
     judge(trial, |mesh, yours| {
         let moved = trial.kit.loop_subdivide(&moved(mesh));

@@ -1,4 +1,4 @@
-//! Bézier patches.
+//! Checks of `bezier_point`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -18,14 +18,14 @@ fn patch() -> impl Strategy<Value = BezierPatch> + Clone {
 }
 
 fn describe(query: &PatchQuery) -> String {
-    // Two rows a line: a message shows three lines of the input.
+    // Write two rows per line, because a message shows three lines of the input.
     let [a, b, c, d] = query.patch.rows.map(|row| list(&row));
     format!("bezier_point(&BezierPatch {{ rows: [{a}, {b},\n{c}, {d}] }},\n{})", query.uv.paste())
 }
 
 pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> Outcome {
     let rough = patch().prop_map(|mut patch| {
-        // Thirds, which no formula that adds differences gives back exactly.
+        // Use thirds: p + t (q - p) does not return them exactly at t = 1.
         patch.rows.iter_mut().flatten().for_each(|point| *point /= 3.0);
         patch
     });
@@ -41,25 +41,35 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> Outcom
             let (yours, corner) = (answers[i], query.patch.rows[row][column]);
             let opposite = query.patch.rows[3 - row][3 - column];
             let diagnosis = match () {
-                () if yours == query.patch.rows[column][row] => "u runs along the rows, v along the columns",
-                () if yours == opposite => "t and 1 - t are exchanged",
+                () if yours == query.patch.rows[column][row] => {
+                    "you exchange u and v: u runs along the rows, v along the columns"
+                }
+                () if yours == opposite => "you exchange t and 1 - t",
                 () if (yours - corner).length() < 1e-5 => {
-                    "p + t (q - p) is not q at t = 1: two patches side by side would not meet; blend with 1 - t and t"
+                    "you compute p + t (q - p), which is not exactly q at t = 1, so neighbouring patches \
+                     have gaps: use (1 - t) p + t q"
                 }
                 () => "",
             };
             match yours == corner {
                 true => Ok(()),
-                false => Err(Broken::new(describe(query), yours, corner, "the corner of the net")
+                false => Err(Broken::new(describe(query), yours, corner, "the corner of the control net")
                     .looks_like(known(diagnosis))),
             }
         };
-        queries.iter().enumerate().map(judge).collect::<Vec<Outcome>>().chunks(4).map(|four| four.iter().cloned().collect()).collect()
+        queries
+            .iter()
+            .enumerate()
+            .map(judge)
+            .collect::<Vec<Outcome>>()
+            .chunks(4)
+            .map(|four| four.iter().cloned().collect())
+            .collect()
     })
 }
 
 pub(super) fn bezier_point_is_the_mean_of_its_net(trial: &Trial<'_>) -> Outcome {
-    // First a net whose points all pull differently, so that an answer shows which of them went wrong.
+    // First test a net whose points all differ, so that the answer shows which mistake was made.
     let heights = [[0, 1, 0, -1], [2, -1, 1, 0], [1, 3, 0, 2], [0, -2, 1, 1]];
     let row = |row: usize| [0, 1, 2, 3].map(|i| Vec3::new(i as f32, row as f32, heights[row][i] as f32));
     let hilly = PatchQuery { patch: BezierPatch { rows: [0, 1, 2, 3].map(row) }, uv: vec2(0.25, 0.625) };
@@ -79,26 +89,29 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<Outcome> {
         };
         let [u, v] = query.uv.to_array();
         let right = at([u, v], bernstein);
-        // Six blends, one on the other, of numbers up to 4: each is off by two roundings.
+        // Allow two rounding errors for each of six nested interpolations of numbers up to 4.
         let near =
             |right: DVec3| (yours.as_dvec3() - right).abs().max_element() <= 16.0 * checks::double::U * 4.0;
         let diagnosis = match () {
-            () if near(at([v, u], bernstein)) => "u runs along the rows, v along the columns",
-            () if near(at([1.0 - u, 1.0 - v], bernstein)) => "t and 1 - t are exchanged",
+            () if near(at([v, u], bernstein)) => {
+                "you exchange u and v: u runs along the rows, v along the columns"
+            }
+            () if near(at([1.0 - u, 1.0 - v], bernstein)) => "you exchange t and 1 - t",
             () if near(at([u, u], bernstein)) || near(at([v, v], bernstein)) => {
-                "one parameter is used twice: u runs along the rows, v along the columns"
+                "you use one parameter twice: u runs along the rows, v along the columns"
             }
             () if near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])) => {
-                "the corners only: the points between them pull as well"
+                "you use only the corners: the control points between them have weights, too"
             }
             () if near(at([u, v], |t| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t])) => {
-                "two blends along a curve, but four points need three: 4, 3, 2, 1"
+                "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1"
             }
             () if near(at([u, v], without_factors)) => {
-                "the weights do not add up to 1: their factors are 1, 3, 3 and 1"
+                "your weights do not add up to 1: their factors are 1, 3, 3 and 1"
             }
             () if near(at([u, v], interpolating)) => {
-                "the surface passes through the corners of its net only: the other points just pull"
+                "your surface passes through all control points: a Bézier patch passes only through its \
+                 corners in general"
             }
             () => "",
         };
@@ -122,7 +135,7 @@ fn without_factors(t: f64) -> [f64; 4] {
     [a, b / 3.0, c / 3.0, d]
 }
 
-/// The weights of the curve that passes through all four points, at thirds.
+/// The weights of the curve that passes through its four points at t = 0, 1/3, 2/3 and 1.
 fn interpolating(t: f64) -> [f64; 4] {
     let weight = |i: usize| {
         let others = (0..4).filter(|&j| j != i);
