@@ -16,9 +16,9 @@ use raykata::shape::Triangle;
 
 /// Computes the real roots of `a t² + b t + c = 0` without cancellation.
 ///
-/// Returns the smaller root first, for every sign of `a` and `b`. A double root is returned twice, and for `b = c = 0` both
-/// roots are 0. Returns `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite. No root is
-/// NaN; a root too large for `f32` is infinite.
+/// Returns the smaller root first, for every sign of `a` and `b`. A double root is returned twice, and for `b = c = 0`
+/// both roots are 0. Returns `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite. No
+/// root is NaN; a root too large for `f32` is infinite.
 ///
 /// Pitfall: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` becomes 0. Add numbers of the same
 /// sign instead, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
@@ -30,7 +30,8 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     if a == 0.0 || !(a.is_finite() && b.is_finite() && c.is_finite()) {
         return None;
     }
-    // Compute the discriminant in double precision: both products are exact, so it is rounded once and its sign is right.
+    // Compute the discriminant in double precision: both products are exact, so it is rounded once and its sign is
+    // right.
     let [a, b, c] = [a, b, c].map(f64::from);
     let discriminant = b * b - 4.0 * a * c;
     if discriminant < 0.0 {
@@ -45,15 +46,15 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     // </solution>
 }
 
-/// Intersects a ray with a triangle such that no ray escapes between two triangles that share an edge or a corner, at any
-/// size and at any place.
+/// Intersects a ray with a triangle such that no ray escapes between two triangles that share an edge or a corner, at
+/// any size and at any place.
 ///
-/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. The answer
-/// depends only on the sign of the edge functions, so scaling ray and triangle by a power of two does not change it. `t` is
-/// accurate also on triangles a million times as long as wide. NaN or infinite inputs give `None` or a finite hit.
+/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. Scaling ray
+/// and triangle by a power of two changes no answer, unless a number over- or underflows. `t` is accurate also on
+/// triangles a million times as long as wide. NaN or infinite inputs give `None` or a finite hit.
 ///
-/// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of an
-/// edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
+/// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
+/// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
 ///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
@@ -64,16 +65,17 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // </solution>
 }
 
-/// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that the
-/// ray meets.
+/// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that
+/// the ray meets.
 ///
 /// This holds at corners, for flat boxes, far away, along faces and for directions of -0.0, with `t_min >= 0` and with
-/// `inverse_direction` finite wherever the direction is not 0. A box with a hit at `t` is entered at `t` or before. A box
-/// that the ray passes by at more than 64 roundings gives `None`, and so does the empty box. Neither result is ever NaN.
+/// `inverse_direction` finite wherever the direction is not 0. A box with a hit at `t` is entered at `t` or before. A
+/// box that the ray passes by at more than 64 roundings gives `None`, and so does the empty box. Neither result is ever
+/// NaN.
 ///
 /// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Multiply the exit by `1 + 2 γ₃`, the
-/// bound on its own three rounding errors, and the entry by `1 - 2 γ₃`, because a search compares the entry with the `t` of
-/// hits, which are rounded differently.
+/// bound on its own three rounding errors, and the entry by `1 - 2 γ₃`, because a search compares the entry with the
+/// `t` of hits, which are rounded differently.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
@@ -84,13 +86,13 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
     // </solution>
 }
 
-/// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same surface
-/// again (shadow acne).
+/// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same
+/// surface again (shadow acne).
 ///
 /// The true surface lies within `error` of `point` along each axis. Move the point along the unit `normal` by
-/// `error · |normal|`, to the side to which `direction` goes, and then each coordinate by one float outwards, because the sum
-/// is rounded as well. The height above `point` may be at most 4 times this bound plus 64 rounding steps of the largest
-/// coordinate.
+/// `error · |normal|`, to the side to which `direction` goes, and then each coordinate by one float outwards, because
+/// the sum is rounded as well. The height above `point` may be at most 4 times this bound plus 64 rounding steps of the
+/// largest coordinate.
 ///
 /// Pitfall: any fixed distance is too small in one scene and too large in another. In a scene of size 0.001, a ray that
 /// starts 0.0001 away misses objects that touch the surface.
@@ -134,12 +136,13 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 /// Intersects a ray with a triangle in double precision, by Cramer's rule as in stage 2:
 /// `β (a - b) + γ (a - c) + t d = a - o`.
 ///
-/// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges belong
-/// to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. A hit counts if the range of the ray contains the rounded `t`. An
-/// input with NaN gives `None`, and every hit is finite. Scenes with `precision = "double"` are rendered with this function.
+/// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges
+/// belong to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. A hit counts if the range of the ray contains the
+/// rounded `t`. An input with NaN gives `None`, and every hit is finite. Scenes with `precision = "double"` are
+/// rendered with this function.
 ///
-/// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do not
-/// compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
+/// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do
+/// not compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
 ///
 /// Slide: "Cramer's Rule".
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
@@ -163,14 +166,14 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
     // </solution>
 }
 
-/// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, rounded to
-/// `f32` once.
+/// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, rounded
+/// to `f32` once.
 ///
-/// A ray that starts inside hits the far side. A sphere whose radius is 0, negative or NaN is never hit. An input with NaN
-/// gives `None`, and every `t` is finite.
+/// A ray that starts inside hits the far side. A sphere whose radius is 0, negative or NaN is never hit. An input with
+/// NaN gives `None`, and every `t` is finite.
 ///
-/// Pitfall: `(o - c).as_dvec3()` has an error of up to 3 thousandths of a radius for a sphere 100,000 radii away. The rest
-/// of the computation is then exact for a sphere at a wrong place.
+/// Pitfall: `(o - c).as_dvec3()` has an error of up to 3 thousandths of a radius for a sphere 100,000 radii away. The
+/// rest of the computation is then exact for a sphere at a wrong place.
 ///
 /// Slide: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
