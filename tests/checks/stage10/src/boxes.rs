@@ -50,7 +50,7 @@ impl Loss {
     fn describe(self) -> &'static str {
         match self {
             Loss::Inside => "you return None although the ray starts in the box: it enters at t_min",
-            Loss::Cancellation => "you compute b / d - o / d, which cancels: subtract before you divide",
+            Loss::Cancellation => "b / d - o / d cancels: subtract before you divide",
             Loss::Touch => "you return None for a flat or only touched box: compare with <= and not with <",
             Loss::Parallel => "the direction is 0 along an axis: 0 · ∞ is NaN, and -0.0 swaps the planes",
             Loss::Rounding => "rounding loses a corner of the box: multiply the exit by 1 + 2 γ₃",

@@ -14,14 +14,15 @@ use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-/// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A rounding in
-/// double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram scalars was wrong
-/// once at a margin above 1e-6 (at 5e-4, on a sliver: the condition number of its matrix is the square of length divided by
-/// width). No other method was. Code that rounds to single precision is wrong at margins of 0.3 to 0.7 on edges.
+/// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
+/// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram
+/// scalars was wrong once at a margin above 1e-6 (at 5e-4, on a sliver: the condition number of its matrix is the
+/// square of length divided by width). No other method was. Code that rounds to single precision is wrong at margins of
+/// 0.3 to 0.7 on edges.
 const IN_DOUBLE: f64 = 0.1;
 
-/// Triangles a million times as long as wide. The square is 1e12, and the method of plane and Gram scalars loses all digits
-/// of β and γ even in double precision. The exercise allows every method, so this distribution is left out.
+/// Triangles a million times as long as wide. The square is 1e12, and the method of plane and Gram scalars loses all
+/// digits of β and γ even in double precision. The exercise allows every method, so this distribution is left out.
 const TOO_THIN_FOR_GRAM: &str = "needle";
 
 const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was \
@@ -124,8 +125,8 @@ fn enlarged(query: &TriangleQuery) -> TriangleQuery {
     }
 }
 
-/// The same triangle and origin relative to `base`, with differences rounded to single precision. For code that converts
-/// those differences this is the same input. Its answer may be wrong for `query` and right for this input.
+/// The same triangle and origin relative to `base`, with differences rounded to single precision. For code that
+/// converts those differences this is the same input. Its answer may be wrong for `query` and right for this input.
 fn seen_from(base: Vec3, query: &TriangleQuery) -> TriangleQuery {
     let TriangleQuery { ray, triangle: Triangle { a, b, c } } = *query;
     TriangleQuery {
@@ -134,8 +135,8 @@ fn seen_from(base: Vec3, query: &TriangleQuery) -> TriangleQuery {
     }
 }
 
-/// Whether the student's code gives the same answers for all these inputs as for their rounded differences to one of the
-/// corners or to the origin, and `is_right` accepts these answers for the differences.
+/// Whether the student's code gives the same answers for all these inputs as for their rounded differences to one of
+/// the corners or to the origin, and `is_right` accepts these answers for the differences.
 fn is_converted_late<'a>(
     trial: &Trial<'_>,
     wrong: impl Iterator<Item = (&'a TriangleQuery, Option<TriangleHit>)> + Clone,

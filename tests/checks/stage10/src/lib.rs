@@ -1,10 +1,10 @@
 //! The checks of stage 10: stability.
 //!
-//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles in double precision) ·
-//! `rims` (spheres in double precision)
+//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles in double precision)
+//! · `rims` (spheres in double precision)
 //!
-//! [`oracle::exact`] gives the exact answers. An answer may differ from the exact one only if at most [`oracle::STABLE`]
-//! roundings decide, and a closed mesh must not leak at all.
+//! [`oracle::exact`] gives the exact answers. An answer may differ from the exact one only if at most
+//! [`oracle::STABLE`] roundings decide, and a closed mesh must not leak at all.
 
 mod boxes;
 mod doubles;

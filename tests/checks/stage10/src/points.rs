@@ -29,8 +29,8 @@ fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
     )
 }
 
-/// The height of the origin above the point on the side to which the ray goes, and the error bound of the point along the
-/// normal.
+/// The height of the origin above the point on the side to which the ray goes, and the error bound of the point along
+/// the normal.
 fn height(query: &OffsetQuery, origin: Vec3) -> (f64, f64) {
     let normal = query.normal.as_dvec3();
     let side = if normal.dot(query.direction.as_dvec3()) < 0.0 { -normal } else { normal };

@@ -14,21 +14,21 @@ use raykata::kit::SphereQuery;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// A verdict may be wrong if r² and |f⊥|² differ by less than this fraction of |f|², where f goes from the centre to the
-/// origin. The simplest method, b² - a c in double precision, has an error of at most 16 times 2^-53 there, because each
-/// product has eight roundings.
+/// A verdict may be wrong if r² and |f⊥|² differ by less than this fraction of |f|², where f goes from the centre to
+/// the origin. The simplest method, b² - a c in double precision, has an error of at most 16 times 2^-53 there, because
+/// each product has eight roundings.
 const UNDECIDED: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// The error of the nearest `t` that is allowed besides a unit of its last place, as a fraction of |f| / |d|. `t_ca - t_hc`
-/// in double precision loses 2^-48 of it for an origin near the surface, where both terms are as large as r and the chord
-/// is at least half as long.
+/// The error of the nearest `t` that is allowed besides a unit of its last place, as a fraction of |f| / |d|.
+/// `t_ca - t_hc` in double precision loses 2^-48 of it for an origin near the surface, where both terms are as large as
+/// r and the chord is at least half as long.
 const CANCELLED: f64 = 1.0 / (1u64 << 46) as f64;
 
 const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was converted stays rounded: convert the origin and the centre first";
 
-/// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away` radii
-/// from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is rounded in
-/// single precision.
+/// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away`
+/// radii from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is
+/// rounded in single precision.
 fn aimed(random: &mut Random, away: f64, aside: f64) -> SphereQuery {
     let radius = 10f32.powf(2.0 * random.signed());
     let reach = (f64::from(radius) * away) as f32;
@@ -49,7 +49,8 @@ fn ten_to(random: &mut Random, low: f64, high: f64) -> f64 {
     10f64.powf(low + (high - low) * f64::from(random.unit()))
 }
 
-/// A ray at the rim of a sphere 1 to 100,000 radii away, or a ray for which its range decides, from there or from inside.
+/// A ray at the rim of a sphere 1 to 100,000 radii away, or a ray for which its range decides, from there or from
+/// inside.
 fn at_rim(random: &mut Random) -> SphereQuery {
     let away = ten_to(random, 0.3, 5.0);
     // Aim at most half a radius off the centre: then either root is at least 8e-6 from t = 1.

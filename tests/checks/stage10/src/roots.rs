@@ -44,7 +44,8 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
                 "you return None, but the discriminant is far above 0: there are two roots",
             )));
         };
-        // Allow six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈ 3u.
+        // Allow six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈
+        // 3u.
         let near =
             |yours: f32, exact: f64| (f64::from(yours) - exact).abs() <= 10.0 * U * exact.abs() + 1e-44;
         if near(yours[0], expected[0]) && near(yours[1], expected[1]) {

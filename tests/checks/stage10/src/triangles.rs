@@ -29,8 +29,8 @@ pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQ
         .collect()
 }
 
-/// The same triangles and origins, with rays aimed well inside or a little beside an edge, where the distance is larger than
-/// rounding errors. Some rays are turned round, end before the triangle or begin behind it.
+/// The same triangles and origins, with rays aimed well inside or a little beside an edge, where the distance is larger
+/// than rounding errors. Some rays are turned round, end before the triangle or begin behind it.
 pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
     let mut random = Random::new(trial.seed, 4);
     let again = |TriangleQuery { ray, triangle }: &TriangleQuery| {
@@ -50,8 +50,8 @@ pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Tri
     queries.iter().map(again).collect()
 }
 
-// The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or more,
-// which is far above all rounding errors.
+// The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or
+// more, which is far above all rounding errors.
 pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> Outcome {
     for distribution in &DISTRIBUTIONS {
         let mut queries = draw(trial, distribution.name, 400);
