@@ -1,4 +1,4 @@
-//! Inputs as Rust that can be pasted into a test: every number with all its digits.
+//! Inputs as Rust expressions that can be pasted into a test. Every number has all its digits.
 
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
@@ -105,7 +105,7 @@ impl Paste for LightSample {
     }
 }
 
-/// What stage 4 uses of a material.
+/// The fields of a material that stage 4 uses.
 impl Paste for Material {
     fn paste(&self) -> String {
         format!(
@@ -172,7 +172,7 @@ pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String
     format!("[{}]", items.join(", "))
 }
 
-/// The arguments of the call that a query makes.
+/// A query as the call of the student's function.
 pub trait Arguments {
     /// `function(arguments)`.
     fn call(&self, function: &str) -> String;
