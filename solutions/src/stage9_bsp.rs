@@ -124,6 +124,7 @@ impl Scene<'_> {
 const STRADDLER: usize = 30;
 
 fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], depth: usize) -> u32 {
+    // Choose a plane, unless the node must be a leaf; then build both sides.
     let node = bsp.add_node(depth, scene.max_depth);
     let divided = ids.len() > scene.leaf_size && depth < scene.max_depth;
     match divided.then(|| scene.choose(ids)).flatten() {

@@ -70,8 +70,8 @@ pub fn widened(bounds: &[Aabb]) -> Widened {
 /// whole interval or `None`. A ray within the plane is on both sides. The result may be a single `t`; it is `None` if
 /// no `t` of the interval is above.
 ///
-/// Pitfall: `tHit <= t → snd` leaves out one side for a ray that starts in the plane. `direction = 0: origin <= value → left`
-/// leaves out one side for a ray that stays in it.
+/// Pitfall: `tHit <= t → snd` leaves out one side for a ray that starts in the plane.
+/// `direction = 0: origin <= value → left` leaves out one side for a ray that stays in it.
 ///
 /// Slide: "kd-Tree Traversal".
 #[inline]

@@ -132,8 +132,8 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 /// `None` if there is no hit, or if the ray misses the grid. Visit each cell at most once. At a corner, visit any
 /// sequence of cells that share a face.
 ///
-/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8). `tMax
-/// += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of the
+/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
+/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of the
 /// cell, in double precision.
 ///
 /// Slide: "Uniform Grid" (trace rays through grid cells).

@@ -52,6 +52,7 @@ struct Rules {
 }
 
 fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, rules: &Rules) -> u32 {
+    // Choose a plane, unless the node must be a leaf.
     let node = tree.add_node(depth, rules.max_depth);
     let divided = boxes.len() > rules.leaf_size && depth < rules.max_depth;
     match divided.then(|| choose_cut(boxes, &cell, depth, &rules.heuristics)).flatten() {
@@ -60,6 +61,7 @@ fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, ru
             tree.set_leaf(node, &ids);
         }
         Some((axis, at)) => {
+            // Divide the boxes between the two sides. A box that touches the plane goes to both.
             let part = |keep: &dyn Fn(&Aabb) -> bool| -> Vec<(u32, Aabb)> {
                 boxes.iter().filter(|(_, one)| keep(one)).copied().collect()
             };

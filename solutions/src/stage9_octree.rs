@@ -127,6 +127,7 @@ fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVe
         match octree.nodes[node as usize] {
             OctreeNode::Leaf { first, count } => return (first, count, cell),
             OctreeNode::Inner { first } => {
+                // Go to the octant that contains the point. On the middle plane, the direction decides.
                 let middle = cell.middle();
                 let upper = |axis: usize| {
                     point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0)

@@ -2,7 +2,7 @@
 //!
 //! The score of each test is normally distributed for a correct sampler. The test fails above a threshold that a
 //! correct sampler exceeds once in ten million times ([`FALSE_ALARMS`]). So the 22 tests of stage 6 together reject a
-//! correct submission less than once in 100,000 times, for any seed. `solutions/tests/calibration.rs` runs every
+//! correct submission less than once in 100,000 times, for any seed. `solutions/tests/suite/calibration.rs` runs every
 //! statistical check with 1,000 seeds, on the reference and on wrong distributions, of which each must be caught 990
 //! times.
 
@@ -18,10 +18,10 @@ const ONE_SIDED: f64 = 5.2;
 /// A normally distributed score is beyond ± this with probability [`FALSE_ALARMS`].
 const TWO_SIDED: f64 = 5.327;
 
-/// Cells along each side of the square into which samples are sorted.
+/// The number of cells along each side of the square into which samples are sorted.
 pub const CELLS: u32 = 8;
-/// Samples of a test: 384 in each of 64 cells. With two thirds of them `u^1.1` in place of `u` got by twice in a
-/// hundred times; now hardly ever.
+/// The number of samples of a test: 384 per cell in 64 cells. With two thirds of them the test missed `u^1.1` in place
+/// of `u` twice in a hundred times; with this number it hardly ever misses it.
 pub const SAMPLES: usize = 24_576;
 
 /// `count` pairs of random numbers in `0.0..1.0`, the same for the same seed.

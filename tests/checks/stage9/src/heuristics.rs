@@ -187,7 +187,7 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
         })
     };
     let all = cubes(crowd(0.0).chain(crowd(18.0)));
-    let what = "two crowds of 27 boxes in opposite corners of a cube of 20";
+    let what = "two groups of 27 boxes in opposite corners of a cube of side 20";
     let describe =
         |share: f64| format!("{:.0} % of the volume in empty leaves at depths 0 to 4", 100.0 * share);
     let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);

@@ -151,10 +151,10 @@ pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
         ("1000 boxes in one place", vec![cube; 1000]),
         ("1000 points in one place", vec![Aabb::new(Vec3::ONE, Vec3::ONE); 1000]),
         ("1000 boxes in one place and a point", std::iter::repeat_n(cube, 1000).chain([corner]).collect()),
-        ("24 boxes in one another", concentric),
+        ("24 concentric boxes", concentric),
         ("64 points in a line", line),
         ("100 points, each half as far as the one before", halving),
-        ("ten boxes of which six are everywhere", long.collect()),
-        ("boxes that are not numbers", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
+        ("ten boxes of which six cover everything", long.collect()),
+        ("boxes with NaN coordinates", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
     ]
 }

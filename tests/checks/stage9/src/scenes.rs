@@ -172,7 +172,7 @@ pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
         ("sixty spheres in one place", vec![sphere(1.0, 1.0, 1.0, 1.0); 60], looks(1.0, Vec3::ZERO)),
         ("twelve tiles in one plane", flat, looks(1.0, Vec3::ZERO)),
         ("twenty spheres in a line", line, looks(1.0, Vec3::ZERO)),
-        ("two of fifty primitives not numbers", with_broken, looks(1.0, Vec3::ZERO)),
+        ("fifty primitives of which two have NaN coordinates", with_broken, looks(1.0, Vec3::ZERO)),
         ("48 spheres at (1e5, -1e5, 2e5)", cluster(1.0, far), looks(1.0, far)),
         ("48 spheres of 1e-6", cluster(1e-6, Vec3::ZERO), looks(1e-6, Vec3::ZERO)),
         ("48 spheres of 1e30", cluster(1e30, Vec3::ZERO), looks(1e30, Vec3::ZERO)),
