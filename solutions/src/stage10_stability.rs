@@ -6,7 +6,7 @@
 //! Your functions of earlier stages may already be good enough. `cargo run --release -- gauntlet --kit exercises` shows
 //! what they cost and where they fail.
 //!
-//! In all of them a hit at `t` counts if `ray.contains(t)`, that is `t_min < t < t_max`: both ends are open.
+//! A hit with a triangle or a sphere counts if `ray.contains(t)`, that is `t_min < t < t_max`: both ends are open.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -91,8 +91,8 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
 ///
 /// The true surface lies within `error` of `point` along each axis. Move the point along the unit `normal` by
 /// `error · |normal|`, to the side to which `direction` goes, and then each coordinate by one float outwards, because
-/// the sum is rounded as well. The height above `point` may be at most 4 times this bound plus 64 rounding steps of the
-/// largest coordinate.
+/// the sum is rounded as well. If `direction` is perpendicular to the normal, take the side of the normal. The height
+/// above `point` may be at most 4 times this bound plus 64 rounding steps of the largest coordinate.
 ///
 /// Pitfall: any fixed distance is too small in one scene and too large in another. In a scene of size 0.001, a ray that
 /// starts 0.0001 away misses objects that touch the surface.
@@ -138,8 +138,8 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 ///
 /// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges
 /// belong to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. A hit counts if the range of the ray contains the
-/// rounded `t`. An input with NaN gives `None`, and every hit is finite. Scenes with `precision = "double"` are
-/// rendered with this function.
+/// rounded `t`. An input with NaN gives `None`, and so does a determinant of 0. Every hit is finite. Scenes with
+/// `precision = "double"` are rendered with this function.
 ///
 /// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do
 /// not compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
@@ -169,8 +169,8 @@ pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
 /// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, rounded
 /// to `f32` once.
 ///
-/// A ray that starts inside hits the far side. A sphere whose radius is 0, negative or NaN is never hit. An input with
-/// NaN gives `None`, and every `t` is finite.
+/// A ray that starts inside hits the far side. A ray that touches the sphere hits it. A sphere whose radius is 0,
+/// negative or NaN is never hit. An input with NaN gives `None`, and every `t` is finite.
 ///
 /// Pitfall: `(o - c).as_dvec3()` has an error of up to 3 thousandths of a radius for a sphere 100,000 radii away. The
 /// rest of the computation is then exact for a sphere at a wrong place.

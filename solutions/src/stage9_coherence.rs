@@ -2,6 +2,8 @@
 //! previous ray hit, and a packet of rays traverses the tree together.
 //!
 //! Slides: "Cache Node Intersections", "Other Accelerations" (screen space coherence: check > 1 ray at once).
+//!
+//! Given: [`Probe`] with `enter`, `open` and `hit`, as in stage 3; [`Cells`] with `hit`.
 
 use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::partition::Cells;

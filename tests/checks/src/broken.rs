@@ -61,7 +61,7 @@ impl Broken {
         Broken { diagnosis: diagnosis.map(Into::into), ..self }
     }
 
-    /// The whole message.
+    /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
     pub fn message(&self, check: &str, rubric: &Entry) -> String {
         let mut message = rubric.header();
         let _ = writeln!(message, "  input     {}", shorten(&self.input, 3));

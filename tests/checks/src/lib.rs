@@ -41,7 +41,7 @@ macro_rules! stage {
         pub const CHECKS: &[$crate::Check] =
             &[$($crate::Check { stage: $number, name: stringify!($name), law: $name }),*];
 
-        /// What the tests of this stage call.
+        /// The functions that the tests of this stage call.
         pub use $crate::{grade, linked};
 
         /// One test per check of the stage.

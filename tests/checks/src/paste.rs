@@ -13,11 +13,11 @@ use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 
 /// Something that can be written as a Rust expression.
 pub trait Paste {
-    /// The expression.
+    /// The value as a Rust expression.
     fn paste(&self) -> String;
 }
 
-/// `function(arguments)`.
+/// The call `function(arguments)` as Rust.
 pub fn call(function: &str, arguments: &[&dyn Paste]) -> String {
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.paste()).collect();
     format!("{function}({})", arguments.join(", "))
@@ -165,7 +165,7 @@ impl Paste for Polygon {
     }
 }
 
-/// `[a, b, c]`.
+/// The items as a Rust array, `[a, b, c]`.
 pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String {
     let items: Vec<String> =
         items.into_iter().map(|item| item.paste().trim_start_matches('&').to_owned()).collect();
@@ -174,7 +174,7 @@ pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String
 
 /// A query as the call of the student's function.
 pub trait Arguments {
-    /// `function(arguments)`.
+    /// The call `function(arguments)` as Rust.
     fn call(&self, function: &str) -> String;
 }
 

@@ -113,7 +113,7 @@ fn linear(picture: &RgbImage, x: u32, y: u32) -> Vec3 {
     Vec3::from_array(picture.get_pixel(x, y).0.map(|byte| (f32::from(byte) / 255.0).powi(2)))
 }
 
-/// Reference | yours | difference.
+/// The golden picture, yours, and four times their difference, side by side.
 fn side_by_side(yours: &[u8], golden: &RgbImage) -> RgbImage {
     let (width, height) = golden.dimensions();
     let mut wide = RgbImage::new(3 * width + 8, height);

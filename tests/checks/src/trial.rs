@@ -18,18 +18,18 @@ const PATIENCE: Duration = Duration::from_secs(15);
 /// The largest number of smaller inputs that are tried when a law is broken.
 const SHRINK_STEPS: usize = 400;
 
-/// A law with a name.
+/// A check: a law with the stage and the name under which it is graded.
 #[derive(Clone, Copy)]
 pub struct Check {
     /// The stage it belongs to.
     pub stage: u8,
-    /// A sentence about light or geometry, in snake case.
+    /// The name of the check: a sentence about light or geometry, in snake case.
     pub name: &'static str,
-    /// The law.
+    /// The function that tests whether a kit obeys the law.
     pub law: fn(&Trial<'_>) -> Outcome,
 }
 
-/// A kit on trial.
+/// A run of a check on a kit, with its random inputs.
 pub struct Trial<'a> {
     /// The kit whose answers are judged.
     pub kit: &'a dyn Kit,
@@ -52,7 +52,7 @@ pub enum Verdict {
     NotWritten {
         /// The text of the gap: what to write.
         task: String,
-        /// `file:line`.
+        /// The place of the gap, as `file:line`.
         place: String,
     },
     /// The law is broken, or the code crashed or did not end: the message for the student.
@@ -122,9 +122,9 @@ trait Law {
     fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
     /// The number of inputs.
     fn count(&self, values: &AnyValues) -> usize;
-    /// Judges all of them.
+    /// Judges all inputs.
     fn judge(&self, values: &AnyValues) -> Vec<Outcome>;
-    /// Judges one of them.
+    /// Judges one input.
     fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome>;
     /// The text of one input for a message.
     fn words(&self, values: &AnyValues, index: usize) -> String;

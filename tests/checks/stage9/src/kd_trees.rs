@@ -114,7 +114,7 @@ fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, 
     judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
 }
 
-/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded in two ways.
+/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
 pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outcome {
     let says = "traps A4 and A6: `hit.distance < t'` loses a hit on the far face, and the two t are rounded differently; keep the best hit, wherever its cell ends";
     for (size, rough) in [(1.0, false), (1.0, true), (100.0, true), (1e5, true)] {

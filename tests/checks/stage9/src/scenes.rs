@@ -10,7 +10,7 @@ use raykata::partition::corners;
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-/// A primitive.
+/// A primitive of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Thing {
     /// A sphere.

@@ -13,7 +13,7 @@ use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// A search of the student.
+/// One of the student's five searches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Searcher {
     Grid,
@@ -94,7 +94,7 @@ pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, 
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
-/// Whether the answer is that of brute force.
+/// Compares the answer with that of brute force.
 pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> Outcome {
     let expected = closest(hits, ray);
     let found = yours.hit.map(|hit| (hit.primitive, hit.t));
