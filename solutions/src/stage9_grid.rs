@@ -133,8 +133,8 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 /// sequence of cells that share a face.
 ///
 /// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
-/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of the
-/// cell, in double precision.
+/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
+/// the cell, in double precision.
 ///
 /// Slide: "Uniform Grid" (trace rays through grid cells).
 pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
