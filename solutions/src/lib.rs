@@ -1,4 +1,4 @@
-//! A ray tracer, stage by stage: one module per file of exercises. The last line connects them with the kit.
+//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the modules with the kit.
 
 pub mod stage10_stability;
 pub mod stage1_shapes;
@@ -20,5 +20,5 @@ pub mod stage9_octree;
 
 raykata::student_kit!();
 // <solution>
-// canary-answers-9b1f6c52: where this line is, answers have leaked.
+// canary-answers-9b1f6c52: a text that contains this line contains leaked answers.
 // </solution>

@@ -1,4 +1,4 @@
-//! Stage 9 · the BSP tree: planes in any direction, those of the polygons themselves.
+//! Stage 9 · the BSP tree: planes of any direction divide space, above all the planes of the polygons themselves.
 //!
 //! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
 //!
@@ -10,15 +10,24 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Bsp, BspNode, Cells, CutPlane};
 use raykata::ray::Ray;
 
-/// Builds a BSP tree over hulls: the corners of a polygon, or the eight of a box. Candidates for a cut are the planes of
-/// the polygons, and one across the longest extent in the middle of things, for those of a convex body divide nothing. The
-/// plane is taken that leaves few primitives on its fuller side, and fewer still on both. A leaf is made if there are no
-/// more than `leaf_size`, at `max_depth`, or if no plane leaves fewer on either side and less than 60 % on both.
+/// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
 ///
-/// A primitive is listed on each side that it reaches into; one that touches the plane, on both. What is not a number is
-/// left out.
+/// The candidates for a cut are the planes of the polygons, and one plane across the longest extent through the median
+/// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
+/// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
+/// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
+/// on both.
+///
+/// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out
+/// hulls that have no corner, or a corner with NaN or infinity. Without a usable hull the tree has no nodes.
+///
+/// Pitfall: many polygons in one plane, or around one line, are on both sides of each of their planes. The recursion
+/// must end there.
+///
+/// Slide: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
     // <solution>
+    // Leave out hulls that have no corner or a corner that is not finite.
     let usable = |hull: &[Vec3]| !hull.is_empty() && hull.iter().all(|corner| corner.is_finite());
     let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
     let corners: Vec<DVec3> = ids.iter().flat_map(|&id| &hulls[id as usize]).map(|p| p.as_dvec3()).collect();
@@ -27,7 +36,8 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 
     let mut bsp = Bsp::default();
     if !ids.is_empty() {
-        // As wide as the room that boxes get: 2⁻¹⁸ of the extent, or some steps of the largest coordinate.
+        // Allow as much room for rounding as `widened`: 2⁻¹⁸ of the extent, and at least 2⁻²² of the largest
+        // coordinate.
         let extent = (high - low).max_element() * (-18f64).exp2();
         let room = extent.max(low.abs().max(high.abs()).max_element() * (-22f64).exp2());
         let scene = Scene { hulls, room, leaf_size, max_depth };
@@ -47,7 +57,7 @@ struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// The primitives behind and in front of a plane.
+    /// The primitives that reach behind the plane, and those that reach in front of it.
     fn sides(&self, ids: &[u32], plane: &CutPlane) -> [Vec<u32>; 2] {
         let reaches = |id: u32, side: f64| {
             self.hulls[id as usize].iter().any(|corner| side * plane.distance(*corner) >= -self.room)
@@ -58,10 +68,12 @@ impl Scene<'_> {
     /// The plane of a hull, if all its corners lie in one.
     fn plane_of(&self, id: u32) -> Option<CutPlane> {
         let hull: Vec<DVec3> = self.hulls[id as usize].iter().map(|corner| corner.as_dvec3()).collect();
-        // Newell: the sum over the edges is twice the area times the normal, whichever corners are in a line.
+        // Compute the normal by Newell's method: the sum over the edges is twice the area times the normal, also if
+        // some corners lie in a line.
         let next = hull.iter().cycle().skip(1);
         let normal = hull.iter().zip(next).map(|(p, q)| (*p - hull[0]).cross(*q - hull[0])).sum::<DVec3>();
         let normal = normal.try_normalize()?;
+        // Refuse a hull of which a corner lies off the plane.
         let plane = CutPlane { normal, offset: normal.dot(hull[0]) };
         self.hulls[id as usize]
             .iter()
@@ -69,11 +81,13 @@ impl Scene<'_> {
             .then_some(plane)
     }
 
+    /// The planes to choose from: those of up to sixteen polygons, and one across the longest extent.
     fn candidates(&self, ids: &[u32]) -> Vec<CutPlane> {
-        // Sixteen polygons, spread over all: to try each against each takes too long.
+        // Take at most sixteen polygons, spread over the list, because testing each plane against all takes too long.
         let step = ids.len().div_ceil(16);
         let of_polygons = ids.iter().step_by(step).filter_map(|&id| self.plane_of(id));
-        // Across the longest extent: balanced cuts across one axis again and again make slices, and a ray meets them all.
+        // Choose the axis of the longest extent: repeated cuts across one axis make thin slices, and a ray crosses them
+        // all.
         let hull =
             |id: u32, axis: usize| self.hulls[id as usize].iter().map(move |corner| f64::from(corner[axis]));
         let extent = |axis: usize| {
@@ -81,6 +95,7 @@ impl Scene<'_> {
             all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
         };
         let longest = (0..3).max_by(|&p, &q| extent(p).total_cmp(&extent(q)));
+        // Put the plane between the two middle centres.
         let across = longest.map(|axis| {
             let center = |id: u32| hull(id, axis).sum::<f64>() / self.hulls[id as usize].len() as f64;
             let mut centers: Vec<f64> = ids.iter().map(|&id| center(id)).collect();
@@ -91,7 +106,8 @@ impl Scene<'_> {
         of_polygons.chain(across).collect()
     }
 
-    /// The plane that leaves the fewest on its fuller side, each on both sides counted as [`STRADDLER`] more; if it divides.
+    /// The plane that leaves the fewest primitives on its fuller side, where each primitive on both sides counts as
+    /// [`STRADDLER`] more; `None` if no plane divides the primitives.
     fn choose(&self, ids: &[u32]) -> Option<(CutPlane, [Vec<u32>; 2])> {
         let cuts = self.candidates(ids).into_iter().map(|plane| (plane, self.sides(ids, &plane)));
         let on_both = |[back, front]: &[Vec<u32>; 2]| back.len() + front.len() - ids.len();
@@ -103,11 +119,12 @@ impl Scene<'_> {
     }
 }
 
-/// What a primitive on both sides weighs against one on the fuller side. With 0, `raykata compare scenes/showcase.toml
-/// --size 160x90 --spp 1 --only bsp` counts 214 visits a ray, with 8 107, with 30 45.
+/// The cost of a primitive on both sides, relative to one on the fuller side. `raykata compare scenes/showcase.toml
+/// --size 160x90 --spp 1 --only bsp` counts 214 visits per ray with 0, 107 with 8 and 45 with 30.
 const STRADDLER: usize = 30;
 
 fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], depth: usize) -> u32 {
+    // Choose a plane, unless the node must be a leaf; then build both sides.
     let node = bsp.add_node(depth, scene.max_depth);
     let divided = ids.len() > scene.leaf_size && depth < scene.max_depth;
     match divided.then(|| scene.choose(ids)).flatten() {
@@ -122,12 +139,18 @@ fn divide(bsp: &mut Bsp, scene: &Scene<'_>, ids: &[u32], depth: usize) -> u32 {
 }
 // </solution>
 
-/// The closest hit: the side that the ray comes from first, then the other one, each with the part of the ray that is on
-/// it.
+/// Finds the closest hit. At each plane search the side of the ray's origin first and the other side second, each with
+/// the part of the ray that is on it.
 ///
-/// Where the formula lies: `if (t < min_t) || (t < max_t)) return no_intersection` gives up where the plane is behind the
-/// ray or beyond its end; there the ray is on one side all the way, and that side must be searched. A ray in the plane is
-/// on both sides, and so is one that starts on it.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit or no node. Visit a node at most once, and only if the ray enters it before the best hit.
+/// A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: `if (t < min_t) || (t < max_t)) return no_intersection` is wrong if the plane is behind the ray or beyond
+/// its end. There the ray is on one side along its whole length, and that side must be searched. A ray in the plane is
+/// on both sides, and so is a ray that starts on it; a primitive in the plane may be listed on one side only.
+///
+/// Slide: "Binary Space Partition (BSP) Tree".
 pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if bsp.nodes.is_empty() {
@@ -137,7 +160,7 @@ pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<Primi
     let mut best = None;
     search(bsp, 0, range(&ray), probe, &mut ray, &mut best);
     best
-    // <stub> todo!("search the near side of each plane first, then the far one if it can matter")
+    // <stub> todo!("search the near side of each plane first, then the far side unless the best hit is before it")
     // </solution>
 }
 
@@ -150,6 +173,7 @@ fn search(
     ray: &mut Ray,
     best: &mut Option<PrimitiveHit>,
 ) {
+    // Stop if the best hit lies before this node.
     if settled(best, part.0) {
         return;
     }
@@ -157,11 +181,13 @@ fn search(
     match bsp.nodes[node as usize] {
         BspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
+            // Compute the height of the origin above the plane, and its change per unit of t.
             let origin = ray.origin.as_dvec3();
             let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            // The height is a difference of numbers of this size, and off by some of their last digits.
+            // Bound the rounding error of the height, which is a difference of numbers of this size.
             let digits = plane.normal.abs().dot(origin.abs()) + plane.offset.abs();
             let room = ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;
+            // Find the part of the ray on each side, and search the nearer side first.
             let before = part_above(height, rate, room, part).map(|part| (front, part));
             let behind = part_above(-height, -rate, room, part).map(|part| (back, part));
             let in_order = if rate > 0.0 { [behind, before] } else { [before, behind] };

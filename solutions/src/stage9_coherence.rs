@@ -1,17 +1,27 @@
-//! Stage 9 · coherence: neighbouring rays meet the same things. A ray first asks about what the one before it met, and a
-//! packet of rays goes through the tree together.
+//! Stage 9 · coherence: neighbouring rays often hit the same primitive. A ray first tests the primitive that the
+//! previous ray hit, and a packet of rays traverses the tree together.
 //!
 //! Slides: "Cache Node Intersections", "Other Accelerations" (screen space coherence: check > 1 ray at once).
+//!
+//! Given: [`Probe`] with `enter`, `open` and `hit`, as in stage 3; [`Cells`] with `hit`.
 
 use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::partition::Cells;
 use raykata::ray::Ray;
 
-/// The most rays of a packet: as many as have a bit in a byte, or a lane in a wide register.
+/// The largest number of rays in a packet: one bit each of a byte, or one lane each of a wide register.
 pub const PACKET: usize = 8;
 
-/// The closest hit by `search`, which gets a ray that ends at the primitive that the ray before met first, if this ray
-/// meets it as well. The answer is the same as without, ties included; what lies behind is skipped from the start.
+/// Finds the closest hit faster by testing first the primitive `last` that the previous ray hit: `search` gets a ray
+/// that ends at this hit, so it skips everything behind it.
+///
+/// The answer is the same as that of `search` alone: of two hits at the same `t` the smaller primitive number wins, and
+/// a hit counts only within the range of `ray`. With `last = None`, or if the ray misses that primitive, `search` gets
+/// the whole ray.
+///
+/// Pitfall: the shortened ray may find no hit. Then the hit with `last` is the answer.
+///
+/// Slide: "Cache Node Intersections".
 pub fn closest_hit_cached<P: Cells>(
     last: Option<u32>,
     probe: &mut P,
@@ -19,11 +29,12 @@ pub fn closest_hit_cached<P: Cells>(
     search: impl FnOnce(&mut P, &Ray) -> Option<PrimitiveHit>,
 ) -> Option<PrimitiveHit> {
     // <solution>
+    // Test the primitive of the previous ray.
     let known = last.and_then(|primitive| {
         let t = probe.hit(primitive, ray)?;
         Some(PrimitiveHit { t, primitive })
     });
-    // One step beyond t, so that another primitive at the very same t is still heard.
+    // End the ray one float above t, so that a primitive at exactly the same t is still reported.
     let t_max = known.map_or(ray.t_max, |known| known.t.next_up().min(ray.t_max));
     let found = search(probe, &ray.with_range(ray.t_min, t_max));
     nearer(known, found)
@@ -41,11 +52,19 @@ fn nearer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Option<P
 }
 // </solution>
 
-/// The closest hits of all rays, in one traversal for every [`PACKET`] of them: a node is opened once if any ray enters
-/// it that has no hit before it, and then serves all that do. Each ray keeps its own range and its own best hit, and finds
-/// what it would find alone.
+/// Finds the closest hits of all rays, in one traversal per [`PACKET`] of them: open a node at most once, if at least
+/// one ray enters it before its best hit, and use it for all such rays.
+///
+/// Returns one result per ray, in order. Each ray keeps its own range and its own best hit, and gets the same answer as
+/// alone; of two hits at the same `t` the smaller primitive number wins. More than [`PACKET`] rays form several
+/// packets.
+///
+/// Pitfall: a node may be skipped only if no ray of the packet enters it, not as soon as one ray misses it.
+///
+/// Slide: "Other Accelerations".
 pub fn closest_hit_packet(bvh: &Bvh, probe: &mut impl Probe, rays: &[Ray]) -> Vec<Option<PrimitiveHit>> {
     // <solution>
+    // Traverse the tree once per packet of at most eight rays.
     let mut hits = Vec::with_capacity(rays.len());
     for rays in rays.chunks(PACKET) {
         let mut packet = Packet { rays: rays.to_vec(), best: vec![None; rays.len()] };
@@ -62,7 +81,7 @@ pub fn closest_hit_packet(bvh: &Bvh, probe: &mut impl Probe, rays: &[Ray]) -> Ve
 }
 
 // <solution>
-/// Where each ray enters a box; `None` for a ray that does not, or has ended before.
+/// The `t` at which each ray enters a box; `None` for a ray that misses the box or ends before it.
 type Entries = [Option<f32>; PACKET];
 
 struct Packet {
@@ -72,7 +91,7 @@ struct Packet {
 }
 
 impl Packet {
-    /// Asks about a box for all rays that are in its parent.
+    /// Computes the entries of a box for all rays that enter its parent.
     fn enter(&self, node: u32, probe: &mut impl Probe, parent: &Entries) -> Entries {
         let mut entries = [None; PACKET];
         for (index, ray) in self.rays.iter().enumerate() {
@@ -82,7 +101,7 @@ impl Packet {
     }
 
     fn search(&mut self, node: u32, bvh: &Bvh, probe: &mut impl Probe, entries: &Entries) {
-        // Rays that have met something nearer since they were asked leave the packet here.
+        // Remove the rays that have found a hit before this box since its entry was computed.
         let mut active = *entries;
         for (entry, ray) in active.iter_mut().zip(&self.rays) {
             *entry = entry.filter(|enter| *enter < ray.t_max);
@@ -90,6 +109,7 @@ impl Packet {
         if active.iter().all(Option::is_none) {
             return;
         }
+        // Open the node once for all remaining rays.
         match probe.open(node) {
             Contents::Leaf { first, count } => {
                 for &primitive in bvh.primitives(first, count) {
@@ -99,7 +119,7 @@ impl Packet {
             Contents::Inner { left, right } => {
                 let in_left = self.enter(left, probe, &active);
                 let in_right = self.enter(right, probe, &active);
-                // The rays vote which child is nearer.
+                // Let the rays vote which child is nearer, and search it first.
                 let votes: i32 = (0..PACKET)
                     .map(|index| match (in_left[index], in_right[index]) {
                         (Some(left), Some(right)) => i32::from(left <= right) - i32::from(right < left),

@@ -1,9 +1,9 @@
-//! Stage 9 · the uniform grid: cells of one size, and rays that go from one to the next.
+//! Stage 9 · the uniform grid: cells of equal size, and a search that steps along the ray from cell to cell.
 //!
-//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells; "How choose suitable grid
-//! resolution?").
+//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells; "How choose suitable
+//! grid resolution?").
 //!
-//! Given: [`Grid`] with `plane` (where a cell begins), `number` and `primitives`.
+//! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
 
 use crate::stage9_cells::{look_into, settled, span, widened};
 use glam::{DVec3, UVec3};
@@ -12,18 +12,26 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Grid, MOST_CELLS_ALONG};
 use raykata::ray::Ray;
 
-/// How many cells along each axis make about `density · n_primitives` cells that are nearly cubes. An axis along which the
-/// box is thinner than a cell gets one; no axis gets more than [`MOST_CELLS_ALONG`]. An empty box, or nothing in it, is
-/// one cell.
+/// Chooses the number of cells along each axis, such that the grid has about `density · n_primitives` cells that are
+/// nearly cubes.
+///
+/// An axis along which the box is thinner than a cell gets one cell. Every axis gets at least 1 and at most
+/// [`MOST_CELLS_ALONG`] cells. An empty box, a single point and `n_primitives = 0` get one cell.
+///
+/// Pitfall: a flat box has no volume. Use the area of the two remaining axes, or the length of the one remaining axis.
+///
+/// Slide: "Uniform Grid" (How choose suitable grid resolution?).
 pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     // <solution>
+    // Return one cell for an empty box, or if one cell is enough.
     let n_cells = f64::from(density) * n_primitives as f64;
     let size = bounds.max.as_dvec3() - bounds.min.as_dvec3();
     if bounds.is_empty() || !size.is_finite() || !(n_cells > 1.0) {
         return UVec3::ONE;
     }
 
-    // The side of a cube of which n fill the box: sⁿ = extents / n over the axes that are not thinner than that.
+    // Compute the side of a cube of which `n_cells` fill the box: over k axes, sideᵏ = product of their sizes /
+    // n_cells. Drop the axes that are thinner than the side, and repeat.
     let mut thick: Vec<usize> = (0..3).filter(|&axis| size[axis] > 0.0).collect();
     let side = loop {
         let volume: f64 = thick.iter().map(|&axis| size[axis]).product();
@@ -37,6 +45,7 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
             break side;
         }
     };
+    // Divide each thick axis into cells of about this side.
     let along = |axis: usize| {
         if thick.contains(&axis) {
             (size[axis] / side).round().clamp(1.0, f64::from(MOST_CELLS_ALONG))
@@ -49,7 +58,15 @@ pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     // </solution>
 }
 
-/// Puts each primitive into all cells that its box reaches into, touching included.
+/// Builds a grid of `resolution` cells over the box around all primitives: lists each primitive in all cells that its
+/// box overlaps.
+///
+/// A box that touches a cell overlaps it. Each primitive is listed once per cell. Empty boxes and boxes with NaN are
+/// left out. An axis with resolution 0 gets one cell.
+///
+/// Pitfall: the quotient that gives the index of a cell is rounded. Compare with [`Grid::plane`] after the division.
+///
+/// Slide: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     // <solution>
     let widened = widened(bounds);
@@ -58,21 +75,25 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     let mut grid =
         Grid { bounds: widened.around, resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
 
-    // Count, add up, and fill from the end of each cell to its beginning: then starts are where they should be.
+    // Count the entries per cell, sum the counts up, and fill each list from its end: then `starts` holds the
+    // beginnings.
     let each_cell = |grid: &Grid, one: &Aabb| -> Vec<u32> {
         let low = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.min[axis]))));
         let high = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.max[axis]))));
         let rows = (low.z..=high.z).flat_map(|z| (low.y..=high.y).map(move |y| (y, z)));
         rows.flat_map(|(y, z)| (low.x..=high.x).map(move |x| grid.number(UVec3::new(x, y, z)))).collect()
     };
+    // Count the entries of each cell.
     for (_, one) in &widened.boxes {
         each_cell(&grid, one).into_iter().for_each(|cell| grid.starts[cell as usize] += 1);
     }
+    // Turn the counts into the ends of the lists.
     let mut sum = 0;
     for start in &mut grid.starts {
         sum += *start;
         *start = sum;
     }
+    // Fill the lists from their ends.
     grid.items = vec![0; sum as usize];
     for (id, one) in widened.boxes.iter().rev() {
         for cell in each_cell(&grid, one) {
@@ -82,18 +103,18 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
         }
     }
     grid
-    // <stub> todo!("for each box find the first and the last cell on each axis, and list it in all between")
+    // <stub> todo!("for each box find the first and the last cell on each axis, and list it in all cells between")
     // </solution>
 }
 
 // <solution>
-/// The cell along `axis` that holds coordinate `at`; the nearest one if none does.
+/// The index along `axis` of the cell that contains coordinate `at`, or of the nearest cell if it is outside.
 fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
     let (first, last) = (grid.plane(axis, 0), grid.plane(axis, grid.resolution[axis]));
     let n = grid.resolution[axis];
-    // A flat grid divides by 0, and NaN becomes 0.
+    // Divide by the cell size. A flat grid divides by 0; NaN becomes 0.
     let mut index = (((at - first) / (last - first) * f64::from(n)) as u32).min(n - 1);
-    // The quotient is rounded; the planes decide.
+    // Correct the index by comparing with the planes, because the quotient is rounded.
     while index > 0 && at < grid.plane(axis, index) {
         index -= 1;
     }
@@ -104,12 +125,21 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 }
 // </solution>
 
-/// The closest hit: from the cell that the ray enters first to the next one, until the best hit lies before the cell.
+/// Finds the closest hit: visits the cells in the order in which the ray enters them, and stops when the best hit lies
+/// before the next cell.
 ///
-/// Where the formula lies: the hit of a cell need not be in it, and a later cell may hold a nearer one; `tMax += tDelta`
-/// adds up roundings, so that in a fine grid wrong cells are visited: work out `t` from the number of the cell.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, or if the ray misses the grid. Visit each cell at most once. At a corner, visit any
+/// sequence of cells that share a face.
+///
+/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
+/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
+/// the cell, in double precision.
+///
+/// Slide: "Uniform Grid" (trace rays through grid cells).
 pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
+    // Find the cell in which the ray enters the grid.
     let bounds = Cell::new(&grid.bounds);
     let (enter, leave) = span(ray, &bounds)?;
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
@@ -119,11 +149,12 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
     let mut ray = *ray;
     let mut best = None;
     loop {
+        // Test the primitives of the cell.
         let number = grid.number(cell);
         probe.visit(number);
         look_into(grid.primitives(number), probe, &mut ray, &mut best);
 
-        // The axis along which the ray leaves the cell first, and when.
+        // Find the axis along which the ray leaves the cell first, and the t of the exit.
         let (mut axis, mut exit) = (0, f64::INFINITY);
         for candidate in 0..3 {
             let plane = grid.plane(candidate, cell[candidate] + u32::from(direction[candidate] > 0.0));
@@ -132,17 +163,19 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
                 (axis, exit) = (candidate, t);
             }
         }
+        // Stop at the end of the grid or of the ray, or if the best hit lies before the exit.
         let at_the_end =
             if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
         if exit.is_infinite() || exit > leave || at_the_end || settled(&best, exit) {
             return best;
         }
+        // Step across the face.
         if direction[axis] > 0.0 {
             cell[axis] += 1;
         } else {
             cell[axis] -= 1;
         }
     }
-    // <stub> todo!("look into the cell, find the nearest of its three far planes, and step across it")
+    // <stub> todo!("test the cell's primitives, find the nearest of its three far planes, and step across it")
     // </solution>
 }

@@ -1,4 +1,4 @@
-//! Stage 9 · the kd-tree: planes across the axes, put where five heuristics want them.
+//! Stage 9 · the kd-tree: planes across the axes divide space, and five heuristics choose the planes.
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
@@ -10,14 +10,26 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 
-/// Builds a kd-tree from the top down. A node with more than `leaf_size` primitives is divided, if it is not at
-/// [`KdTree::most_depth`] yet and not all primitives would be on both sides. A primitive that touches a plane is on both.
+/// Builds a kd-tree from the root down.
 ///
-/// Each heuristic does one thing: `longest_axis` cuts across the longest side of the cell, or else across x, y, z by
-/// turns, from x at the root; `balanced_counts` keeps the counts of the two sides alike; `few_straddlers` keeps those on
-/// both few (together, the sum of the difference and the number on both is least; with neither the cut is in the middle);
-/// `cut_off_empty_space` takes a margin of a tenth of the cell or more away first; `stop_at_overlap` makes a leaf if 60 %
-/// of those on one side would also be on the other.
+/// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
+/// depth 0) or all primitives would be on both sides. A plane lies within its cell. List a primitive once in every leaf
+/// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
+/// Without a usable box the tree has no nodes.
+///
+/// Each heuristic can be switched on alone:
+/// - `longest_axis` cuts across the longest side of the cell. Without it the cuts take x, y, z in turn, with x at the
+///   root.
+/// - `balanced_counts` minimises the difference of the counts of the two sides.
+/// - `few_straddlers` minimises the number of primitives on both sides. With both heuristics the sum of the two numbers
+///   is minimal; with neither the cut is in the middle of the cell.
+/// - `cut_off_empty_space` first cuts off an empty margin of more than a tenth of the cell.
+/// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides.
+///
+/// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
+/// there.
+///
+/// Slides: "Kd-Trees", "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     // <solution>
     let widened = widened(bounds);
@@ -40,6 +52,7 @@ struct Rules {
 }
 
 fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, rules: &Rules) -> u32 {
+    // Choose a plane, unless the node must be a leaf.
     let node = tree.add_node(depth, rules.max_depth);
     let divided = boxes.len() > rules.leaf_size && depth < rules.max_depth;
     match divided.then(|| choose_cut(boxes, &cell, depth, &rules.heuristics)).flatten() {
@@ -48,6 +61,7 @@ fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, ru
             tree.set_leaf(node, &ids);
         }
         Some((axis, at)) => {
+            // Divide the boxes between the two sides. A box that touches the plane goes to both.
             let part = |keep: &dyn Fn(&Aabb) -> bool| -> Vec<(u32, Aabb)> {
                 boxes.iter().filter(|(_, one)| keep(one)).copied().collect()
             };
@@ -62,46 +76,50 @@ fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, ru
     node
 }
 
-/// Axis and place of the plane, if the node should be divided.
+/// The axis and the coordinate of the plane, or `None` if the node should be a leaf.
 fn choose_cut(
     boxes: &[(u32, Aabb)],
     cell: &Aabb,
     depth: usize,
     heuristics: &KdHeuristics,
 ) -> Option<(usize, f32)> {
+    // Cut off an empty margin first.
     if heuristics.cut_off_empty_space
         && let Some(cut) = widest_margin(boxes, cell)
     {
         return Some(cut);
     }
+    // Order the axes: in turn by depth, or the longest side of the cell first.
     let mut axes = [depth % 3, (depth + 1) % 3, (depth + 2) % 3];
     if heuristics.longest_axis {
         let size = |axis: usize| f64::from(cell.max[axis]) - f64::from(cell.min[axis]);
         axes.sort_by(|&p, &q| size(q).total_cmp(&size(p)).then(p.cmp(&q)));
     }
-    // A cell may be flat on an axis, and then there is nothing to cut.
+    // Take the first axis on which the cell can be cut: a flat cell has no plane inside.
     let (axis, at) = axes.into_iter().find_map(|axis| Some((axis, place(boxes, cell, axis, heuristics)?)))?;
 
+    // Refuse a plane that divides nothing, or one with too much overlap.
     let (n_left, n_right, n_both) = sides(boxes, axis, at);
     let overlap = n_both > 0 && 10 * n_both >= 6 * n_left.min(n_right);
     (n_both < boxes.len() && !(heuristics.stop_at_overlap && overlap)).then_some((axis, at))
 }
 
-/// How many are on the left, on the right, and on both sides.
+/// The numbers of primitives on the left, on the right, and on both sides.
 fn sides(boxes: &[(u32, Aabb)], axis: usize, at: f32) -> (usize, usize, usize) {
     let n_left = boxes.iter().filter(|(_, one)| one.min[axis] <= at).count();
     let n_right = boxes.iter().filter(|(_, one)| one.max[axis] >= at).count();
     (n_left, n_right, n_left + n_right - boxes.len())
 }
 
-/// The cut that takes the widest empty margin away, if it is a tenth of the cell.
+/// The cut that removes the widest empty margin, if it is wider than a tenth of the cell.
 fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
+    // Compute the box around the primitives.
     let around =
         boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
     let mut widest = (0.1, None);
     for axis in 0..3 {
         let [low, high] = [cell.min[axis], cell.max[axis]].map(f64::from);
-        // One step off the primitives, which would otherwise touch the plane and be on both sides.
+        // Put the plane one float away from the primitives: if they touched it, they would be on both sides.
         for (at, margin) in [
             (around.min[axis].next_down(), f64::from(around.min[axis]) - low),
             (around.max[axis].next_up(), high - f64::from(around.max[axis])),
@@ -115,8 +133,9 @@ fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
     widest.1
 }
 
-/// The best place for a plane across `axis`, if the cell has any extent there.
+/// The best coordinate for a plane across `axis`; `None` if the cell has no extent on this axis.
 fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeuristics) -> Option<f32> {
+    // Cut in the middle if both heuristics are off.
     let (low, high) = (cell.min[axis], cell.max[axis]);
     let midpoint = |p: f32, q: f32| 0.5 * p + 0.5 * q;
     let middle = midpoint(low, high);
@@ -125,7 +144,8 @@ fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeurist
         return Some(middle).filter(inside);
     }
 
-    // Counts change only where a box begins or ends; half way between two such places nothing is touched.
+    // Try the middle between neighbouring ends of boxes: counts change only at these ends, and a plane between them
+    // touches no box.
     let sorted = |side: fn(&Aabb) -> glam::Vec3| {
         let mut sorted: Vec<f32> = boxes.iter().map(|(_, one)| side(one)[axis]).collect();
         sorted.sort_by(f32::total_cmp);
@@ -136,6 +156,7 @@ fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeurist
     edges.sort_by(f32::total_cmp);
     let gaps = edges.windows(2).map(|pair| midpoint(pair[0], pair[1]));
 
+    // Take the plane with the lowest cost; of equal ones the one nearest to the middle of the cell.
     let cost = |at: f32| {
         let n_left = begins.partition_point(|begin| *begin <= at);
         let n_right = boxes.len() - ends.partition_point(|end| *end < at);
@@ -147,11 +168,18 @@ fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeurist
 }
 // </solution>
 
-/// The closest hit, with the interval of `t` in which the ray is in each cell: the nearer side of a plane first, then the
-/// farther one, unless the best hit lies before it.
+/// Finds the closest hit, with the interval of `t` in which the ray is in each cell: searches the near side of each
+/// plane first, then the far side, unless the best hit lies before it.
 ///
-/// Where the formula lies: `hit.distance < t'` drops a wall on the face of the box, and what reaches out of its leaf; and
-/// a ray in the plane, or from it, is on both sides, for a builder may list what lies in the plane on one side only.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit a node at most once, and only
+/// if the ray enters it before the best hit. A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: `hit.distance < t'` loses a wall on the face of the box, and a primitive that extends beyond its leaf
+/// (traps A4 and A6). A ray in the plane, or one that starts on it, is on both sides (trap A5), because a builder may
+/// list a primitive in the plane on one side only.
+///
+/// Slide: "kd-Tree Traversal" with `t` and `t'`.
 pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if tree.nodes.is_empty() {
@@ -162,7 +190,7 @@ pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<P
     let mut best = None;
     search(tree, 0, part, probe, &mut ray, &mut best);
     best
-    // <stub> todo!("search the nearer side of each plane first, then the farther one if it can matter")
+    // <stub> todo!("search the near side of each plane first, then the far side unless the best hit is before it")
     // </solution>
 }
 
@@ -175,6 +203,7 @@ fn search(
     ray: &mut Ray,
     best: &mut Option<PrimitiveHit>,
 ) {
+    // Stop if the best hit lies before this node.
     if settled(best, part.0) {
         return;
     }
@@ -182,9 +211,11 @@ fn search(
     match tree.nodes[node as usize] {
         KdNode::Leaf { first, count } => look_into(tree.primitives(first, count), probe, ray, best),
         KdNode::Inner { axis, at, left, right } => {
+            // Compute the height of the origin above the plane, and its change per unit of t.
             let axis = usize::from(axis);
             let (height, rate) =
                 (f64::from(ray.origin[axis]) - f64::from(at), f64::from(ray.direction[axis]));
+            // Find the part of the ray on each side, and search the nearer side first.
             let room = ROUNDING * height.abs();
             let above = part_above(height, rate, room, part).map(|part| (right, part));
             let below = part_above(-height, -rate, room, part).map(|part| (left, part));

@@ -1,7 +1,7 @@
-//! Stage 9 · the octree: cells that are divided in eight wherever there is much, and two ways through it.
+//! Stage 9 · the octree: cells with many primitives are divided into eight octants. It has two searches.
 //!
-//! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or, check
-//! rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
+//! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
+//! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
 //! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`.
 
@@ -12,19 +12,24 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Octree, OctreeNode};
 use raykata::ray::Ray;
 
-/// Divides the box around all, made a cube, into octants for as long as there are more than `leaf_size` primitives and it
-/// helps, down to `max_depth` (the root is at depth 0). A primitive is listed in every leaf that its box reaches into,
-/// touching included. Nothing makes no node.
+/// Builds an octree: makes a cube of the box around all primitives, and divides every cell that holds more than
+/// `leaf_size` primitives into octants.
 ///
-/// Where the formula lies: a thousand copies of one box reach into the same octants again and again; if all octants
-/// together would hold more than three times as many, a leaf is better.
+/// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
+/// its octants together would hold more than three times as many primitives. List a primitive once in every leaf that
+/// its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.
+///
+/// Pitfall: a thousand copies of one box are in the same octants at every level. Without the limit on the growth the
+/// build does not end in reasonable time.
+///
+/// Slide: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     // <solution>
     let widened = widened(bounds);
     if widened.boxes.is_empty() {
         return Octree::empty();
     }
-    // From the corner of the box and not around its middle: what is flat would lie between the octants.
+    // Extend the box to a cube from its lower corner: around its middle, a flat box would lie between the octants.
     let around = widened.around;
     let side = (around.max - around.min).max_element().min(f32::MAX);
     let mut cube = Aabb::new(around.min, (around.min + side).max(around.max));
@@ -44,15 +49,18 @@ struct Limits {
 }
 
 fn divide(octree: &mut Octree, node: u32, boxes: &[(u32, Aabb)], cell: Cell, depth: usize, limits: &Limits) {
+    // List the boxes that touch each octant.
     let octants: [Vec<(u32, Aabb)>; 8] = std::array::from_fn(|octant| {
         let part = cell.octant(octant);
         boxes.iter().filter(|(_, one)| part.touches(one)).copied().collect()
     });
+    // Make a leaf if the primitives are few, or if dividing does not help.
     let n_below: usize = octants.iter().map(Vec::len).sum();
     if boxes.len() <= limits.leaf_size || depth >= limits.max_depth || n_below > 3 * boxes.len() {
         let ids: Vec<u32> = boxes.iter().map(|(id, _)| *id).collect();
         return octree.set_leaf(node, &ids);
     }
+    // Divide the node, and build its octants.
     let first = octree.divide(node, depth + 1, limits.max_depth);
     for (octant, boxes) in octants.iter().enumerate() {
         divide(octree, first + octant as u32, boxes, cell.octant(octant), depth + 1, limits);
@@ -60,13 +68,23 @@ fn divide(octree: &mut Octree, node: u32, boxes: &[(u32, Aabb)], cell: Cell, dep
 }
 // </solution>
 
-/// The closest hit, from cell to cell: find the leaf that holds the point at which the ray enters, look into it, go on
-/// just past its exit. Every node on the way down to a leaf is visited.
+/// Finds the closest hit from cell to cell: goes down from the root to the leaf that contains the point of entry, tests
+/// its primitives, and continues with the leaf behind its exit.
+///
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit every node on the way down to
+/// a leaf, and each leaf at most once. A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: a point on a face belongs to two cells. Take the cell that the ray is about to enter, and set the point
+/// exactly on the face; otherwise the search makes no progress along edges.
+///
+/// Slide: "Octree" (trace rays through neighbor cells).
 pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if octree.nodes.is_empty() {
         return None;
     }
+    // Find the point at which the ray enters the root cell.
     let root = Cell::new(&octree.bounds);
     let (enter, leave) = span(ray, &root)?;
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
@@ -74,9 +92,11 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
     let mut ray = *ray;
     let mut best = None;
     loop {
+        // Test the primitives of the leaf that contains the point.
         let (first, count, cell) = leaf_at(octree, probe, point, direction);
         look_into(octree.primitives(first, count), probe, &mut ray, &mut best);
 
+        // Find the face through which the ray leaves the leaf.
         let (mut axis, mut exit, mut face) = (0, f64::INFINITY, 0.0);
         for candidate in 0..3 {
             let far = if direction[candidate] > 0.0 { cell.max[candidate] } else { cell.min[candidate] };
@@ -85,20 +105,21 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
                 (axis, exit, face) = (candidate, t, far);
             }
         }
+        // Stop at the end of the root cell or of the ray, or if the best hit lies before the exit.
         let outside = if direction[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
         if exit.is_infinite() || exit > leave || outside || settled(&best, exit) {
             return best;
         }
-        // Exactly on the face, and not beside the cell by a rounding: so each step gets ahead.
+        // Move the point to the exit, exactly on the face: a rounding error could put it back into the same cell.
         point = (origin + exit * direction).clamp(cell.min, cell.max);
         point[axis] = face;
     }
-    // <stub> todo!("go down to the leaf that holds the point, look into it, and go on at its exit")
+    // <stub> todo!("go down to the leaf that contains the point, test its primitives, and continue at its exit")
     // </solution>
 }
 
 // <solution>
-/// The leaf that holds `point`. A point on a face is in the cell that a ray in this direction is about to enter.
+/// The leaf that contains `point`. A point on a face is in the cell that a ray in this direction is about to enter.
 fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVec3) -> (u32, u32, Cell) {
     let (mut node, mut cell) = (0, Cell::new(&octree.bounds));
     loop {
@@ -106,6 +127,7 @@ fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVe
         match octree.nodes[node as usize] {
             OctreeNode::Leaf { first, count } => return (first, count, cell),
             OctreeNode::Inner { first } => {
+                // Go to the octant that contains the point. On the middle plane, the direction decides.
                 let middle = cell.middle();
                 let upper = |axis: usize| {
                     point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0)
@@ -118,11 +140,17 @@ fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVe
 }
 // </solution>
 
-/// The closest hit, from the root down: of the octants that the ray meets the nearest one first, and none beyond the best
-/// hit.
+/// Finds the closest hit from the root down: searches the octants that the ray enters in the order of their entries,
+/// and stops at an octant that begins behind the best hit.
 ///
-/// Where the formula lies: "sort eight boxes" needs an order for boxes that are entered at one `t`, and the hit of an
-/// octant need not be in it: stop only at an octant that begins behind the best hit.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit each node at most once, and
+/// only if the ray enters it before the best hit.
+///
+/// Pitfall: "sort eight boxes" needs an order also for octants that the ray enters at the same `t`. A primitive of an
+/// octant may be hit outside the octant, so stop only at an octant that begins behind the best hit (trap A9).
+///
+/// Slide: "Octree" (sort eight boxes front-to-back).
 pub fn closest_hit(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     // <solution>
     if octree.nodes.is_empty() {
@@ -151,6 +179,7 @@ fn search(
     match octree.nodes[node as usize] {
         OctreeNode::Leaf { first, count } => look_into(octree.primitives(first, count), probe, ray, best),
         OctreeNode::Inner { first } => {
+            // Collect the octants that the ray enters.
             let mut met = [(0.0, 0, *cell); 8];
             let mut n_met = 0;
             for octant in 0..8 {
@@ -160,8 +189,10 @@ fn search(
                     n_met += 1;
                 }
             }
-            // Stable, so octants that are entered at one t come in the order of their numbers.
+            // Sort them by entry. The sort is stable, so octants with the same entry stay in the order of their
+            // numbers.
             met[..n_met].sort_by(|p, q| p.0.total_cmp(&q.0));
+            // Search them in this order, and stop where the best hit lies before an octant.
             for (enter, octant, part) in &met[..n_met] {
                 if settled(best, *enter) {
                     break;

@@ -1,9 +1,9 @@
-//! A law that was broken, and how it is describe: at most twelve lines, the next command last.
+//! A broken law and its message: at most twelve lines, with the next command last.
 
 use crate::rubric::Entry;
 use std::fmt::Write;
 
-/// What a check finds.
+/// The result of a check.
 pub type Outcome = Result<(), Broken>;
 
 /// A broken law with the smallest input that breaks it.
@@ -11,16 +11,16 @@ pub type Outcome = Result<(), Broken>;
 pub struct Broken {
     /// The call, as Rust that can be pasted into a test.
     pub input: String,
-    /// What came back.
+    /// The answer of the student's code.
     pub yours: String,
-    /// What should have come back.
+    /// The expected answer.
     pub expected: String,
-    /// Where `expected` comes from: a closed form, double precision, brute force …
+    /// The origin of `expected`: a closed form, double precision, brute force …
     pub source: &'static str,
-    /// The mistake that makes just this answer, if it is a known one.
+    /// The known mistake that gives this answer, if there is one.
     pub diagnosis: Option<String>,
-    /// Reference, yours and difference side by side, as a PNG file, if pictures were compared by somebody who
-    /// [writes nothing](crate::golden::seal).
+    /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
+    /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
 }
 
@@ -29,7 +29,7 @@ pub struct Broken {
 pub struct Png(pub Vec<u8>);
 
 impl Broken {
-    /// `yours` came back for `input` where `expected` should have, according to `source`.
+    /// A broken law: for `input` the code returned `yours`, but `source` gives `expected`.
     pub fn new(
         input: impl Into<String>,
         yours: impl std::fmt::Debug,
@@ -39,7 +39,7 @@ impl Broken {
         Broken::with_texts(input, format!("{yours:?}"), format!("{expected:?}"), source)
     }
 
-    /// The same with words in place of values.
+    /// The same with texts in place of values.
     pub fn with_texts(
         input: impl Into<String>,
         yours: impl Into<String>,
@@ -56,12 +56,12 @@ impl Broken {
         }
     }
 
-    /// Adds what the answer looks like, if it looks like anything.
+    /// Adds the known mistake that the answer looks like, if there is one.
     pub fn looks_like(self, diagnosis: Option<impl Into<String>>) -> Self {
         Broken { diagnosis: diagnosis.map(Into::into), ..self }
     }
 
-    /// The whole message.
+    /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
     pub fn message(&self, check: &str, rubric: &Entry) -> String {
         let mut message = rubric.header();
         let _ = writeln!(message, "  input     {}", shorten(&self.input, 3));
@@ -79,7 +79,7 @@ pub fn next_commands(stage: u8, check: &str) -> String {
     format!("  again: cargo test --test stage{stage} {check}\n  stuck: cargo run -- hint {check}\n")
 }
 
-/// At most `lines` lines of text, each at most 160 characters.
+/// The first `lines` lines of a text, each cut after 400 characters.
 fn shorten(text: &str, lines: usize) -> String {
     let mut cut: Vec<String> = text
         .lines()

@@ -1,5 +1,5 @@
-//! Reference answers in double precision, each with how sure it is: where single precision cannot be expected to
-//! decide, nothing is judged. (Exact verdicts, for stage 10, are another matter.)
+//! Reference answers in double precision, each with a tolerance. If single precision cannot decide between hit and
+//! miss, no answer is judged. (Stage 10 uses exact verdicts instead.)
 
 use glam::{DVec3, Vec3};
 use raykata::aabb::Aabb;
@@ -7,22 +7,22 @@ use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
 use raykata::shape::{Plane, Sphere, Triangle};
 
-/// One rounding of an `f32`, relative.
+/// The largest relative error of one rounding to `f32`.
 pub const U: f64 = f32::EPSILON as f64 / 2.0;
 
-/// What a correct method in single precision may answer for a `t`.
+/// The answers for `t` that a correct method in single precision may give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expected {
-    /// No hit that counts.
+    /// No hit in the range of the ray.
     Miss,
-    /// A hit at `t`, give or take `tolerance`.
+    /// A hit at `t` ± `tolerance`.
     Hit {
-        /// Where.
+        /// The `t` in double precision.
         t: f64,
-        /// How far an `f32` method may be off.
+        /// The largest error of a correct method in single precision.
         tolerance: f64,
     },
-    /// Too close to call.
+    /// Hit and miss are both accepted, because single precision cannot decide.
     Open,
 }
 
@@ -36,7 +36,7 @@ impl Expected {
         }
     }
 
-    /// In words.
+    /// The text for messages.
     pub fn words(&self) -> String {
         match self {
             Expected::Miss => "None".into(),
@@ -53,18 +53,19 @@ pub struct Roots {
     pub near: f64,
     /// The larger `t`.
     pub far: f64,
-    /// How far an `f32` method may be off.
+    /// The largest error of a correct method in single precision.
     pub tolerance: f64,
 }
 
-/// The roots of a line and a sphere; `Err(true)` if the line clearly misses, `Err(false)` if it is too close to call.
+/// The roots of a line and a sphere; `Err(true)` if the line clearly misses, `Err(false)` if single precision cannot
+/// decide.
 pub fn sphere_roots(ray: &Ray, sphere: &Sphere) -> Result<Roots, bool> {
     let direction = ray.direction.as_dvec3();
     let f = ray.origin.as_dvec3() - sphere.center.as_dvec3();
     let radius = f64::from(sphere.radius);
     let along = -f.dot(direction) / direction.length_squared();
     let distance = (f + along * direction).length();
-    // f is rounded, and so is each step of its part at right angles to the ray: some sixteen roundings of |f|.
+    // Allow sixteen roundings of |f|: f is rounded, and so is each step of its component perpendicular to the ray.
     let slack = 16.0 * U * (f.length() + radius);
     if distance > radius + slack {
         return Err(true);
@@ -74,12 +75,12 @@ pub fn sphere_roots(ray: &Ray, sphere: &Sphere) -> Result<Roots, bool> {
     }
     let half = (radius * radius - distance * distance).sqrt();
     let length = direction.length();
-    // The half chord moves by distance / half for each step sideways: steep near the rim.
+    // The half chord changes by distance / half per unit of distance, which is large near the rim.
     let tolerance = 2.0 * slack * (1.0 + distance / half) / length;
     Ok(Roots { near: along - half / length, far: along + half / length, tolerance })
 }
 
-/// What a ray meets first of a sphere.
+/// The first hit of a ray with a sphere.
 pub fn sphere(ray: &Ray, sphere: &Sphere) -> Expected {
     match sphere_roots(ray, sphere) {
         Err(true) => Expected::Miss,
@@ -102,7 +103,7 @@ fn first_in_range(ray: &Ray, roots: &[f64], tolerance: f64) -> Expected {
     Expected::Miss
 }
 
-/// Where a ray meets a plane.
+/// The hit of a ray with a plane.
 pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     let (normal, direction) = (plane.normal.as_dvec3(), ray.direction.as_dvec3());
     let offset = plane.point.as_dvec3() - ray.origin.as_dvec3();
@@ -110,7 +111,7 @@ pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     if slope == 0.0 {
         return Expected::Miss;
     }
-    // Each dot product is off by a few roundings of its largest term.
+    // Bound the error of each dot product by a few roundings of its largest term.
     let distance_slack = 8.0 * U * (offset.abs().dot(normal.abs()));
     let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
     if slope.abs() <= 16.0 * slope_slack {
@@ -121,16 +122,16 @@ pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     first_in_range(ray, &[t], tolerance)
 }
 
-/// What a correct method in single precision may answer for a triangle.
+/// The answers for a triangle that a correct method in single precision may give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleExpected {
     /// Hit, miss or open, and `t`.
     pub t: Expected,
-    /// Weight of `b`.
+    /// The barycentric coordinate of `b`.
     pub beta: f64,
-    /// Weight of `c`.
+    /// The barycentric coordinate of `c`.
     pub gamma: f64,
-    /// How far the weights may be off.
+    /// The largest error of `beta` and `gamma`.
     pub tolerance: f64,
 }
 
@@ -143,7 +144,7 @@ impl TriangleExpected {
                 || hit.is_none_or(|hit| near(hit.beta, self.beta) && near(hit.gamma, self.gamma)))
     }
 
-    /// In words.
+    /// The text for messages.
     pub fn words(&self) -> String {
         match self.t {
             Expected::Hit { t, .. } => {
@@ -157,8 +158,8 @@ impl TriangleExpected {
     }
 }
 
-/// Where a ray meets a triangle: Cramer's rule in double precision, with a margin for the rounding of single
-/// precision in all the ways that students may choose.
+/// The hit of a ray with a triangle, by Cramer's rule in double precision. The tolerance covers the rounding errors of
+/// all methods that students may choose in single precision.
 pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
     let [a, b, c, o, d] = [triangle.a, triangle.b, triangle.c, ray.origin, ray.direction].map(Vec3::as_dvec3);
     let (u, v, s) = (b - a, c - a, o - a);
@@ -172,8 +173,8 @@ pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
     let beta = -d.dot(s.cross(v)) / slope;
     let gamma = -d.dot(u.cross(s)) / slope;
 
-    // How much a rounding of the inputs' size moves the results: the sizes of all terms over the size of the sum.
-    // The square of the angle at which the edges meet enters once more for methods that divide by |u × v|².
+    // Compute how much a rounding error of the size of the inputs changes the results: the sizes of all terms divided
+    // by the size of the sum. `thin` enters twice, because some methods divide by |u × v|².
     let thin = u.length() * v.length() / normal.length();
     let steep = d.length() * normal.length() / slope.abs();
     let reach = s.length().max(t.abs() * d.length()) + u.length().max(v.length());
@@ -194,20 +195,20 @@ pub fn triangle(ray: &Ray, triangle: &Triangle) -> TriangleExpected {
     TriangleExpected { t: verdict, beta, gamma, tolerance }
 }
 
-/// The point of a triangle at `(β, γ)`.
+/// The point of a triangle with the barycentric coordinates `(β, γ)`.
 pub fn triangle_point(triangle: &Triangle, beta: f64, gamma: f64) -> DVec3 {
     let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
     a + beta * (b - a) + gamma * (c - a)
 }
 
-/// Where an infinite line along `ray` enters and leaves a box, which is closed; `(inf, -inf)` if it passes by.
+/// The `t` at which an infinite line along `ray` enters and leaves a closed box; `(inf, -inf)` if it misses the box.
 pub fn box_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (near, far) = slabs_interval(ray, bounds);
     if near <= far { (near, far) } else { (f64::INFINITY, f64::NEG_INFINITY) }
 }
 
-/// The last `t` at which an infinite line enters a slab of a box and the first at which it leaves one. Where the first is
-/// the larger one the line passes by, and their difference says by how much.
+/// The largest `t` at which an infinite line enters a slab of a box, and the smallest at which it leaves one. If the
+/// entry is larger than the exit, the line misses the box, and their difference is a measure of the distance.
 pub fn slabs_interval(ray: &Ray, bounds: &Aabb) -> (f64, f64) {
     let (mut near, mut far) = (f64::NEG_INFINITY, f64::INFINITY);
     for axis in 0..3 {

@@ -5,24 +5,24 @@ use proptest::prelude::*;
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-/// A coordinate within `reach` of zero, on a grid of 1/8: such numbers are short to print, and sums and products of a
+/// A coordinate in `-reach..=reach`, on a grid of 1/8. Such numbers are short in messages, and sums and products of a
 /// few of them are exact.
 fn coordinate(reach: i32) -> impl Strategy<Value = f32> + Clone {
     (-8 * reach..=8 * reach).prop_map(|eighths| eighths as f32 / 8.0)
 }
 
-/// A point on a grid of 1/8, each coordinate within `reach` of zero.
+/// A point on a grid of 1/8, each coordinate in `-reach..=reach`.
 pub fn point(reach: i32) -> impl Strategy<Value = Vec3> + Clone {
     (coordinate(reach), coordinate(reach), coordinate(reach)).prop_map(|(x, y, z)| Vec3::new(x, y, z))
 }
 
-/// A point with full mantissas, each coordinate within `reach` of zero.
+/// A point with full mantissas, each coordinate in `-reach..reach`.
 pub fn rough_point(reach: f32) -> impl Strategy<Value = Vec3> + Clone {
     let range = -reach..reach;
     (range.clone(), range.clone(), range).prop_map(|(x, y, z)| Vec3::new(x, y, z))
 }
 
-/// A direction of any length but zero, on a grid of 1/8.
+/// A direction on a grid of 1/8, of any length except zero.
 pub fn direction() -> impl Strategy<Value = Vec3> + Clone {
     point(4).prop_map(|v| if v == Vec3::ZERO { Vec3::X } else { v })
 }
@@ -47,7 +47,7 @@ pub fn triangle() -> impl Strategy<Value = Triangle> + Clone {
     (point(4), point(4), point(4)).prop_map(|(a, b, c)| Triangle { a, b, c })
 }
 
-/// A power of ten between `10^low` and `10^high`, with a mantissa.
+/// A positive number between `10^low` and `10^high`, uniform in its logarithm.
 pub fn magnitude(low: f32, high: f32) -> impl Strategy<Value = f32> + Clone {
     (low..high).prop_map(|exponent| 10f32.powf(exponent))
 }

@@ -1,4 +1,5 @@
-//! Golden texts: trees, tables and counts that any correct solution prints alike, kept by insta in `tests/golden`.
+//! Golden texts: trees, tables and counts that are the same for every correct solution. insta keeps them in
+//! `tests/golden`.
 
 use crate::broken::{Broken, Outcome};
 use raykata::kit::kit_error;
@@ -6,18 +7,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static SEALED: AtomicBool = AtomicBool::new(false);
 
-/// From here on this process writes nothing beside the golden texts and pictures and lets no variable of its environment
-/// change a verdict: for whoever judges code of others.
+/// From now on this process writes no files beside the golden texts and pictures, and environment variables do not
+/// change a verdict. The grader calls this before it judges submissions.
 pub fn seal() {
     SEALED.store(true, Ordering::Relaxed);
 }
 
-/// Whether nothing may be written.
+/// Whether [`seal`] was called.
 pub(crate) fn is_sealed() -> bool {
     SEALED.load(Ordering::Relaxed)
 }
 
-/// Compares `text` with the golden text `name`. `INSTA_UPDATE=always cargo test -p solutions` writes it anew.
+/// Compares `text` with the golden text `name`. `INSTA_UPDATE=always cargo test -p solutions` writes it again.
 pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden");
     let mut settings = insta::Settings::clone_current();

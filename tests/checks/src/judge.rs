@@ -1,8 +1,8 @@
-//! Small things that every stage needs to judge answers.
+//! Helper functions with which every stage judges answers.
 
 use crate::broken::Outcome;
 
-/// A diagnosis that is not empty.
+/// The diagnosis, or `None` if it is empty.
 pub fn known(diagnosis: &str) -> Option<&str> {
     (!diagnosis.is_empty()).then_some(diagnosis)
 }

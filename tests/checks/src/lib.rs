@@ -1,8 +1,9 @@
-//! What all checks share: how a check runs, how it words a failure, and how it compares numbers, trees, texts and pictures.
+//! The code that all checks share: it runs a check, writes its message, and compares numbers, trees, texts and
+//! pictures.
 //!
-//! Each stage is a crate of its own beside this one, so that a student builds the checks of one stage only. A check asks a
-//! [`raykata::kit::Kit`] through its door and never knows whose code answers. It is a function that gives `Ok(())` or a
-//! [`Broken`] law with the smallest input that breaks it.
+//! The checks of each stage are a separate crate beside this one, so that a student builds the checks of one stage
+//! only. A check calls a [`raykata::kit::Kit`] and does not know whose code answers. It is a function that returns
+//! `Ok(())` or a [`Broken`] law with the smallest input that breaks it.
 
 pub mod broken;
 pub mod double;
@@ -24,7 +25,7 @@ pub use broken::{Broken, Outcome};
 pub use drawn::Drawn;
 pub use trial::{Check, Trial, Verdict, examine, examine_with, grade, run, verdict};
 
-/// The functions of a crate as a kit that checks can ask.
+/// The functions of a crate as a kit that checks can call.
 pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
     functions.door()
 }
@@ -32,7 +33,7 @@ pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
 /// Lists the checks of a stage in the crate of that stage, and makes the macro that turns them into tests of a kit:
 /// `stage1_checks::tests!(kit)`.
 ///
-/// The leading `($ crate)` lends the inner macro its dollar sign and the crate of the stage.
+/// The leading `($ crate)` passes a dollar sign and the crate of the stage to the inner macro.
 #[macro_export]
 macro_rules! stage {
     (($d:tt $crate_of_stage:tt) $number:literal [$($name:ident)*]) => {
@@ -40,10 +41,10 @@ macro_rules! stage {
         pub const CHECKS: &[$crate::Check] =
             &[$($crate::Check { stage: $number, name: stringify!($name), law: $name }),*];
 
-        /// What the tests of this stage call.
+        /// The functions that the tests of this stage call.
         pub use $crate::{grade, linked};
 
-        /// One test for each check of the stage.
+        /// One test per check of the stage.
         #[macro_export]
         macro_rules! tests {
             ($d kit:expr) => {

@@ -1,4 +1,4 @@
-//! Inputs as Rust that can be pasted into a test: every number with all its digits.
+//! Inputs as Rust expressions that can be pasted into a test. Every number has all its digits.
 
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
@@ -13,11 +13,11 @@ use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
 
 /// Something that can be written as a Rust expression.
 pub trait Paste {
-    /// The expression.
+    /// The value as a Rust expression.
     fn paste(&self) -> String;
 }
 
-/// `function(arguments)`.
+/// The call `function(arguments)` as Rust.
 pub fn call(function: &str, arguments: &[&dyn Paste]) -> String {
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.paste()).collect();
     format!("{function}({})", arguments.join(", "))
@@ -105,7 +105,7 @@ impl Paste for LightSample {
     }
 }
 
-/// What stage 4 uses of a material.
+/// The fields of a material that stage 4 uses.
 impl Paste for Material {
     fn paste(&self) -> String {
         format!(
@@ -165,16 +165,16 @@ impl Paste for Polygon {
     }
 }
 
-/// `[a, b, c]`.
+/// The items as a Rust array, `[a, b, c]`.
 pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String {
     let items: Vec<String> =
         items.into_iter().map(|item| item.paste().trim_start_matches('&').to_owned()).collect();
     format!("[{}]", items.join(", "))
 }
 
-/// The arguments of the call that a query makes.
+/// A query as the call of the student's function.
 pub trait Arguments {
-    /// `function(arguments)`.
+    /// The call `function(arguments)` as Rust.
     fn call(&self, function: &str) -> String;
 }
 

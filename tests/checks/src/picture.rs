@@ -1,7 +1,7 @@
-//! Golden pictures, and what to do when one differs.
+//! Comparison of pictures with golden pictures.
 //!
-//! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Up to the stated
-//! share of pixels may differ, because correct methods round differently along outlines; the rest may not.
+//! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Only a stated
+//! fraction of the pixels may differ, because correct methods round differently along outlines.
 
 use crate::broken::{Broken, Outcome, Png};
 use crate::golden as golden_texts;
@@ -14,17 +14,17 @@ use raykata::ray::Ray;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-/// How far a channel may be off: four steps of a screen that shows 6 bits.
+/// The largest accepted error of a channel, of 255.
 const CHANNEL_TOLERANCE: u8 = 8;
 
-/// Size of the pictures that are put together here.
+/// The size of the pictures that are assembled here.
 const WIDTH: u32 = 80;
 const HEIGHT: u32 = 60;
 
 /// One ray through the middle of each pixel of a small picture, row by row from the top.
 ///
-/// Graded pictures are put together here, from answers about many rays at once, so that they show one stage and do
-/// not break when another is broken.
+/// Graded pictures are assembled here from the answers for many rays at once. So they show one stage only, and an error
+/// in another stage does not change them.
 pub fn rays(eye: Vec3, target: Vec3) -> Vec<Ray> {
     let camera = Camera::new(eye, target - eye, Vec3::Y, 45.0, WIDTH as f32 / HEIGHT as f32);
     let camera = camera.expect("the eye is not above its target");
@@ -44,8 +44,8 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
     0.5 * normal + 0.5
 }
 
-/// Compares `film`, whose pixels were asked for along `rays`, with the golden picture `name`, of which a share of `may_differ` pixels may differ.
-/// `INSTA_UPDATE=always cargo test -p solutions` writes it anew.
+/// Compares `film`, whose pixels belong to `rays`, with the golden picture `name`. A fraction `may_differ` of the
+/// pixels may differ. `INSTA_UPDATE=always cargo test -p solutions` writes the golden picture again.
 pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcome {
     let golden_file =
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
@@ -87,7 +87,7 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
     };
     let not_a_number = match yours.not_a_number {
         0 => String::new(),
-        n => format!(", and {n} are not numbers"),
+        n => format!(", and {n} are NaN"),
     };
     let broken = Broken::with_texts(
         format!("{input}\n{written}the ray of the worst pixel: {}", rays[worst].paste()),
@@ -102,7 +102,8 @@ pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcom
     Err(Broken { picture, ..broken })
 }
 
-/// Gamma 2 for files: the codes whose colours, halfway to the code before, are not above the given one.
+/// The encoding with gamma 2: each code stands for the colours from halfway to the code below to halfway to the code
+/// above.
 fn gamma() -> impl Fn(f32) -> u8 {
     let starts: Vec<f32> = (1..=255).map(|code| ((code as f32 - 0.5) / 255.0).powi(2)).collect();
     move |linear| starts.partition_point(|start| *start <= linear) as u8
@@ -112,7 +113,7 @@ fn linear(picture: &RgbImage, x: u32, y: u32) -> Vec3 {
     Vec3::from_array(picture.get_pixel(x, y).0.map(|byte| (f32::from(byte) / 255.0).powi(2)))
 }
 
-/// Reference | yours | difference.
+/// The golden picture, yours, and four times their difference, side by side.
 fn side_by_side(yours: &[u8], golden: &RgbImage) -> RgbImage {
     let (width, height) = golden.dimensions();
     let mut wide = RgbImage::new(3 * width + 8, height);
@@ -121,7 +122,7 @@ fn side_by_side(yours: &[u8], golden: &RgbImage) -> RgbImage {
             let at = 3 * (y * width + x) as usize;
             let mine = [yours[at], yours[at + 1], yours[at + 2]];
             let theirs = golden.get_pixel(x, y).0;
-            // Four times the difference, so that a small one can be seen.
+            // Show four times the difference, so that a small one is visible.
             let difference = [0, 1, 2].map(|i| mine[i].abs_diff(theirs[i]).saturating_mul(4));
             for (column, pixel) in [theirs, mine, difference].into_iter().enumerate() {
                 wide.put_pixel(column as u32 * (width + 4) + x, y, image::Rgb(pixel));
@@ -138,7 +139,7 @@ fn png(picture: &RgbImage) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes the pictures side by side and says where.
+/// Writes the pictures side by side, and returns a line with the name of the file.
 fn write_side_by_side(name: &str, wide: &RgbImage) -> String {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../out"));
     let file = folder.join(format!("{name}.png"));

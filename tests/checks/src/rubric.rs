@@ -1,3 +1,3 @@
-//! The rubric, which `raykata::rubric` reads.
+//! The rubric, as `raykata::rubric` reads it.
 
 pub use raykata::rubric::*;

@@ -1,9 +1,9 @@
-//! Whether numbers are distributed as they should be: two tests with a stated rate of false alarms.
+//! Two tests of whether numbers have the expected distribution, with a stated rate of false alarms.
 //!
-//! Each test gives a score that is normally distributed if all is right, and cries wolf beyond a threshold that right
-//! code passes but once in ten million times ([`FALSE_ALARMS`]): the 22 tests of stage 6 together take points from a right
-//! submission less than once in 100,000, whatever the seed it is graded with. `solutions/tests/calibration.rs` runs every
-//! statistical check with 1,000 seeds: on the reference, and on wrong distributions, each of which has to be caught 990
+//! The score of each test is normally distributed for a correct sampler. The test fails above a threshold that a
+//! correct sampler exceeds once in ten million times ([`FALSE_ALARMS`]). So the 22 tests of stage 6 together reject a
+//! correct submission less than once in 100,000 times, for any seed. `solutions/tests/suite/calibration.rs` runs every
+//! statistical check with 1,000 seeds, on the reference and on wrong distributions, of which each must be caught 990
 //! times.
 
 use crate::broken::{Broken, Outcome};
@@ -11,27 +11,28 @@ use glam::{UVec2, Vec2};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
 
-/// How often a test rejects right code.
+/// The probability that a test rejects a correct sampler.
 pub const FALSE_ALARMS: f64 = 1e-7;
 /// A normally distributed score is above this with probability [`FALSE_ALARMS`].
 const ONE_SIDED: f64 = 5.2;
 /// A normally distributed score is beyond ± this with probability [`FALSE_ALARMS`].
 const TWO_SIDED: f64 = 5.327;
 
-/// Cells along each side of the square into which samples are sorted.
+/// The number of cells along each side of the square into which samples are sorted.
 pub const CELLS: u32 = 8;
-/// Samples of a test: 384 in each of 64 cells. With two thirds of them `u^1.1` in place of `u` got by twice in a hundred
-/// times; now hardly ever.
+/// The number of samples of a test: 384 per cell in 64 cells. With two thirds of them the test missed `u^1.1` in place
+/// of `u` twice in a hundred times; with this number it hardly ever misses it.
 pub const SAMPLES: usize = 24_576;
 
-/// Pairs of random numbers in `0.0..1.0`, the same for the same seed.
+/// `count` pairs of random numbers in `0.0..1.0`, the same for the same seed.
 pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
     let pair = |index| Points::new(Sampler::Random, seed, index, 0, 1).stratum(Purpose::Pixel, 0, 1).u;
     (0..count as u64).map(pair).collect()
 }
 
-/// The chi-square score of cells that should be hit alike: by Wilson and Hilferty's approximation normally distributed
-/// (so far out a seventh too cautious for 63 degrees of freedom), large if the counts are too uneven.
+/// The chi-square score of cells that should be hit equally often. It is normally distributed by the approximation of
+/// Wilson and Hilferty, and large if the counts are too uneven. At this threshold and 63 degrees of freedom, the
+/// approximation gives about a seventh fewer false alarms than stated.
 pub fn chi_square_score(counts: &[u64]) -> f64 {
     let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
     let chi_square: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
@@ -40,19 +41,19 @@ pub fn chi_square_score(counts: &[u64]) -> f64 {
     ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
-/// The score of Student's test: by how many standard errors the mean of `values` is off. With thousands of values it
-/// is normally distributed.
+/// The score of Student's t-test: the error of the mean of `values` in standard errors. With thousands of values it is
+/// normally distributed.
 pub fn mean_score(values: &[f64], expected: f64) -> f64 {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (n - 1.0);
     let standard_error = (variance / n).sqrt();
-    // Values that are all the same have no spread: then they have to be right.
+    // Equal values have no standard error. Then the mean must be exact.
     if standard_error > 0.0 { (mean - expected) / standard_error } else { (mean - expected) * f64::MAX }
 }
 
-/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call; `diagnosis` may say what cells
-/// that are hit too often or too rarely look like, and where it has nothing to say the pattern of the counts may.
+/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call. `diagnosis` may name a known
+/// mistake from the counts of the cells; if it returns an empty text, the pattern of the counts is described.
 pub fn covers_evenly(
     what: &str,
     places: &[(f64, f64)],
@@ -80,7 +81,7 @@ pub fn covers_evenly(
         format!("{:.3}..{:.3}", f64::from(cell) / f64::from(CELLS), f64::from(cell + 1) / f64::from(CELLS))
     };
     let input = format!(
-        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal likelihood",
+        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal probability",
         places.len(),
         axes[0],
         axes[1],
@@ -101,22 +102,26 @@ pub fn covers_evenly(
     }))
 }
 
-/// What uneven cells look like, whatever they are cells of.
+/// A description of uneven counts that does not depend on the sampler.
 fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
     let sums = [columns(counts), counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect()];
     for (sums, axis) in sums.iter().zip(axes) {
         let (first, last) = (sums[0], sums[CELLS as usize - 1]);
         if sums.contains(&0) {
-            return Some(format!("of {axis} only a part comes up"));
+            return Some(format!("your samples cover only a part of the range of {axis}"));
         }
-        // Far outside of chance: thousands of samples in each of them, give or take two in a hundred.
+        // The difference is far above random variation: each sum has thousands of samples, with a deviation of about 2
+        // %.
         if 2 * first > 3 * last || 2 * last > 3 * first {
-            return Some(format!("crowded where {axis} is {}", if first > last { "small" } else { "large" }));
+            return Some(format!(
+                "too many samples where {axis} is {}",
+                if first > last { "small" } else { "large" }
+            ));
         }
     }
     let hit = counts.iter().filter(|count| **count > 0).count();
     (hit <= counts.len() / 2)
-        .then(|| "one random number for both: u.x is for one of them, u.y for the other".into())
+        .then(|| "one random number for both: use u.x for one of them and u.y for the other".into())
 }
 
 /// Checks that the mean of `values` is `expected`.
@@ -135,7 +140,7 @@ pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> O
     Err(broken.looks_like((!diagnosis.is_empty()).then_some(diagnosis)))
 }
 
-/// Hits in each column of the cells.
+/// The number of hits per column of the cells.
 pub fn columns(counts: &[u64]) -> Vec<u64> {
     let column = |x: usize| counts.iter().skip(x).step_by(CELLS as usize).sum();
     (0..CELLS as usize).map(column).collect()
@@ -145,21 +150,22 @@ pub fn columns(counts: &[u64]) -> Vec<u64> {
 mod tests {
     use super::*;
 
-    /// Scores of right numbers, for 2,000 seeds.
+    /// How often the score of correct numbers is above the threshold, for 2,000 seeds.
     fn alarms(score: impl Fn(u64) -> f64, threshold: f64) -> usize {
         (0..2000).filter(|&seed| score(seed) > threshold).count()
     }
 
-    /// No number of seeds shows one in ten million: the tails themselves, for an odd number of degrees of freedom a sum.
+    /// Too many seeds would be needed to observe one case in ten million, so this computes the tails. For an odd number
+    /// of degrees of freedom the tail of chi-square is a sum.
     #[test]
     fn thresholds_are_where_tails_are_as_thin_as_stated() {
-        // Φ(-z) by its continued fraction, good to all digits from z = 3 on.
+        // Compute Φ(-z) by its continued fraction, which is accurate from z = 3 on.
         let normal = |z: f64| {
             let fraction = (1..60).rev().fold(z, |below, k| z + f64::from(k) / below);
             (-0.5 * z * z).exp() / (std::f64::consts::TAU.sqrt() * fraction)
         };
         assert!((normal(TWO_SIDED) * 2.0 / FALSE_ALARMS - 1.0).abs() < 0.01);
-        // The chi-square that has the score ONE_SIDED, and how likely more is.
+        // Compute the chi-square with the score ONE_SIDED, and the probability of a larger one.
         let freedom = f64::from(CELLS * CELLS) - 1.0;
         let spread = 2.0 / (9.0 * freedom);
         let half = 0.5 * freedom * (1.0 - spread + ONE_SIDED * spread.sqrt()).powi(3);

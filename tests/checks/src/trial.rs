@@ -1,5 +1,4 @@
-//! Running a check: on a thread with a deep stack, with a limit on how long it may take, and with the same inputs
-//! every time.
+//! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
 use crate::broken::{self, Broken, Outcome};
 use crate::drawn::{Drawn, Values};
@@ -13,60 +12,60 @@ use std::panic::Location;
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
 
-/// A check that takes longer hangs. The slowest takes a third of a second in a development build.
+/// The time limit of a check. The slowest check takes a third of a second in a development build.
 const PATIENCE: Duration = Duration::from_secs(15);
 
-/// How many smaller inputs are tried once a law is broken.
+/// The largest number of smaller inputs that are tried when a law is broken.
 const SHRINK_STEPS: usize = 400;
 
-/// A law with a name.
+/// A check: a law with the stage and the name under which it is graded.
 #[derive(Clone, Copy)]
 pub struct Check {
     /// The stage it belongs to.
     pub stage: u8,
-    /// A sentence about light or geometry, in snake case.
+    /// The name of the check: a sentence about light or geometry, in snake case.
     pub name: &'static str,
-    /// The law.
+    /// The function that tests whether a kit obeys the law.
     pub law: fn(&Trial<'_>) -> Outcome,
 }
 
-/// A kit on trial.
+/// A run of a check on a kit, with its random inputs.
 pub struct Trial<'a> {
-    /// Whose answers are judged.
+    /// The kit whose answers are judged.
     pub kit: &'a dyn Kit,
-    /// The check, for file names and for inputs that differ from check to check.
+    /// The name of the check. It selects the random inputs together with `seed`.
     pub name: &'static str,
-    /// Picks the random inputs.
+    /// The seed of the random inputs.
     pub seed: u64,
-    /// How often inputs were drawn.
+    /// How often this trial has drawn inputs.
     draws: Cell<u32>,
-    /// Those that were drawn before.
+    /// The inputs that were drawn before, if they are kept.
     drawn: Option<Arc<Drawn>>,
 }
 
-/// How a check ended.
+/// The result of a check for the student.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// The law holds.
     Passed,
-    /// There is no code to judge.
+    /// The student's function is still a gap.
     NotWritten {
-        /// What is to be written.
+        /// The text of the gap: what to write.
         task: String,
-        /// `file:line`.
+        /// The place of the gap, as `file:line`.
         place: String,
     },
-    /// The law is broken, or the code did not come back: the message for the student.
+    /// The law is broken, or the code crashed or did not end: the message for the student.
     Failed(String),
 }
 
 impl<'a> Trial<'a> {
-    /// Of `kit` by the check `name`, with the inputs of `seed`.
+    /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
         Trial { kit, name, seed, draws: Cell::new(0), drawn: None }
     }
 
-    /// Draws `cases` inputs, has `judge` look at all of them at once, and shrinks the first that breaks the law.
+    /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
     #[track_caller]
     pub fn forall<S: Strategy>(
         &self,
@@ -80,7 +79,7 @@ impl<'a> Trial<'a> {
         self.hold(cases, &Judged { inputs, judge }, Location::caller())
     }
 
-    /// The part of [`Trial::forall`] that is the same for all types, and so is compiled once.
+    /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.
     fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> Outcome {
         let draw = || law.draw(cases, &mut self.runner());
         let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
@@ -92,7 +91,7 @@ impl<'a> Trial<'a> {
             Ok(outcomes) => {
                 outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
             }
-            // Some input of the batch made the code panic: ask one at a time which.
+            // The code panicked on an input of the batch: judge the inputs one by one to find it.
             Err(KitError::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
                 let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
                 Some((i, judge_one(&judge, &input)?))
@@ -100,14 +99,14 @@ impl<'a> Trial<'a> {
             Err(error) => kit_error::unwind(error),
         };
         let Some((index, broken)) = broken else { return Ok(()) };
-        // What an input can shrink to is only needed here, so it is drawn again.
+        // Draw the inputs again with their trees of smaller inputs, which only this step needs.
         match law.tree(cases, &mut self.runner(), index) {
             Some(tree) => Err(shrink(tree, broken)),
             None => Err(broken),
         }
     }
 
-    /// Makes the same random choices whenever it is asked.
+    /// A generator that makes the same random choices in each run.
     fn runner(&self) -> TestRunner {
         let mut seed = [0; 32];
         seed[..8].copy_from_slice(&self.seed.to_le_bytes());
@@ -117,31 +116,31 @@ impl<'a> Trial<'a> {
     }
 }
 
-/// Inputs and how they are judged, for code that does not know their type. `values` is always a `Vec` of them.
+/// Inputs together with their judge, for code that does not know their type. `values` is always a `Vec` of inputs.
 trait Law {
-    /// Draws so many inputs.
+    /// Draws `cases` inputs.
     fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values;
-    /// How many inputs there are.
+    /// The number of inputs.
     fn count(&self, values: &AnyValues) -> usize;
-    /// Judges all of them.
+    /// Judges all inputs.
     fn judge(&self, values: &AnyValues) -> Vec<Outcome>;
-    /// Judges one of them.
+    /// Judges one input.
     fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome>;
-    /// One of them for a message.
+    /// The text of one input for a message.
     fn words(&self, values: &AnyValues, index: usize) -> String;
-    /// What the input of this index can shrink to.
+    /// The tree of smaller inputs to which the input with this index can shrink.
     fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>>;
 }
 
 type AnyValues = dyn Any + Send + Sync;
 
-/// What a tree of smaller inputs is asked.
+/// A tree of smaller inputs, for code that does not know their type.
 trait Tree {
     fn simplify(&mut self) -> bool;
     fn complicate(&mut self) -> bool;
-    /// Judges the present input.
+    /// Judges the current input.
     fn judge(&self) -> Vec<Outcome>;
-    /// The present input for a message.
+    /// The text of the current input for a message.
     fn words(&self) -> String;
 }
 
@@ -212,7 +211,7 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T
     }
 }
 
-/// What is wrong with the answer to one input, a panic included.
+/// The broken law of one input, if it breaks one. A panic counts.
 fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Option<Broken> {
     match kit_error::catch(judge) {
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
@@ -224,7 +223,7 @@ fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Op
     }
 }
 
-/// Looks for a smaller input that breaks the law as well.
+/// Searches for a smaller input that breaks the law as well.
 fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
     let mut steps = 0;
     let mut going = tree.simplify();
@@ -241,7 +240,7 @@ fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
     smallest
 }
 
-/// FNV-1a: the same on every machine and in every version.
+/// The FNV-1a hash, which is the same on every machine and in every version.
 fn fingerprint(name: &str) -> u64 {
     name.bytes()
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
@@ -252,12 +251,12 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
     verdict(check, examine(check, kit, seed))
 }
 
-/// Whether the law holds, or why nobody can say.
+/// Whether the law holds, or the error that prevented an answer.
 pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, KitError> {
     examine_with(check, kit, seed, None)
 }
 
-/// The same with inputs that may have been `drawn` before.
+/// The same as [`examine`], with inputs that may have been `drawn` before.
 pub fn examine_with(
     check: &Check,
     kit: &Arc<dyn Kit + Send + Sync>,
@@ -266,7 +265,7 @@ pub fn examine_with(
 ) -> Result<Outcome, KitError> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
-    // The thread is left behind if it hangs: it ends with the process.
+    // A thread that exceeds the time limit is left running and ends with the process.
     let spawned = std::thread::Builder::new()
         .name(check.name.into())
         .stack_size(raykata::worker::STACK_BYTES)
@@ -280,7 +279,7 @@ pub fn examine_with(
     outcome.recv_timeout(PATIENCE).unwrap_or(Err(KitError::TimedOut { seconds: PATIENCE.as_secs() }))
 }
 
-/// The same in the words that a student reads.
+/// The result of [`examine`] with the message for the student.
 pub fn verdict(check: &Check, examined: Result<Outcome, KitError>) -> Verdict {
     let entry = rubric::entry(check.stage, check.name);
     match examined {
@@ -295,7 +294,8 @@ pub fn verdict(check: &Check, examined: Result<Outcome, KitError>) -> Verdict {
     }
 }
 
-/// Runs the check of this name as a test of `kit`: prints what a student needs to know and ends the test.
+/// Runs the check of this name as a test of `kit`: prints the message for the student if the check fails, and ends the
+/// test.
 pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
         panic!("there is no check `{name}` in this stage");
@@ -305,7 +305,7 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
         Verdict::NotWritten { task, place } => println!("not written yet: {place}\n  {task}"),
         Verdict::Failed(message) => println!("{message}"),
     }
-    // Ends the test without the words and the backtrace of a panic: everything is said.
+    // End the test without the text and the backtrace of a panic, because the message is complete.
     std::panic::resume_unwind(Box::new("the check failed"));
 }
 
@@ -314,12 +314,12 @@ mod tests {
     use super::*;
     use raykata::kit::KitError;
 
-    /// A trial whose kit is never asked: every call to it would be a error of its own.
+    /// A trial whose kit is never called: every call would end with an error.
     fn with_trial<T>(check: impl FnOnce(&Trial<'_>) -> T) -> T {
         struct Silent;
         impl raykata::kit::Transport for Silent {
             fn call(&self, _: raykata::kit::Request, _: &dyn raykata::frame::Watch) -> raykata::kit::Answer {
-                kit_error::unwind(KitError::Crashed { how: "nobody is there".into() })
+                kit_error::unwind(KitError::Crashed { how: "this kit does not answer".into() })
             }
         }
         check(&Trial::new(&raykata::kit::Door(Silent), "a_check", 1))
@@ -353,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    #[allow(clippy::todo, reason = "a gap is what this is about")]
+    #[allow(clippy::todo, reason = "this test is about gaps")]
     fn a_gap_stays_a_gap() {
         let law = |_: &[i32]| -> Vec<Outcome> { todo!("write it") };
         let gap = kit_error::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));

@@ -1,4 +1,4 @@
-//! The checks of all stages in one list, for programs that know more than one stage.
+//! The checks of all stages in one list, for programs that need more than one stage.
 
 mod rubric;
 
@@ -20,12 +20,12 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (10, stage10_checks::CHECKS),
 ];
 
-/// The checks of a stage; none if there is no such stage.
+/// The checks of a stage; an empty list if there is no such stage.
 pub fn of_stage(stage: u8) -> &'static [Check] {
     STAGES.iter().find(|(number, _)| *number == stage).map_or(&[], |(_, checks)| checks)
 }
 
-/// The check of this name.
+/// The check of a stage with this name.
 pub fn find(stage: u8, name: &str) -> Option<&'static Check> {
     of_stage(stage).iter().find(|check| check.name == name)
 }

@@ -1,9 +1,9 @@
-//! The rubric and the checks have to name each other.
+//! Verifies that the rubric and the lists of checks agree.
 
 use crate::STAGES;
 use checks::rubric::{Entry, RUBRIC};
 
-/// Differences between the rubric and the checks that exist, one sentence each.
+/// The differences between the rubric and the lists of checks, one sentence each.
 pub fn differences() -> Vec<String> {
     let mut differences = Vec::new();
     for (number, checks) in STAGES {
@@ -24,7 +24,7 @@ pub fn differences() -> Vec<String> {
         for name in stage.checks.keys() {
             if !checks.iter().any(|check| check.name == name) {
                 differences
-                    .push(format!("the rubric has `{name}` in stage {number}, and there is no such check"));
+                    .push(format!("the rubric has `{name}` in stage {number}, but there is no such check"));
             }
         }
     }
@@ -39,7 +39,7 @@ fn faults(entry: &Entry, name: &str) -> Vec<String> {
         faults.push(format!("`{name}` lacks a title, a slide or a hint"));
     }
     if entry.points == 0 {
-        faults.push(format!("`{name}` is worth nothing"));
+        faults.push(format!("`{name}` has 0 points"));
     }
     faults
 }

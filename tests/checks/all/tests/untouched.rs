@@ -1,13 +1,14 @@
-//! The exercises as they are handed out: every check says what is not written yet and where, and none fails for
-//! another reason. A stage that somebody has begun is not judged, and said so; CI sees all of them untouched, because
-//! `raykata sync --check` runs before.
+//! The exercises as they are handed out: every check reports which function is not written yet and where, and no check
+//! fails for another reason. A stage in which a gap is already filled is skipped with a note. In CI all stages are
+//! untouched, because `raykata sync --check` runs before.
 
 use all_checks::STAGES;
 use checks::Verdict;
 use raykata::kit::StudentKit;
 use std::sync::Arc;
 
-/// How many gaps the files of a stage have in `folder`, by the words that open one. A stage may have several files.
+/// The number of gaps in the files of a stage in `folder`: the lines that start with `opening`. A stage may have
+/// several files.
 fn gaps(folder: &str, stage: u8, opening: &str) -> usize {
     let files = std::fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
     let of_stage =
@@ -23,7 +24,7 @@ fn every_check_of_an_untouched_exercise_says_what_is_not_written_yet() {
         let handed_out = gaps("../../../solutions/src", *stage, "// <stub> todo!");
         let left = gaps("../../../exercises/src", *stage, "todo!");
         if left == 0 || left != handed_out {
-            println!("stage {stage} is begun ({left} of {handed_out} gaps left): not judged");
+            println!("stage {stage} is begun ({left} of {handed_out} gaps left), so it is skipped");
             continue;
         }
         for check in *checks {

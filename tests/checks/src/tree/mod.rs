@@ -1,5 +1,5 @@
-//! What checks know of hierarchies: the invariants of a tree, its expected cost and its text, the least cost of a cut; in
-//! `search`, tables of answers and what a search has to look at.
+//! Functions about bounding volume hierarchies: the invariants of a tree, its expected cost, its text and the least
+//! cost of a cut. `search` has tables of answers and the nodes that a search needs.
 
 mod search;
 
@@ -13,7 +13,7 @@ pub fn around<'a>(boxes: impl IntoIterator<Item = &'a Aabb>) -> Aabb {
     boxes.into_iter().fold(Aabb::EMPTY, |all, one| Aabb::new(all.min.min(one.min), all.max.max(one.max)))
 }
 
-/// Half the surface of a box; 0 for an empty one.
+/// Half the surface area of a box; 0 for an empty one.
 pub fn half_area(bounds: &Aabb) -> f64 {
     if bounds.is_empty() {
         return 0.0;
@@ -22,7 +22,7 @@ pub fn half_area(bounds: &Aabb) -> f64 {
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-/// What builders know of boxes `0..n`.
+/// The references to `boxes` that builders get, with the centroids.
 pub fn references(boxes: &[Aabb]) -> Vec<PrimitiveRef> {
     let reference = |(id, bounds): (usize, &Aabb)| PrimitiveRef {
         id: id as u32,
@@ -32,14 +32,14 @@ pub fn references(boxes: &[Aabb]) -> Vec<PrimitiveRef> {
     boxes.iter().enumerate().map(reference).collect()
 }
 
-/// `A(L) n(L) + A(R) n(R)`, with half areas.
+/// The cost of a cut, `A(L) n(L) + A(R) n(R)`, with half areas.
 pub fn cut_cost(left: &[PrimitiveRef], right: &[PrimitiveRef]) -> f64 {
     let side = |part: &[PrimitiveRef]| half_area(&around(part.iter().map(|p| &p.bounds))) * part.len() as f64;
     side(left) + side(right)
 }
 
-/// All cuts across an axis, as what is left of them and what is right: one behind each centroid but the last. Primitives
-/// with the same centroid keep their order.
+/// All cuts across an axis, each as the primitives on the left and on the right. There is one cut behind each centroid
+/// but the last. Primitives with the same centroid keep their order.
 pub fn cuts(primitives: &[PrimitiveRef], axis: usize) -> Vec<[Vec<PrimitiveRef>; 2]> {
     let before = |p: usize, q: usize| {
         let [p_at, q_at] = [p, q].map(|index| primitives[index].centroid[axis]);
@@ -65,7 +65,7 @@ pub fn least_cost(
     cuts.map(|[left, right]| cost(&left, &right)).fold(f64::INFINITY, f64::min)
 }
 
-/// Whether a leaf is cheaper than a cut of this cost; `None` if rounding decides.
+/// Whether a leaf is cheaper than a cut of this cost; `None` if the two differ by so little that rounding decides.
 pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
     let area = half_area(&around(primitives.iter().map(|p| &p.bounds)));
     let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
@@ -74,8 +74,8 @@ pub fn leaf_is_cheaper(primitives: &[PrimitiveRef], cost: f64) -> Option<bool> {
     ((leaf - split).abs() > 1e-4 * leaf).then_some(leaf < split)
 }
 
-/// A tree to search, which follows none of the rules by which students build: neighbours in the list are joined, from the
-/// leaves up.
+/// A tree to search. It joins neighbours in the list, from the leaves up, and so follows none of the rules by which
+/// students build.
 pub fn joined(boxes: &[Aabb], leaf_size: usize) -> Bvh {
     let references = references(boxes);
     let leaves: Vec<&[PrimitiveRef]> = references.chunks(leaf_size).collect();
@@ -96,7 +96,7 @@ pub fn joined(boxes: &[Aabb], leaf_size: usize) -> Bvh {
         }
         level = above;
     }
-    // The root, which was made last, is number 0, and every parent comes before its children.
+    // Number the nodes in reverse order: the root, which was made last, gets 0, and every parent precedes its children.
     let mut bvh = Bvh::for_primitives(boxes.len());
     bounds.iter().rev().for_each(|one| _ = bvh.add_node(*one));
     let number = |made: usize| (bounds.len() - 1 - made) as u32;
@@ -107,14 +107,14 @@ pub fn joined(boxes: &[Aabb], leaf_size: usize) -> Bvh {
     bvh
 }
 
-/// The axes on which a box is longest: several if they are alike to a rounding.
+/// The axes on which a box is longest: several if their lengths differ by at most 1e-6 of the longest.
 pub fn longest_axes(bounds: &Aabb) -> Vec<usize> {
     let size = bounds.max - bounds.min;
     (0..3).filter(|&axis| size[axis] >= size.max_element() * (1.0 - 1e-6)).collect()
 }
 
-/// What a tree is expected to cost a ray that enters its root: each node weighs the share of the root's area that it
-/// has.
+/// The expected cost of a tree for a ray that enters its root: each node is weighted with its area divided by the area
+/// of the root.
 pub fn expected_cost(bvh: &Bvh) -> f64 {
     let area = |node: usize| half_area(&bvh.nodes[node].bounds);
     let cost = |node: usize| match bvh.nodes[node].contents {
@@ -124,7 +124,7 @@ pub fn expected_cost(bvh: &Bvh) -> f64 {
     (0..bvh.nodes.len()).map(|node| area(node) * cost(node)).sum::<f64>() / area(0)
 }
 
-/// The first thing that is wrong with a tree over `boxes`: `(what it is, what it should be)`.
+/// The first fault of a tree over `boxes`: `(yours, expected)`.
 pub fn fault(bvh: &Bvh, boxes: &[Aabb], leaf_size: usize) -> Option<(String, String)> {
     let wrong = |yours: String, expected: &str| Some((yours, expected.to_owned()));
     let n = boxes.len();
@@ -166,7 +166,7 @@ pub fn fault(bvh: &Bvh, boxes: &[Aabb], leaf_size: usize) -> Option<(String, Str
                 if count == 0 || count > leaf_size {
                     return wrong(
                         format!("leaf {node} holds {count}"),
-                        &format!("1 to {leaf_size} primitives a leaf"),
+                        &format!("1 to {leaf_size} primitives per leaf"),
                     );
                 }
                 let Some(ids) = bvh.order.get(first..first + count) else {
@@ -196,7 +196,7 @@ pub fn fault(bvh: &Bvh, boxes: &[Aabb], leaf_size: usize) -> Option<(String, Str
     })
 }
 
-/// A tree as text: one line a node, indented by depth, children in the order of their boxes.
+/// A tree as text: one line per node, indented by depth, with children in the order of their boxes.
 pub fn as_text(bvh: &Bvh) -> String {
     let mut text = String::new();
     if let Some(root) = bvh.root() {

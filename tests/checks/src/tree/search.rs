@@ -1,4 +1,4 @@
-//! Tables that answer whatever a search may ask, and what a search has to look at.
+//! Tables with the answers to all queries of a search, and the nodes that a search needs.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -7,28 +7,29 @@ use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// `(primitive, t)` of the smallest `t` in the table that counts; of equal ones the first.
+/// `(primitive, t)` of the smallest `t` in the table within the range of the ray; of equal ones the first.
 pub fn closest_in_table(query: &SearchQuery) -> Option<(u32, f32)> {
     closest_of(&query.table.primitives, &query.ray)
 }
 
-/// The same for the `t` of all primitives.
+/// The same as [`closest_in_table`], given the `t` of all primitives.
 pub fn closest_of(primitives: &[f32], ray: &Ray) -> Option<(u32, f32)> {
     let hits = primitives.iter().enumerate().filter(|(_, t)| ray.contains(**t));
     hits.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
 }
 
-/// A box around a sphere, with room for rounding.
+/// A box around a sphere, widened by 1e-4 of the radius for rounding.
 pub fn sphere_box(sphere: &Sphere) -> Aabb {
     let reach = Vec3::splat(1.0001 * sphere.radius);
     Aabb::new(sphere.center - reach, sphere.center + reach)
 }
 
-/// The question for the closest of `spheres` along `ray`, with all answers worked out in double precision.
+/// The query for the closest of `spheres` along `ray`, with a table of all answers, computed in double precision.
 pub fn search_query(bvh: &Bvh, spheres: &[Sphere], ray: &Ray) -> SearchQuery {
     let primitives: Vec<f32> = spheres.iter().map(|sphere| sphere_t(ray, sphere)).collect();
     let mut boxes: Vec<(f32, f32)> = bvh.nodes.iter().map(|node| interval(ray, &node.bounds)).collect();
-    // A parent comes before its children, so this goes from the leaves up: no box begins after what it holds.
+    // Go from the leaves up, because a parent comes before its children: widen each interval such that no box begins
+    // behind its contents.
     for node in (0..bvh.nodes.len()).rev() {
         let within: Vec<(f32, f32)> = match bvh.nodes[node].contents {
             Contents::Inner { left, right } => vec![boxes[left as usize], boxes[right as usize]],
@@ -61,8 +62,9 @@ fn interval(ray: &Ray, bounds: &Aabb) -> (f32, f32) {
     }
 }
 
-/// What every right search looks at: the nodes whose boxes the ray enters before its closest hit or at it, and how many
-/// primitives are in the leaves among them. A search that takes the nearer child first looks at little else.
+/// The nodes that every correct search visits: those whose boxes the ray enters before its closest hit or at it; and
+/// the number of primitives in the leaves among them. A search that visits the nearer child first visits few other
+/// nodes.
 pub fn needed(query: &SearchQuery) -> (Vec<usize>, u64) {
     let end = closest_in_table(query).map_or(query.ray.t_max, |(_, t)| t);
     let mut nodes = overlapped(query);
@@ -75,7 +77,7 @@ pub fn needed(query: &SearchQuery) -> (Vec<usize>, u64) {
     (nodes, primitives)
 }
 
-/// Nodes whose boxes the ray enters when nothing is skipped.
+/// The nodes whose boxes the ray enters if no node is skipped.
 pub fn overlapped(query: &SearchQuery) -> Vec<usize> {
     let enters = |&(near, far): &(f32, f32)| near.max(query.ray.t_min) <= far && near < query.ray.t_max;
     (0..query.bvh.nodes.len()).filter(|&node| enters(&query.table.boxes[node])).collect()

@@ -1,4 +1,4 @@
-//! Rays at boxes.
+//! The laws of `conservative_slab`.
 
 use super::Odd;
 use checks::Trial;
@@ -16,7 +16,7 @@ use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// What can lose this box for a ray that meets it; the first is the plainest to tell.
+/// The reason why a slab test loses this box although the ray meets it. The first reason is the easiest to explain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Loss {
     Inside,
@@ -27,7 +27,7 @@ enum Loss {
 }
 
 impl Loss {
-    /// Found by doing it with care in single precision, but without room for roundings.
+    /// Determined by a careful slab test in single precision that does not widen the interval.
     fn of(SlabQuery { ray, bounds, .. }: &SlabQuery) -> Loss {
         let (mut near, mut far) = (ray.t_min, ray.t_max);
         for axis in 0..3 {
@@ -49,11 +49,11 @@ impl Loss {
 
     fn describe(self) -> &'static str {
         match self {
-            Loss::Inside => "the ray starts in the box: it is in the box from its start",
+            Loss::Inside => "you return None although the ray starts in the box: it enters at t_min",
             Loss::Cancellation => "b / d - o / d cancels: subtract before you divide",
-            Loss::Touch => "a box that is flat or only touched is met: compare with <= and not with <",
-            Loss::Parallel => "a direction that is 0 along an axis: 0 · ∞ is NaN, and -0.0 swaps the planes",
-            Loss::Rounding => "a corner lost by rounding: make the way out longer by 1 + 2 γ₃",
+            Loss::Touch => "you return None for a flat or only touched box: compare with <= and not with <",
+            Loss::Parallel => "the direction is 0 along an axis: 0 · ∞ is NaN, and -0.0 swaps the planes",
+            Loss::Rounding => "rounding loses a corner of the box: multiply the exit by 1 + 2 γ₃",
         }
     }
 }
@@ -61,7 +61,7 @@ impl Loss {
 pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 8);
     let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
-    // The first failure is describe: let it be one that has a single cause.
+    // Only the first failure is reported, so put those with a single cause first.
     queries.sort_by_cached_key(Loss::of);
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
@@ -77,7 +77,7 @@ pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 13);
-    // The same rays, but beside the corner by 1e-5 to a tenth of the way.
+    // Turn the same rays away from the corner, by 1e-5 to 0.1 of the distance.
     let beside = |query: SlabQuery| {
         let aside = 10f32.powf(-1.0 - 4.0 * random.unit()) * query.ray.direction.length() * random.in_cube();
         let mut ray = query.ray;
@@ -89,14 +89,15 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
         (0..20_000).filter_map(|_| at_a_corner(&mut corners)).filter_map(beside).collect();
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
-        // A hit too many costs a visit and loses nothing: those of a few roundings are the price of safety.
+        // Accept a hit that is wrong by a few roundings only: it costs a visit and loses no hit.
         if yours.is_none() || exact.verdict.is_hit() || exact.margin <= STABLE {
             return Ok(());
         }
         let roundings = format!("None: the ray passes by {:.0} roundings", exact.margin);
         Err(Broken::with_texts(query.call("conservative_slab"), format!("{yours:?}"), roundings, "exactly")
             .looks_like(Some(
-                "a hit where there is none: more room than 64 roundings, and each costs a visit",
+                "you return a hit where there is none: you widen the interval by more than 64 roundings, and each wrong \
+                 hit costs a visit",
             )))
     };
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
@@ -104,7 +105,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 15);
-    // Rays at a corner of a triangle, which is on the box around it: both begin at the same exact t.
+    // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal.
     let draw = |_| {
         let place = [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e3)][random.below(3) as usize];
         let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
@@ -123,12 +124,12 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),
                 format!("enters at {enter}"),
-                format!("at {t} or before: there it meets a triangle in the box"),
+                format!("at {t} or before: there the ray hits a triangle in the box"),
                 "exactly",
             )
             .looks_like(Some(
-                "the way in is rounded up: a search that has a hit at this t skips the box; make it a little earlier, \
-                 1 - 2 γ₃ times",
+                "the entry is rounded up, so a search that has a hit at this t skips the box: multiply the entry by \
+                 1 - 2 γ₃",
             ))),
             _ => Ok(()),
         }
@@ -153,10 +154,11 @@ pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
             .looks_like(Some(diagnosis)))
         };
         match yours {
-            Some((enter, leave)) if enter.is_nan() || leave.is_nan() => {
-                broken("numbers, or None", "NaN has come through: it must lose every comparison")
-            }
-            Some(_) if query.bounds == Aabb::EMPTY => broken("None", "nothing is in an empty box"),
+            Some((enter, leave)) if enter.is_nan() || leave.is_nan() => broken(
+                "numbers, or None",
+                "you return NaN: replace an end only if a comparison with it is true",
+            ),
+            Some(_) if query.bounds == Aabb::EMPTY => broken("None", "you return a hit with an empty box"),
             _ => Ok(()),
         }
     };

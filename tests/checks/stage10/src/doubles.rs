@@ -1,4 +1,4 @@
-//! Triangles with all their digits, and odd numbers.
+//! The laws of `triangle_in_double`, and special numbers as input of both functions in double precision.
 
 use super::triangles::{aim_again, draw};
 use super::{Odd, SPECIAL};
@@ -14,35 +14,37 @@ use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-/// Of how many roundings of single precision the worst wrong verdict in double may be away from flipping. A rounding in
-/// double is 2^-29 of one. Of 192,000 inputs, plane and Gram erred once by more than 1e-6 of one (by 5e-4, on a sliver:
-/// the condition of its matrix is the square of length by width), all other methods never; what is rounded in single errs
-/// by 0.3 to 0.7 on edges.
+/// The largest margin, in roundings of single precision, at which a verdict in double precision may be wrong. A
+/// rounding in double precision is 2^-29 of one in single precision. Of 192,000 inputs, the method of plane and Gram
+/// scalars was wrong once at a margin above 1e-6 (at 5e-4, on a sliver: the condition number of its matrix is the
+/// square of length divided by width). No other method was. Code that rounds to single precision is wrong at margins of
+/// 0.3 to 0.7 on edges.
 const IN_DOUBLE: f64 = 0.1;
 
-/// A million times as long as wide: there the square is 1e12, and plane and Gram loses whole weights even in double. The
-/// exercise is about digits and leaves the method free.
+/// Triangles a million times as long as wide. The square is 1e12, and the method of plane and Gram scalars loses all
+/// digits of β and γ even in double precision. The exercise allows every method, so this distribution is left out.
 const TOO_THIN_FOR_GRAM: &str = "needle";
 
-const CONVERTED_LATE: &str = "what was rounded before it was converted stays rounded: convert the corners and the origin, \
-                              and subtract then";
+const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was \
+                              converted stays rounded: convert the corners and the origin first";
 
 /// A wrong verdict.
 struct Wrong {
     query: TriangleQuery,
     yours: Option<TriangleHit>,
-    /// The exact answer, and by how many roundings of single precision.
+    /// The exact answer.
     exact: Option<f32>,
+    /// How many roundings of single precision the exact answer is from flipping.
     margin: f64,
 }
 
-/// The distribution with rays at all three edges and beside them.
+/// The distribution, with rays at all three edges and beside them.
 fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
     let mut queries = draw(trial, name, 400);
     queries.extend(aim_again(trial, &queries));
     for (index, TriangleQuery { triangle, .. }) in queries.iter_mut().enumerate() {
         let Triangle { a, b, c } = *triangle;
-        // All of them aim at the edge between the first two corners.
+        // All rays aim at the edge between the first two corners, so rotate the corners.
         *triangle =
             [Triangle { a, b, c }, Triangle { a: b, b: c, c: a }, Triangle { a: c, b: a, c: b }][index % 3];
     }
@@ -71,12 +73,12 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-/// How sure a verdict is, in roundings of single precision.
+/// How far a verdict is from flipping, in roundings of single precision.
 pub(super) fn describe(margin: f64) -> String {
     if margin > STABLE {
-        return "and no rounding comes near that".into();
+        return "and no rounding error can change that".into();
     }
-    format!("{margin:.2} roundings of single precision from anything else")
+    format!("{margin:.2} roundings of single precision from the opposite answer")
 }
 
 fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str {
@@ -94,22 +96,24 @@ fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str 
     };
     match yours {
         None if trial.kit.triangle_in_double(&[enlarged(query)])[0].is_some() => {
-            "a determinant that is small is not 0: the triangle is small, and enlarged it is hit"
+            "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit"
         }
         Some(_) if on_the_line => {
-            "a hit behind the origin or beyond the range: t counts only within the range of the ray"
+            "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
         }
         Some(_) if *margin > STABLE && beyond_the_third_edge() => {
-            "outside where β + γ > 1: α = 1 - β - γ must not be below 0 either"
+            "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too"
         }
-        Some(_) if *margin > STABLE => "a hit where there is none: no weight may be below 0",
+        Some(_) if *margin > STABLE => "you return a hit where there is none: β and γ must be at least 0",
         _ if converted_late() => CONVERTED_LATE,
-        _ if *margin <= STABLE => "as wrong as single precision: something is rounded to f32 on the way",
+        _ if *margin <= STABLE => {
+            "the error is that of single precision: you round an intermediate result to f32"
+        }
         _ => "",
     }
 }
 
-/// All of it a power of two times as large, about a million in size, which moves no rounding.
+/// The query scaled by a power of two to a size of about a million, which changes no rounding.
 fn enlarged(query: &TriangleQuery) -> TriangleQuery {
     let (Triangle { a, b, c }, ray) = (query.triangle, query.ray);
     let largest =
@@ -121,8 +125,8 @@ fn enlarged(query: &TriangleQuery) -> TriangleQuery {
     }
 }
 
-/// The same triangle and origin as seen from `base`, with differences that are rounded to single precision. For code that
-/// converts those differences this is the same input; its answer may be wrong for `query` and right for this.
+/// The same triangle and origin relative to `base`, with differences rounded to single precision. For code that
+/// converts those differences this is the same input. Its answer may be wrong for `query` and right for this input.
 fn seen_from(base: Vec3, query: &TriangleQuery) -> TriangleQuery {
     let TriangleQuery { ray, triangle: Triangle { a, b, c } } = *query;
     TriangleQuery {
@@ -131,8 +135,8 @@ fn seen_from(base: Vec3, query: &TriangleQuery) -> TriangleQuery {
     }
 }
 
-/// Whether the student's code makes of all these inputs exactly what it makes of their rounded differences, for which
-/// `is_right` accepts it: differences to one of the corners or to the origin.
+/// Whether the student's code gives the same answers for all these inputs as for their rounded differences to one of
+/// the corners or to the origin, and `is_right` accepts these answers for the differences.
 fn is_converted_late<'a>(
     trial: &Trial<'_>,
     wrong: impl Iterator<Item = (&'a TriangleQuery, Option<TriangleHit>)> + Clone,
@@ -150,14 +154,14 @@ fn is_converted_late<'a>(
     })
 }
 
-/// Whether hit or miss is what it exactly is, or nearer to flipping than [`IN_DOUBLE`]; `None` if nobody can say.
+/// Whether the verdict is the exact one, or its margin is at most [`IN_DOUBLE`]; `None` if there is no exact answer.
 fn verdict_is_right(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<bool> {
     let exact = meet(&query.ray, Body::Triangle(query.triangle))?;
     let margin = triangle::margin(&query.ray, &query.triangle)?;
     Some(yours.is_some() == exact.verdict.is_hit() || margin <= IN_DOUBLE)
 }
 
-/// By how many steps of the last digit `t` is off; `None` for a miss, or if nobody can say.
+/// The error of `t` in units of the last place; `None` for a miss, or if there is no exact answer.
 fn steps_off(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<f64> {
     t_error_in_ulps(&query.ray, Body::Triangle(query.triangle), yours?.t)
 }
@@ -168,7 +172,7 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
         let answers = trial.kit.triangle_in_double(&queries);
         let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
             let off = steps_off(query, yours)?;
-            // Rounding what is right to more digits leaves half a step; a whole one says that t is one of two neighbours.
+            // Rounding an accurate result leaves an error of half a unit. One whole unit accepts both neighbours of t.
             (off.abs() > 1.0).then_some((*query, yours, off))
         };
         let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
@@ -182,13 +186,13 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
         let diagnosis = match () {
             () if converted_late() => CONVERTED_LATE,
             () if off.abs() < 1e5 => {
-                "t has the digits of single precision: round the quotient, and nothing before it"
+                "t has only the accuracy of single precision: round the quotient, and nothing before it"
             }
             () => "",
         };
         let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
         let expected =
-            format!("{exact:?}, or a neighbour: this is {:.1} steps of the last digit off", off.abs());
+            format!("{exact:?}, or a neighbour: yours is {:.1} units of the last place off", off.abs());
         let broken = Broken::with_texts(
             query.call("triangle_in_double"),
             format!("{:?}", yours.map(|hit| hit.t)),
@@ -211,14 +215,15 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
                 let input = query.call("triangle_in_double");
                 let yours = format!("{hit:?}");
                 let broken = Broken::with_texts(input, yours, "finite numbers, or None", "the definition");
-                Err(broken.looks_like(Some("NaN is no hit: ask for what is true of a hit, which NaN fails")))
+                Err(broken
+                    .looks_like(Some("NaN is no hit: test the conditions of a hit, which are false for NaN")))
             }
             _ => Ok(()),
         }
     };
     compare(&triangles, trial.kit.triangle_in_double(&triangles), judge).into_iter().collect::<Outcome>()?;
 
-    // Straight at the centre, so that nothing but the radius decides.
+    // Aim at the centre, so that only the radius decides.
     let centred = |radius: f32| {
         let sphere = Sphere { center: Vec3::ZERO, radius };
         SphereQuery { ray: Ray::new(Vec3::new(0.0, 0.0, -4.0), Vec3::Z), sphere }
@@ -241,11 +246,12 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
         match yours {
             Some(t) if nan || !t.is_finite() => broken(
                 "a finite number, or None",
-                "NaN is no hit: ask for what is true of a hit, which NaN fails",
+                "NaN is no hit: test the conditions of a hit, which are false for NaN",
             ),
-            Some(_) if sphere.radius <= 0.0 => {
-                broken("None", "r² forgets the sign: only a radius above 0 makes a sphere")
-            }
+            Some(_) if sphere.radius <= 0.0 => broken(
+                "None",
+                "you return a hit for a radius of 0 or below: r² has no sign, so test the radius itself",
+            ),
             _ => Ok(()),
         }
     };

@@ -1,10 +1,10 @@
-//! Stage 10: stability.
+//! The checks of stage 10: stability.
 //!
-//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles with all digits) ·
-//! `rims` (spheres with all digits)
+//! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles in double precision)
+//! · `rims` (spheres in double precision)
 //!
-//! Judged by [`oracle::exact`]: an answer may differ from the exact one only where at most [`oracle::STABLE`] roundings
-//! decide, and a mesh may not leak at all.
+//! [`oracle::exact`] gives the exact answers. An answer may differ from the exact one only if at most
+//! [`oracle::STABLE`] roundings decide, and a closed mesh must not leak at all.
 
 mod boxes;
 mod doubles;
@@ -37,7 +37,7 @@ use triangles::{
     watertight_of_special_numbers_is_finite, watertight_sees_size_alike,
 };
 
-/// Numbers that break formulas.
+/// Numbers for which formulas often fail.
 pub const SPECIAL: [f32; 10] =
     [0.0, -0.0, 1.0, -1.0, 1e-40, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
 

@@ -1,4 +1,4 @@
-//! Where rays start, and directions.
+//! The laws of `offset_origin` and `safe_normalize`.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -20,7 +20,7 @@ fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
             let side = if beyond { -normal } else { normal };
             OffsetQuery {
                 point: size * at,
-                // Seven roundings of each coordinate, as for a point of a triangle of this size.
+                // Seven roundings per coordinate, as for a point on a triangle of this size.
                 error: Vec3::splat(4e-7 * size),
                 normal,
                 direction: (side + 0.8 * lean).normalize(),
@@ -29,7 +29,8 @@ fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
     )
 }
 
-/// How far the start lies on the side to which the ray goes, and the bound on the error of the point along the normal.
+/// The height of the origin above the point on the side to which the ray goes, and the error bound of the point along
+/// the normal.
 fn height(query: &OffsetQuery, origin: Vec3) -> (f64, f64) {
     let normal = query.normal.as_dvec3();
     let side = if normal.dot(query.direction.as_dvec3()) < 0.0 { -normal } else { normal };
@@ -41,18 +42,18 @@ pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> Outco
     trial.forall(4000, surfaces(), |queries| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
             let (height, bound) = height(query, origin);
-            // A hundredth for the rounding of the bound itself.
+            // Allow one per cent for the rounding of the bound itself.
             if height >= 0.99 * bound {
                 return Ok(());
             }
             let diagnosis = match () {
                 () if height == 0.0 => {
-                    "the ray starts on the surface itself, and hits it in half of all cases"
+                    "the ray starts on the surface itself, and hits it again in half of all cases (shadow acne)"
                 }
                 () if height < 0.0 => {
-                    "the ray starts on the other side: turn the normal to the side it goes to"
+                    "the ray starts on the other side: turn the normal to the side of the direction"
                 }
-                () => "a fixed offset is too small here: move by the error of the point, error · |n|",
+                () => "the offset is too small here: move by the error of the point, error · |n|",
             };
             Err(Broken::with_texts(
                 describe(query),
@@ -69,12 +70,12 @@ pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> Outcome 
     trial.forall(4000, surfaces(), |queries| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
             let (height, bound) = height(query, origin);
-            // 64 steps of the largest coordinate: what is farther away than that must be seen.
+            // Allow 64 steps of the largest coordinate. The ray must hit objects that are farther away.
             let most = 64.0 * 2.0 * U * f64::from(query.point.abs().max_element()) + 4.0 * bound;
             if height <= most {
                 return Ok(());
             }
-            let diagnosis = "a fixed offset is too large here: what touches the surface is not seen";
+            let diagnosis = "the offset is too large here: the ray misses objects that touch the surface";
             Err(Broken::with_texts(
                 describe(query),
                 format!("{height:.3e} off the point"),
@@ -93,16 +94,20 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> O
     trial.forall(4000, vectors, |queries| {
         compare(queries, trial.kit.safe_normalize(queries), |query, yours| {
             let expected = query.as_dvec3().normalize();
-            // Four roundings of each coordinate.
+            // Allow four roundings per coordinate.
             if yours.is_some_and(|yours| (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U) {
                 return Ok(());
             }
             let short = query.as_dvec3().length() < 1.0;
             let diagnosis = match yours {
-                None if short => "short is not nothing: the squares underflow, so scale by the largest first",
-                None => "long is not endless: the squares overflow, so scale by the largest first",
-                // Divided by a length that came out as infinite.
-                Some(yours) if yours.length() < 0.5 => "the squares overflow: scale by the largest first",
+                None if short => {
+                    "you return None for a short vector: the squares underflow, so scale by the largest coordinate first"
+                }
+                None => {
+                    "you return None for a long vector: the squares overflow, so scale by the largest coordinate first"
+                }
+                // The vector was divided by an infinite length.
+                Some(yours) if yours.length() < 0.5 => "the squares overflow: scale by the largest coordinate first",
                 Some(_) if short => "the squares underflow: scale by the largest coordinate first",
                 Some(_) => "",
             };
@@ -123,8 +128,8 @@ pub(super) fn nothing_has_no_direction(trial: &Trial<'_>) -> Outcome {
         Some(_) => {
             let broken = Broken::new(call("safe_normalize", &[query]), yours, None::<Vec3>, "the definition");
             let diagnosis = match () {
-                () if *query == Vec3::ZERO => "nothing has no direction: 0 / 0 is NaN",
-                () => "what is not finite has no direction",
+                () if *query == Vec3::ZERO => "you return a direction for the zero vector: 0 / 0 is NaN",
+                () => "you return a direction for a vector that is not finite",
             };
             Err(broken.looks_like(Some(diagnosis)))
         }

@@ -1,4 +1,4 @@
-//! Spheres with all their digits.
+//! The laws of `sphere_in_double`.
 
 use super::doubles::describe;
 use checks::Trial;
@@ -14,19 +14,21 @@ use raykata::kit::SphereQuery;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// A verdict may be wrong where r² and |f⊥|² differ by less than this much of |f|², for f from the centre to the origin.
-/// The plainest way, b² - a c in double, rounds there by 16 times 2^-53 at most: both products have eight roundings.
+/// A verdict may be wrong if r² and |f⊥|² differ by less than this fraction of |f|², where f goes from the centre to
+/// the origin. The simplest method, b² - a c in double precision, has an error of at most 16 times 2^-53 there, because
+/// each product has eight roundings.
 const UNDECIDED: f64 = 1.0 / (1u64 << 48) as f64;
 
-/// By how much of |f| / |d| the nearest `t` may be off besides a step of its last digit: `t_ca - t_hc` in double loses
-/// 2^-48 of it for an origin near the surface, where both are as long as r, and a chord at least half as long.
+/// The error of the nearest `t` that is allowed besides a unit of its last place, as a fraction of |f| / |d|.
+/// `t_ca - t_hc` in double precision loses 2^-48 of it for an origin near the surface, where both terms are as large as
+/// r and the chord is at least half as long.
 const CANCELLED: f64 = 1.0 / (1u64 << 46) as f64;
 
-const CONVERTED_LATE: &str = "what was rounded before it was converted stays rounded: convert the origin and the centre, and subtract then";
+const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was converted stays rounded: convert the origin and the centre first";
 
-/// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away` radii
-/// from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is rounded in
-/// single precision.
+/// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away`
+/// radii from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is
+/// rounded in single precision.
 fn aimed(random: &mut Random, away: f64, aside: f64) -> SphereQuery {
     let radius = 10f32.powf(2.0 * random.signed());
     let reach = (f64::from(radius) * away) as f32;
@@ -42,15 +44,16 @@ fn aimed(random: &mut Random, away: f64, aside: f64) -> SphereQuery {
     SphereQuery { ray: Ray::new(origin, direction.as_vec3()), sphere: Sphere { center, radius } }
 }
 
-/// Powers of ten.
+/// A random power of ten between `10^low` and `10^high`.
 fn ten_to(random: &mut Random, low: f64, high: f64) -> f64 {
     10f64.powf(low + (high - low) * f64::from(random.unit()))
 }
 
-/// Rays at the rim of a sphere 1 to 100,000 radii away; and some for which the range decides, from there or from inside.
+/// A ray at the rim of a sphere 1 to 100,000 radii away, or a ray for which its range decides, from there or from
+/// inside.
 fn at_rim(random: &mut Random) -> SphereQuery {
     let away = ten_to(random, 0.3, 5.0);
-    // Half way to the rim at most: then either root is at least 8e-6 from t = 1.
+    // Aim at most half a radius off the centre: then either root is at least 8e-6 from t = 1.
     let well_inside = 0.5 * f64::from(random.unit());
     let ranged = |random: &mut Random, t_min: f32, t_max: f32| {
         let query = aimed(random, away, well_inside);
@@ -73,20 +76,20 @@ fn at_rim(random: &mut Random) -> SphereQuery {
     }
 }
 
-/// A ray that starts `away` radii from the centre, below 1.
+/// A ray that starts inside, `away < 1` radii from the centre.
 fn from_inside(random: &mut Random, away: f64) -> SphereQuery {
     let query = aimed(random, away.max(0.01), 0.0);
     SphereQuery { ray: Ray::new(query.ray.origin, query.sphere.radius * random.direction()), ..query }
 }
 
-/// What roundings can turn: `|r² - |f⊥|²| / |f|²`.
+/// How far the verdict is from flipping: `|r² - |f⊥|²| / |f|²`.
 fn margin(SphereQuery { ray, sphere }: &SphereQuery) -> f64 {
     let (f, d) = (ray.origin.as_dvec3() - sphere.center.as_dvec3(), ray.direction.as_dvec3());
     (f64::from(sphere.radius).powi(2) - f.cross(d).length_squared() / d.length_squared()).abs()
         / f.length_squared()
 }
 
-/// The exact answer to what a known mistake asks: the origin as seen from the centre is rounded to single precision.
+/// The exact answer for the input of a known mistake: the origin relative to the centre is rounded to single precision.
 fn subtracted_in_single(SphereQuery { ray, sphere }: &SphereQuery) -> Option<Meeting> {
     let ray = Ray { origin: ray.origin - sphere.center, ..*ray };
     meet(&ray, Body::Sphere(Sphere { center: Vec3::ZERO, ..*sphere }))
@@ -110,10 +113,10 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
         sphere::roots(&query.ray, &query.sphere).is_some_and(|it| !it.near_counts && it.far_counts);
     let diagnosis = match yours {
         Some(_) if on_the_line => {
-            "a hit behind the origin or beyond the range: a root counts only within the range of the ray"
+            "you return a hit behind the origin or beyond the range: a root counts only within the range of the ray"
         }
         None if only_the_far_root => {
-            "the near root does not count, but the far one does: the ray starts inside"
+            "you return None although the far root is in the range: the ray starts inside, or its range begins inside"
         }
         _ if wrong.iter().all(|(query, yours, _)| {
             subtracted_in_single(query).is_some_and(|exact| exact.t.is_some() == yours.is_some())
@@ -122,7 +125,7 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
             CONVERTED_LATE
         }
         _ if margin(query) <= STABLE * U => {
-            "as wrong as single precision: something is rounded to f32 on the way"
+            "the error is that of single precision: you round an intermediate result to f32"
         }
         _ => "",
     };
@@ -132,7 +135,7 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
     Err(broken.looks_like(known(diagnosis)))
 }
 
-/// Rays that go well through a sphere, from afar, from near its surface on either side, and from inside.
+/// A ray that passes well through a sphere, from far away, from near its surface on either side, or from inside.
 fn through(random: &mut Random) -> SphereQuery {
     let aside = 0.9 * f64::from(random.unit());
     let off = ten_to(random, -6.0, -1.0);
@@ -150,7 +153,7 @@ fn through(random: &mut Random) -> SphereQuery {
 pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     let mut random = Random::new(trial.seed, 18);
     let mut queries: Vec<SphereQuery> = (0..4000).map(|_| through(&mut random)).collect();
-    // Near a tangent both roots are as uncertain as the root of a difference that is nearly 0.
+    // Leave out rays near a tangent, because there both roots contain the square root of a cancelled difference.
     queries.retain(|query| {
         let (f, d) =
             (query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3(), query.ray.direction.as_dvec3());
@@ -179,11 +182,11 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     let close = (yours - rounded).abs() <= 1e-2 * rounded.abs();
     let diagnosis = match () {
         () if !query.ray.contains(*yours) => {
-            "the near root is behind the ray: the nearest that counts is the far one"
+            "you return the near root, which is outside the range of the ray: the far one is the hit"
         }
         () if wrong.iter().all(converted_late) => CONVERTED_LATE,
-        () if close => "t has the digits of single precision: round the root, and nothing before it",
-        () if yours > rounded => "the far root, and the near one counts as well",
+        () if close => "t has only the accuracy of single precision: round the root, and nothing before it",
+        () if yours > rounded => "you return the far root, but the near one counts as well",
         () => "",
     };
     let expected = format!("Some({rounded:?}), or a neighbour");

@@ -1,4 +1,4 @@
-//! The quadratic formula.
+//! The laws of `stable_roots`.
 
 use super::Odd;
 use checks::Trial;
@@ -15,7 +15,8 @@ fn describe([a, b, c]: &Coefficients) -> String {
     call("stable_roots", &[a, b, c])
 }
 
-/// The discriminant in double, where both products are exact, and how many roundings of single precision it is from 0.
+/// The discriminant in double precision, where both products are exact, and its distance from 0 in roundings of single
+/// precision.
 fn discriminant([a, b, c]: Coefficients) -> (f64, f64) {
     let (square, product) = (f64::from(b).powi(2), 4.0 * f64::from(a) * f64::from(c));
     (square - product, (square - product).abs() / (U * (square + product.abs())))
@@ -32,16 +33,19 @@ fn roots(coefficients: Coefficients) -> [f64; 2] {
 pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let (value, roundings) = discriminant(*query);
-        // Roots that nearly touch move by the root of a rounding: another check.
+        // Leave nearly equal roots to another check: they move by the square root of a rounding.
         if value < 0.0 || roundings < 1e6 {
             return Ok(());
         }
         let expected = roots(*query);
         let broken = || Broken::new(describe(query), yours, expected, "double precision");
         let Some(yours) = yours else {
-            return Err(broken().looks_like(Some("the discriminant is far above 0: there are two roots")));
+            return Err(broken().looks_like(Some(
+                "you return None, but the discriminant is far above 0: there are two roots",
+            )));
         };
-        // Six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈ 3u.
+        // Allow six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈
+        // 3u.
         let near =
             |yours: f32, exact: f64| (f64::from(yours) - exact).abs() <= 10.0 * U * exact.abs() + 1e-44;
         if near(yours[0], expected[0]) && near(yours[1], expected[1]) {
@@ -50,9 +54,11 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
         let swapped = near(yours[0], expected[1]) && near(yours[1], expected[0]);
         let small = if expected[0].abs() < expected[1].abs() { 0 } else { 1 };
         let diagnosis = match () {
-            () if swapped => "the smaller root comes first, also if a or b is negative",
+            () if swapped => {
+                "you return the larger root first: the smaller root comes first, also if a or b is negative"
+            }
             () if yours[small] == 0.0 && expected[small] != 0.0 => {
-                "one root has cancelled to 0: -b + √(b² - 4ac) subtracts what is nearly the same"
+                "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers"
             }
             () if near(yours[1 - small], expected[1 - small]) => {
                 "one root has lost its digits: compute it as c / q, without a difference"
@@ -76,7 +82,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
-    // a (t - p)² with whole numbers up to 2¹²: everything is exact in single precision, so 0 is 0 and -1 is not.
+    // a (t - p)² with integers: the products are exact in single precision, so the sign of the discriminant is exact.
     let queries = (1..=4i32, -500..=500i32, -1..=1i32).prop_map(|(a, p, step)| {
         let (a, p) = (a as f32, p as f32);
         [a, -2.0 * a * p, a * p * p + step as f32]
@@ -96,7 +102,9 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
             };
             match (value, yours) {
                 (value, None) if value < 0.0 => Ok(()),
-                (value, Some(_)) if value < 0.0 => broken("None".into(), "a root of a number below 0"),
+                (value, Some(_)) if value < 0.0 => {
+                    broken("None".into(), "you return roots although the discriminant is below 0")
+                }
                 (0.0, None) => broken(
                     format!("Some([{p}, {p}])"),
                     "a double root is a root: the parabola touches the axis",
@@ -104,9 +112,11 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
                 (0.0, Some(roots))
                     if roots.iter().any(|&root| (f64::from(root) - p).abs() > 4.0 * U * p.abs()) =>
                 {
-                    broken(format!("Some([{p}, {p}])"), "a double root is there twice")
+                    broken(format!("Some([{p}, {p}])"), "return a double root twice")
                 }
-                (_, None) => broken("two roots".into(), "the discriminant is above 0"),
+                (_, None) => {
+                    broken("two roots".into(), "you return None although the discriminant is above 0")
+                }
                 _ => Ok(()),
             }
         })
@@ -124,12 +134,16 @@ pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> Outcome 
                 .looks_like(known(diagnosis)))
         };
         match yours {
-            Some(_) if refused => broken("None", "a is 0, or a number is not finite"),
+            Some(_) if refused => {
+                broken("None", "you return roots although a is 0, or a number is not finite")
+            }
             Some([first, second]) if first.is_nan() || second.is_nan() => {
-                broken("numbers, or None", "NaN: 0 / 0, or the difference of two infinities")
+                broken("numbers, or None", "you return NaN: 0 / 0, or the difference of two infinities")
             }
             Some([first, second]) if first > second => broken("the smaller one first", ""),
-            None if query[1..] == [0.0, 0.0] && !refused => broken("Some([0, 0])", "t² = 0 has a root"),
+            None if query[1..] == [0.0, 0.0] && !refused => {
+                broken("Some([0, 0])", "you return None for b = c = 0: a t² = 0 has the root 0")
+            }
             _ => Ok(()),
         }
     };

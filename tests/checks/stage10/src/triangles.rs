@@ -1,4 +1,4 @@
-//! Watertight triangles.
+//! The laws of `watertight`.
 
 use super::Odd;
 use checks::Trial;
@@ -16,7 +16,7 @@ use raykata::kit::{TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Inputs of a distribution.
+/// Inputs of a distribution of the gauntlet.
 pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQuery> {
     let mut random = Random::new(trial.seed, name.len() as u64);
     let found = DISTRIBUTIONS.iter().find(|distribution| distribution.name == name);
@@ -29,8 +29,8 @@ pub(super) fn draw(trial: &Trial<'_>, name: &str, count: usize) -> Vec<TriangleQ
         .collect()
 }
 
-/// The triangles of a distribution from the same places, aimed well inside or a little beside an edge, where more than
-/// roundings decide; and the same rays turned round, or ended before they arrive.
+/// The same triangles and origins, with rays aimed well inside or a little beside an edge, where the distance is larger
+/// than rounding errors. Some rays are turned round, end before the triangle or begin behind it.
 pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<TriangleQuery> {
     let mut random = Random::new(trial.seed, 4);
     let again = |TriangleQuery { ray, triangle }: &TriangleQuery| {
@@ -50,8 +50,8 @@ pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Tri
     queries.iter().map(again).collect()
 }
 
-// The margin is that of the nearest edge. Rays that are turned round or ended miss by half their range or more, which no
-// rounding bridges.
+// The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or
+// more, which is far above all rounding errors.
 pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> Outcome {
     for distribution in &DISTRIBUTIONS {
         let mut queries = draw(trial, distribution.name, 400);
@@ -68,18 +68,18 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             let on_the_line = meet(&endless, body).is_some_and(|exact| exact.verdict.is_hit());
             let diagnosis = match (distribution.name, yours) {
                 (_, Some(_)) if on_the_line => {
-                    "a hit behind the origin or beyond the range: t counts only within the range of the ray"
+                    "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
                 }
-                (_, Some(_)) => "a hit where there is none, and not for a rounding",
-                ("1e14", None) => "products of three sizes overflow: the normal alone is 1e28 long",
-                ("1e-14", None) => "a determinant that is small is not 0: the triangle is small",
-                ("needle", None) => "t has lost all digits on a needle: take it from the plane",
-                _ => "a miss where there is a hit, and not for a rounding",
+                (_, Some(_)) => "you return a hit where there is none, and rounding errors do not explain it",
+                ("1e14", None) => "products of three lengths overflow: the normal alone has length 1e28",
+                ("1e-14", None) => "a determinant that is small is not 0: only the triangle is small",
+                ("needle", None) => "t has lost all digits on a needle: compute it from the plane",
+                _ => "you return a miss where there is a hit, and rounding errors do not explain it",
             };
             Err(Broken::with_texts(
                 query.call("watertight"),
                 format!("{:?}", yours.map(|hit| hit.t)),
-                format!("{:?}, {margin:.0} roundings from anything else", exact.t),
+                format!("{:?}, {margin:.0} roundings from the opposite answer", exact.t),
                 "exactly",
             )
             .looks_like(known(diagnosis)))
@@ -99,7 +99,7 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                 (aim, ray, vertex)
             })
             .collect();
-        // First the triangles around the vertex: nearly every ray hits one of them.
+        // Test the triangles around the vertex first, because nearly every ray hits one of them.
         let fan = |vertex: u32| mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index));
         let near: Vec<TriangleQuery> = rays
             .iter()
@@ -135,16 +135,16 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
             let middle = fan(*vertex).next().map_or(Vec3::ZERO, |Triangle { a, b, c }| (a + b + c) / 3.0);
             let diagnosis = match () {
                 () if !hits(Ray::new(ray.origin, middle - ray.origin)) && mesh.name.contains("1e14") => {
-                    "products of three sizes overflow: not even what lies in the middle is hit"
+                    "products of three lengths overflow: your code misses even the middle of a triangle"
                 }
                 () if !hits(Ray::new(ray.origin, middle - ray.origin)) => {
-                    "not even the middle of a triangle is hit: a determinant that is small is not 0"
+                    "your code misses even the middle of a triangle: a determinant that is small is not 0"
                 }
                 () if mesh.name.contains("needle") && hits(endless) => {
-                    "t has lost all digits and its sign: take it from the plane"
+                    "t has lost all digits and its sign: compute it from the plane"
                 }
                 () => {
-                    "the ray is beside both neighbours of an edge: decide an edge by its two ends alone, in the same \
+                    "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same \
                      way for both, and count 0 as inside"
                 }
             };
@@ -167,8 +167,8 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
                 let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
                 (b - a).cross(c - a).normalize_or_zero()
             };
-            // t is the worse known the flatter the ray meets the plane: a thousandth at right angles is generous to
-            // every formula that uses the plane, and tells those that lose all digits.
+            // The error of t grows as the ray gets parallel to the plane. A thousandth at right angles accepts every
+            // formula that uses the plane, and rejects those that lose all digits.
             let slope = normal.dot(query.ray.direction.as_dvec3().normalize()).abs();
             let tolerance = 1e-3 * exact.abs() / slope.max(1e-3);
             if (f64::from(yours.t) - exact).abs() <= tolerance {
@@ -176,7 +176,7 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
             }
             let diagnosis = match () {
                 () if name == "needle" => {
-                    "t has lost its digits on a needle: take it from the plane of the triangle"
+                    "t has lost its digits on a needle: compute it from the plane of the triangle"
                 }
                 () if yours.t < 0.0 => "t has the wrong sign",
                 () => "",
@@ -189,7 +189,7 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
-    // Times a power of two nothing is rounded differently, as long as nothing over- or underflows.
+    // A factor of a power of two changes no rounding unless a number over- or underflows.
     let queries = draw(trial, "edge", 300);
     let plain = trial.kit.watertight(&queries);
     for exponent in [-30, 30] {
@@ -210,11 +210,11 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
                     query.call("watertight"),
                     format!("{yours:?}"),
                     format!("{plain:?}, as without the factor 2^{exponent}"),
-                    "a power of two moves no rounding",
+                    "a power of two changes no rounding",
                 );
-                return Err(
-                    broken.looks_like(Some("a fixed epsilon decides: sizes have no meaning of their own"))
-                );
+                return Err(broken.looks_like(Some(
+                    "a fixed epsilon decides: scaling by a power of two must change no answer",
+                )));
             }
         }
     }
@@ -227,7 +227,8 @@ pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outc
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken =
                 Broken::new(query.call("watertight"), hit, "finite numbers, or None", "the definition");
-            Err(broken.looks_like(Some("NaN is no hit: compare so that NaN fails")))
+            Err(broken
+                .looks_like(Some("NaN is no hit: test the conditions of a hit, which are false for NaN")))
         }
         _ => Ok(()),
     };

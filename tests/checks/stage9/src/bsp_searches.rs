@@ -1,4 +1,4 @@
-//! The way of a ray through a BSP tree.
+//! The laws of the search of a BSP tree.
 
 use super::parts;
 use super::scenes::{Scene, Thing, sphere, wall};
@@ -13,17 +13,18 @@ use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
 pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
-    // The large sphere reaches through the plane x + y = 0, and is hit behind it and behind the small one.
+    // The box of the large sphere crosses the plane x + y = 0, so both leaves list it. Its hit is in front of the
+    // plane, behind the hit of the small sphere.
     let large = Thing::Sphere(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
     let scene = Scene::new(vec![large, sphere(0.25, 0.2, 0.0, 0.125)]);
-    let says = "the search stopped before it came to the side with a nearer hit: a hit need not be on the side that lists it";
+    let says = "a hit may lie outside the side that lists its primitive, and here the other side has a nearer hit: go on until a side begins behind the best hit";
     let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
-    ask(trial, &tree, &scene, &ray, "BSP tree of one plane x + y = 0, across which primitive 0 lies", says)?;
+    ask(trial, &tree, &scene, &ray, "BSP tree of one plane x + y = 0, both leaves list primitive 0", says)?;
     agrees(trial, Searcher::Bsp)
 }
 
-/// A tree of one plane, with these primitives on either side.
+/// A tree of one plane, with these primitives on the two sides.
 fn two_leaves(plane: CutPlane, behind: &[u32], before: &[u32]) -> Bsp {
     let mut bsp = Bsp::default();
     let root = bsp.add_node(0, 1);
@@ -45,9 +46,9 @@ fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, say
     judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
 }
 
-/// Trap A7: the plane lies behind the ray, beyond its end, or is never met.
+/// Trap A7: the plane lies behind the ray or beyond its end, or the ray is parallel to it.
 pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
-    let says = "trap A7: where the plane is behind the ray or beyond its end, the ray is on one side all the way, and that side must be searched";
+    let says = "trap A7: if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side";
     let scene = Scene::new(vec![
         sphere(-4.0, -4.0, 0.0, 1.0),
         sphere(4.0, 4.0, 0.0, 1.0),
@@ -64,7 +65,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
         ),
         ("the ray runs along the plane", Ray::new(vec3(-8.0, 6.0, 0.0), vec3(1.0, -1.0, 0.0))),
         (
-            "the plane is crossed, with nothing before it",
+            "the ray crosses the plane, and hits nothing before it",
             Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0)),
         ),
     ];
@@ -73,9 +74,9 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
     })
 }
 
-/// Rays in the plane and from it, and polygons that lie in it.
+/// Rays that run in the plane or start on it, and polygons that lie in it.
 pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
-    let says = "a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
+    let says = "a ray in the plane, or that starts on it, is on both sides, and a primitive in the plane may be listed on one side only: search both";
     let spheres = Scene::new(vec![
         sphere(3.0, -3.0, 0.0, 0.5),
         sphere(-3.0, 3.0, 0.0, 0.5),
@@ -116,7 +117,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
             )?;
         }
     }
-    // From a point of the plane to either side.
+    // Rays from a point of the plane to each side.
     let sides = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5), sphere(-3.0, -3.0, 0.0, 0.5)]);
     let tree = two_leaves(diagonal(), &[1], &[0]);
     for direction in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
@@ -132,7 +133,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
             )?;
         }
     }
-    // A room whose walls are the planes.
+    // A room whose walls lie in the planes of the tree.
     let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
     let room = Scene::new(walls.collect());
     let tree = bsp(&room.hulls(), 5);

@@ -1,4 +1,4 @@
-//! The BSP tree: what is where.
+//! The laws of the builder of BSP trees: which primitives each leaf lists.
 
 use super::lists::{Fault, ended, judge_references};
 use checks::Trial;
@@ -16,7 +16,7 @@ fn describe(query: &BspQuery) -> String {
     format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
 }
 
-/// A leaf: its number, the planes above it with the side on which it lies, and what stands in it.
+/// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
 type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
 
 fn leaves(bsp: &Bsp) -> Vec<Leaf> {
@@ -29,7 +29,7 @@ fn leaves(bsp: &Bsp) -> Vec<Leaf> {
     leaves
 }
 
-const WHAT_MAKES_IT: &str = "what makes a BSP tree";
+const WHAT_MAKES_IT: &str = "the definition of a BSP tree";
 
 fn usable(hull: &[Vec3]) -> bool {
     !hull.is_empty() && hull.iter().all(|corner| corner.is_finite())
@@ -49,10 +49,10 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
     if yours.depth() > query.max_depth + 1 {
         let (yours, expected) = (yours.depth() - 1, query.max_depth);
         let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
-        return Some((yours, expected, "max_depth is passed"));
+        return Some((yours, expected, "the tree is deeper than max_depth"));
     }
     let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
-    // What is within a step of a plane touches it; what is within a 64th of all may be taken for touching.
+    // A corner within one float of a plane touches it. A corner within a 64th of the size may be counted as touching.
     let size = f64::from(size.fold(0.0, f32::max));
     let (step, room) = (size * (-23f64).exp2(), size / 64.0);
     for (node, above, listed) in leaves(yours) {
@@ -61,12 +61,16 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
             let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if !usable(hull) {
                 if times > 0 {
-                    return Some((count(times), count(0), "what is not a number is in no cell"));
+                    return Some((
+                        count(times),
+                        count(0),
+                        "you list a hull with NaN or without corners: leave it out",
+                    ));
                 }
                 continue;
             }
-            // A hull of which a corner is inside certainly reaches into the leaf; one that is all outside of a plane is
-            // certainly not in it.
+            // A hull with a corner inside certainly overlaps the leaf. A hull that lies completely outside of one plane
+            // certainly does not.
             let inside =
                 |p: &Vec3, room: f64| above.iter().all(|(plane, side)| side * plane.distance(*p) >= room);
             let reaches = hull.iter().any(|p| inside(p, -step));
@@ -76,9 +80,9 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                 let on_plane =
                     hull.iter().any(|p| above.iter().any(|(plane, _)| plane.distance(*p).abs() <= step));
                 let diagnosis = match times {
-                    0 if on_plane => "what touches a plane, or lies in it, belongs to both sides",
-                    0 => "a primitive that reaches over a plane belongs to both sides",
-                    _ => "a primitive is listed twice in one leaf",
+                    0 if on_plane => "a primitive that touches a plane, or lies in it, belongs to both sides",
+                    0 => "a primitive that crosses a plane belongs to both sides",
+                    _ => "you list a primitive twice in one leaf",
                 };
                 return Some((count(times), count(1), diagnosis));
             }
@@ -86,7 +90,7 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
                 return Some((
                     count(times),
                     count(0),
-                    "a primitive is listed in a leaf that it does not reach",
+                    "you list a primitive in a leaf that it does not overlap",
                 ));
             }
         }
@@ -134,17 +138,17 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");
-        let says = "stop at max_depth, and where no plane divides";
+        let says = "stop at max_depth, and where no plane divides the primitives";
         let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
         let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
         judge_tree(&query, &yours)?;
-        let says = "all are on both sides of each plane: make a leaf of them";
+        let says = "you divide primitives that are on both sides of each plane: make a leaf of them";
         judge_references(&input, &yours.items, 1024 + 64 * n, says)?;
     }
     Ok(())
 }
 
-/// Sheets across a diagonal: no plane across an axis divides them, and their own planes do.
+/// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     let sheet = |at: f32| {
         let p = |u: f32, v: f32| vec3(at + u, at - u, v);
@@ -156,24 +160,24 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
     let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
     judge_tree(&query, &yours)?;
     let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
-    // A cut along a sheet lists it on both sides, so there is one reference more for each cut.
+    // A cut along a sheet lists the sheet on both sides, which makes one more reference per cut.
     let (references, depth) = (yours.items.len(), yours.depth());
     if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
         return Ok(());
     }
     let diagnosis = match () {
-        () if yours.nodes.len() == 1 => "nothing is cut: the planes of the polygons are the candidates",
+        () if yours.nodes.len() == 1 => "you make no cut: the planes of the polygons are the candidates",
         () if fullest > 2 => {
-            "sheets side by side are not divided: the planes of the polygons are the candidates"
+            "you do not divide the parallel sheets: the planes of the polygons are the candidates"
         }
-        () => "a poor choice of planes: leave few on the fuller side",
+        () => "you choose planes poorly: choose those that leave few primitives on the fuller side",
     };
-    let yours = format!("up to {fullest} sheets a leaf, {references} references, {depth} levels");
+    let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
     Err(Broken::with_texts(
         input,
         yours,
-        format!("2 a leaf, at most {} references, 8 levels", 2 * n),
+        format!("2 per leaf, at most {} references, 8 levels", 2 * n),
         "counted",
     )
     .looks_like(Some(diagnosis)))

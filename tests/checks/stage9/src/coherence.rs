@@ -1,4 +1,4 @@
-//! The last hit, and packets of rays: the same answers for less.
+//! The laws of the last hit and of packets of rays: the same answers with fewer tests and fewer opened nodes.
 
 use super::scenes::{Scene, closest, rays, scenes, sphere};
 use checks::broken::{Broken, Outcome};
@@ -16,7 +16,7 @@ use raykata::shape::Sphere;
 
 fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
     let hits = scene.hits(ray);
-    // No box is entered after what is in it is hit, however either is rounded; some `hits` are two steps off.
+    // Round the entry of a box down, so that it is not behind a hit in the box. Some `hits` are two floats off.
     let entry = |one: &Aabb, hit: f32| (checks::double::box_interval(ray, one).0 as f32).next_down().min(hit);
     let entries = scene.boxes().iter().zip(&hits).map(|(one, hit)| entry(one, *hit)).collect();
     CachedQuery { last, ray: *ray, hits, entries }
@@ -27,7 +27,7 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
         let n = scene.things.len() as u32;
         (cached(&scene, &ray, (n > 0).then(|| pick % n)), n)
     });
-    // Two at one t, and the larger number is known: the smaller one must still be heard.
+    // Two primitives at the same t, and the larger number is known: the smaller one must still be reported.
     let pair = Scene::new(vec![sphere(5.0, 0.0, 0.0, 1.0); 2]);
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let tie = (cached(&pair, &ray, Some(1)), 2);
@@ -41,22 +41,24 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
             }
             let diagnosis = match (found, expected) {
                 (Some((_, t)), _) if !query.ray.contains(t) => {
-                    "a hit outside of the ray's range: test the last primitive with this ray"
+                    "you return a hit outside the ray's range: test the last primitive with this ray"
                 }
                 (Some((_, t)), Some((_, best))) if t == best => {
-                    "of two hits at one t the smaller number wins: let the ray end one step beyond the known hit"
+                    "of two hits at the same t the smaller number wins: end the ray one float above the known hit"
                 }
                 (Some((primitive, _)), _) if Some(primitive) == query.last => {
-                    "the last primitive is hit, and something nearer, too: search on"
+                    "you return the hit with the last primitive, but a nearer one exists: search on"
                 }
                 (None, Some(_)) => {
-                    "the hit of the last primitive was forgotten: the shortened ray may find nothing else"
+                    "you forget the hit with the last primitive: the search with the shortened ray may find nothing"
                 }
-                (Some(_), Some(_)) => "of the known hit and the found one the nearer counts",
+                (Some(_), Some(_)) => {
+                    "you return the farther of the known hit and the found one: keep the nearer"
+                }
                 _ => "",
             };
             let input =
-                format!("{n} primitives, of which {:?} was hit before\n{}", query.last, query.ray.paste());
+                format!("{n} primitives, of which {:?} was the last hit\n{}", query.last, query.ray.paste());
             Err(Broken::new(input, found, expected, "brute force, (primitive, t)")
                 .looks_like(known(diagnosis)))
         })
@@ -68,21 +70,21 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
-    // A row of spheres one behind the other, numbered from the far end: without a known hit all are tested.
+    // A row of spheres one behind the other, numbered from the far end: without a known hit the search tests all.
     let row = Scene::new((0..32).rev().map(|i| sphere(3.0 * i as f32, 0.0, 0.0, 1.0)).collect());
     let [first, again] =
         [vec3(-5.0, 0.1, 0.0), vec3(-5.0, 0.11, 0.0)].map(|origin| Ray::new(origin, Vec3::X));
     let answers = trial.kit.cached_search(&[cached(&row, &first, None), cached(&row, &again, Some(31))]);
     let counts = [answers[0].tests.len(), answers[1].tests.len()];
-    // The known one, then the only box that begins before it: its own.
+    // With the known hit it tests that sphere, and again as the only one whose box begins before the hit.
     if counts == [32, 2] {
         return Ok(());
     }
     let describe = |[first, again]: [usize; 2]| format!("{first} tests without a known hit, {again} with it");
     let diagnosis = match counts {
-        [_, again] if again > 32 => "the ray is not shortened by the known hit",
-        [first, _] if first > 32 => "without a known hit there is nothing to test beforehand",
-        [_, 1] => "the search is left out: something nearer may have come",
+        [_, again] if again > 32 => "the ray is not shortened: end it at the known hit",
+        [first, _] if first > 32 => "you test a primitive before the search although there is no known hit",
+        [_, 1] => "you leave out the search: this ray may hit a nearer primitive",
         _ => "",
     };
     Err(Broken::with_texts(
@@ -102,7 +104,7 @@ fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
     (PacketQuery { bvh, rays: rays.to_vec(), tables }, queries)
 }
 
-/// Packets of up to 20 rays, side by side or any way.
+/// Packets of up to 20 rays, side by side or in any direction.
 fn packets() -> impl Strategy<Value = (Vec<Sphere>, Vec<Ray>)> + Clone {
     let sphere = (checks::generate::point(6), 1..=8i32)
         .prop_map(|(center, r)| Sphere { center, radius: r as f32 / 4.0 });
@@ -128,18 +130,18 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
             let input = format!("{} rays, {} nodes", query.rays.len(), query.bvh.nodes.len());
             if yours.hits.len() != query.rays.len() {
                 let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
-                let broken = Broken::with_texts(input, yours, expected, "one a ray");
-                return Err(broken.looks_like(Some("a packet has eight rays at most: take the rest in further packets")));
+                let broken = Broken::with_texts(input, yours, expected, "one per ray");
+                return Err(broken.looks_like(Some("a packet has eight rays at most: put the other rays into further packets")));
             }
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
                 let expected = closest_in_table(single);
                 let found = yours.map(|hit| (hit.primitive, hit.t));
                 if found != expected {
                     let diagnosis = match (found, expected) {
-                        (Some((_, t)), Some((_, best))) if t == best => "of two hits at one t the smaller primitive number wins",
-                        (Some((_, t)), _) if !single.ray.contains(t) => "each ray has its own range",
-                        (Some(_), None) => "a hit of another ray: each ray keeps its own",
-                        _ => "the packet left a node that this ray enters: a node is left if no ray enters it, and not if one does not",
+                        (Some((_, t)), Some((_, best))) if t == best => "of two hits at the same t the smaller primitive number wins",
+                        (Some((_, t)), _) if !single.ray.contains(t) => "you return a hit outside the range of this ray: each ray has its own range",
+                        (Some(_), None) => "you return the hit of another ray: each ray keeps its own",
+                        _ => "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it",
                     };
                     let input = format!("{input}; ray {index}: {}", single.ray.paste());
                     let broken = Broken::new(input, found, expected, "brute force, (primitive, t)");
@@ -152,7 +154,7 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
 }
 
 pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
-    // A row of spheres, of which the first is hit, from either end: no two boxes overlap, so there is one order.
+    // A row of spheres of which a ray from either end hits the first. No two boxes overlap, so the order is unique.
     let row: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
     for (x, direction) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
@@ -168,19 +170,19 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
         .collect();
     let ray = |x: f32, y: f32| Ray::new(vec3(-6.0, 7.0, 9.0), vec3(x + 6.0, y - 7.0, -9.0).normalize());
     for (x, y) in [(1.0, 1.0), (7.0, 9.0), (12.0, 3.0), (14.5, 14.0)] {
-        // Eight times the same ray: what one of them costs, it costs once.
+        // Eight equal rays open as many nodes as one ray.
         let (query, singles) = packet(&spheres, &[ray(x, y); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
-        // Where both children are entered at one t either may come first.
+        // If a ray enters both children at the same t, either may come first.
         let most = opened_alone(&singles[0]) + 2;
         judge_opened("8 equal rays through", &yours, most)?;
-        // And eight rays side by side open fewer nodes than one after the other.
+        // Eight rays side by side open fewer nodes together than one after the other.
         let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
         let (query, singles) = packet(&spheres, &beam);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         let alone: u64 = singles.iter().map(opened_alone).sum();
         judge_opened("8 rays side by side through", &yours, alone / 2)?;
-        // A node is opened for the sake of a ray that enters it before its hit.
+        // A node is needed if at least one ray enters it before its hit.
         let needed = |node: u32| {
             singles.iter().any(|single| {
                 let (near, far) = single.table.boxes[node as usize];
@@ -189,11 +191,11 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
             })
         };
         let needless = yours.opened.iter().filter(|&&node| !needed(node)).count();
-        // The rays go together, so a few may go into the farther child first.
+        // Allow a quarter of needless nodes, because some rays of a packet enter the farther child first.
         if needless > yours.opened.len() / 4 {
-            let describe = format!("{needless} of {} nodes opened without need", yours.opened.len());
+            let describe = format!("{needless} of {} opened nodes are needless", yours.opened.len());
             return Err(Broken::with_texts("8 rays side by side through 64 spheres", describe, "few", "counted").looks_like(Some(
-                "nodes are opened that no ray enters before its hit: shorten each ray by its hits, and take the nearer child first",
+                "you open nodes that no ray enters before its hit: shorten each ray to its best hit, and search the nearer child first",
             )));
         }
     }
@@ -215,11 +217,12 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
         let broken = Broken::with_texts(
             input,
             format!("node {} is opened again", pair[0]),
-            "once a packet",
+            "once per packet",
             "counted",
         );
-        return Err(broken
-            .looks_like(Some("the rays go one after the other: open a node once, for all that enter it")));
+        return Err(broken.looks_like(Some(
+            "you search for the rays one after the other: open a node once for all rays that enter it",
+        )));
     }
     if yours.opened.len() as u64 > most {
         let broken = Broken::with_texts(
@@ -228,7 +231,7 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
             format!("at most {}", describe(most)),
             "counted",
         );
-        return Err(broken.looks_like(Some("nodes are opened that no ray enters before its hit")));
+        return Err(broken.looks_like(Some("you open nodes that no ray enters before its hit")));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! The uniform grid: how fine, what is where, and the way of a ray through it.
+//! The laws of the uniform grid: which primitives each cell lists, and the search.
 
 use super::lists::{bounds_fault, is_far_off, some_boxes};
 use super::parts;
@@ -32,7 +32,8 @@ fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<Outcome> {
         None => Ok(()),
         Some((yours, expected, diagnosis)) => {
             let input = format!("build(&{}, {})", checks::paste::list(&query.bounds), query.resolution);
-            Err(Broken::with_texts(input, yours, expected, "what makes a grid").looks_like(known(diagnosis)))
+            Err(Broken::with_texts(input, yours, expected, "the definition of a grid")
+                .looks_like(known(diagnosis)))
         }
     })
 }
@@ -43,10 +44,14 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
     let ends = grid.starts.last().is_some_and(|last| *last as usize == grid.items.len());
     if grid.resolution != query.resolution || grid.starts.len() != n as usize + 1 || !in_order || !ends {
         let yours = format!("{} cells, starts {:?}", grid.resolution, grid.starts);
-        return Some((yours, format!("{n} cells, their starts, and the number of items at the end"), ""));
+        return Some((
+            yours,
+            format!("{n} cells, ascending starts, and the number of items as the last one"),
+            "",
+        ));
     }
     if let Some((yours, expected)) = bounds_fault(&grid.bounds, &query.bounds) {
-        return Some((yours, expected, "bounds must be around all boxes that are numbers"));
+        return Some((yours, expected, "bounds must contain all boxes that are not empty"));
     }
     for number in 0..n {
         let at = uvec3(
@@ -60,9 +65,13 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
             let times = listed.iter().filter(|&&other| other == id as u32).count();
             let describe = |times: usize| format!("primitive {id} is listed {times} times in cell {at}");
             if one.is_empty() && times > 0 {
-                return Some((describe(times), describe(0), "what is not a number is in no cell"));
+                return Some((
+                    describe(times),
+                    describe(0),
+                    "you list an empty box or one with NaN: leave it out",
+                ));
             }
-            // Cells over one point are all that point: one that lists what is there will do.
+            // All cells of a grid over a single point are that point: one of them that lists the primitive is enough.
             let elsewhere = || (0..n).any(|other| grid.primitives(other).contains(&(id as u32)));
             let one_place = grid.bounds.min == grid.bounds.max;
             if !one.is_empty() && cell.touches(one) && times != 1 && !(times == 0 && one_place && elsewhere())
@@ -70,10 +79,10 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
                 let middle = cell.touches(&Aabb::new(0.5 * (one.min + one.max), 0.5 * (one.min + one.max)));
                 let diagnosis = match times {
                     0 if !middle => {
-                        "all cells that a box reaches into list it, and not that of its middle alone; to touch is to reach"
+                        "you leave out a cell: all cells that a box overlaps or touches list it, not only the cell of its middle"
                     }
-                    0 => "a primitive was left out",
-                    _ => "a primitive is listed twice in one cell",
+                    0 => "you leave out a primitive",
+                    _ => "you list a primitive twice in one cell",
                 };
                 return Some((describe(times), describe(1), diagnosis));
             }
@@ -81,7 +90,7 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
                 return Some((
                     describe(times),
                     describe(0),
-                    "a primitive is listed in a cell that it does not reach",
+                    "you list a primitive in a cell that it does not overlap",
                 ));
             }
         }
@@ -93,19 +102,19 @@ pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome 
     agrees(trial, Searcher::Grid)
 }
 
-/// Trap A8: a large sphere of the first cell is met in the third, and a small one in the second is nearer.
+/// Trap A8: a large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> Outcome {
     let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
     let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25), sphere(0.0, 3.0, 0.0, 0.5)]);
     let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
-    // The large sphere is listed from the first cell on, as a longer thing would be.
+    // The large sphere is listed from the first cell on, as a longer primitive would be.
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 4.5, 4.0));
     let cells = filled(bounds, uvec3(4, 1, 1), &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
     let hits = scene.hits(&ray);
     let yours = trial.kit.grid_search(&[CellsQuery { cells, ray, hits: hits.clone() }]).remove(0);
-    judge("grid of 4 cells along x; primitive 0 reaches through all", &ray, &hits, &yours).map_err(|broken| {
+    judge("grid of 4 cells along x; all of them list primitive 0", &ray, &hits, &yours).map_err(|broken| {
         broken.looks_like(Some(
-            "trap A8: the hit of a cell lies beyond the cell, where another is nearer: go on until the cell begins behind it",
+            "trap A8: the first hit lies beyond its cell, and a later cell has a nearer one: go on until the next cell begins behind the best hit",
         ))
     })
 }
@@ -122,7 +131,7 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
         let queries: Vec<CellsQuery<Grid>> = rays.iter().map(query).collect();
         compare(&queries, trial.kit.grid_search(&queries), |query, yours| judge_way(query, &yours.visits))
     })?;
-    // A row of spheres of which the first is hit: what lies behind is not visited.
+    // A row of spheres of which the first is hit: the cells behind it must not be visited.
     let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
     let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
     for query in grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1)) {
@@ -139,28 +148,25 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
     Ok(())
 }
 
-/// Whether a way through empty cells is that of the ray.
+/// Whether the visits to empty cells are those of the ray.
 fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
     let parts = parts::of_grid(&query.cells, &query.ray);
     let fault = |yours: String, expected: String, diagnosis: &'static str| {
-        let input = format!(
-            "grid of {} cells without anything in them\n{}",
-            query.cells.resolution,
-            query.ray.paste()
-        );
-        Err(Broken::with_texts(input, yours, expected, "every cell asked, in double precision")
+        let input =
+            format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
+        Err(Broken::with_texts(input, yours, expected, "every cell tested in double precision")
             .looks_like(known(diagnosis)))
     };
-    // A cell that the ray goes through well inside must be visited; one that it touches may be.
+    // The search must visit each cell through whose inside the ray passes, and may visit cells that the ray touches.
     if let Some((cell, near, far)) =
         parts::inside_grid(&query.cells, &query.ray).iter().find(|(cell, ..)| !visits.contains(cell))
     {
-        let expected = format!("{cell} among them, in which the ray is from t = {near:.3} to {far:.3}");
+        let expected = format!("a visit to {cell}, in which the ray is from t = {near:.3} to {far:.3}");
         let reaches = query.ray.t_max.is_finite();
         let diagnosis = match visits.is_empty() {
-            true => "the first cell is not found: clip the ray to the box around all, and start there",
-            false if reaches => "a cell within the ray's range was left out",
-            false => "a cell was left out: step along the axis whose plane comes first",
+            true => "you do not find the first cell: clip the ray to the grid's bounds, and start there",
+            false if reaches => "you leave out a cell within the ray's range",
+            false => "you leave out a cell: step along the axis whose plane comes first",
         };
         return fault(format!("visits to {visits:?}"), expected, diagnosis);
     }
@@ -170,17 +176,17 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
             return fault(
                 format!("a visit to {visit}"),
                 "none".into(),
-                "a cell was visited that the ray does not enter",
+                "you visit a cell that the ray does not enter",
             );
         };
         if visits[..index].contains(visit) {
-            return fault(format!("{visit} is visited twice"), "once".into(), "the walk turns back");
+            return fault(format!("{visit} is visited twice"), "once".into(), "you visit a cell twice");
         }
         if *near < last - 1e-2 {
             return fault(
                 format!("visits to {visits:?}"),
-                "cells as the ray enters them".into(),
-                "not in the order of t",
+                "cells in the order in which the ray enters them".into(),
+                "you do not visit the cells in the order of t",
             );
         }
         last = last.max(*near);
@@ -190,11 +196,11 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
 
 /// Trap A8, second part: 250 cells along an axis.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
-    // Sides that are no multiples of a power of two, so that a step is rounded; and cells twice as long along y, so that
-    // one axis takes twice as many steps as the other.
+    // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along y, so that one
+    // axis takes twice as many steps as the other.
     let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
     let grid = bare_grid(bounds, uvec3(250, 125, 1));
-    // Just beside corners: which of two neighbours comes next is decided by little, but by far more than doubles need.
+    // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
     for off in [7e-7f32, -7e-7, 1.2e-6, -1.2e-6] {
         let origin = vec3(1.1 - 0.5, 2.3 - 0.5 + off, -3.0);
         let query =
@@ -214,14 +220,14 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
                 "planes in double precision",
             );
             return Err(broken.looks_like(Some(
-                "trap A8: tMax += tDelta adds up a rounding a step: work out t from the number of the cell, in double",
+                "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision",
             )));
         }
     }
     Ok(())
 }
 
-/// The cells along a ray that rises along x and y, from sorted planes.
+/// The cells along a ray whose direction has positive x and y, from the sorted planes.
 fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     let t = |axis: usize, i: u32| {
@@ -243,7 +249,7 @@ fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
     visits
 }
 
-/// Through lattice corners, from faces, along faces, in a flat grid: what touches is found.
+/// Rays through corners of cells, from faces, along faces and in a flat grid.
 pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Outcome {
     let lattice: Vec<Thing> = (0..27)
         .map(|i| sphere((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
@@ -266,7 +272,7 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ou
         ("flat tiles", flat, uvec3(6, 6, 1)),
     ] {
         let scene = Scene::new(things);
-        // No room around all: walls lie exactly in the faces of the grid.
+        // Leave no room around the boxes, so that walls lie exactly in the faces of the grid.
         let boxes = scene.boxes();
         let all = checks::tree::around(&boxes);
         let queries = grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution);

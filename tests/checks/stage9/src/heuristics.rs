@@ -1,4 +1,4 @@
-//! The five heuristics of the kd-tree, each alone: what it does, and that it does nothing when it is off.
+//! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -13,7 +13,8 @@ fn build(trial: &Trial<'_>, bounds: &[Aabb], heuristics: KdHeuristics) -> KdTree
     trial.kit.kd_build(&[KdQuery { bounds: bounds.to_vec(), heuristics, leaf_size: 2 }]).remove(0)
 }
 
-/// Axis and place of the first cut, how many primitives are below it on the left and on the right, and on both sides.
+/// The axis and the coordinate of the first cut, and the numbers of primitives on the left, on the right and on both
+/// sides.
 fn first_cut(tree: &KdTree) -> Option<(usize, f32, [usize; 3])> {
     let Some(KdNode::Inner { axis, at, left, right }) = tree.nodes.first().copied() else { return None };
     let below = |side: u32| {
@@ -73,7 +74,7 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
                 &format!("{what}, longest_axis alone"),
                 &on,
                 "a cut across that axis",
-                "not the longest side of the cell",
+                "you cut across an axis that is not the longest side of the cell",
             );
         }
         let off = first_cut(&build(trial, &row, NONE));
@@ -81,12 +82,12 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
             return refuse(
                 &format!("{what}, no heuristic"),
                 &off,
-                "a cut across x: by turns, x first",
-                "the longest axis although it is switched off",
+                "a cut across x: axes in turn, x first",
+                "you cut across the longest axis although longest_axis is switched off",
             );
         }
     }
-    // By turns: x at the root, y below it.
+    // Axes in turn: x at the root, y and z below it.
     let block = cubes((0..64).map(|i| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32)));
     let tree = build(trial, &block, NONE);
     let mut axes = vec![None; 3];
@@ -97,8 +98,8 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
     });
     if axes != [Some(0), Some(1), Some(2)] {
         let input = "build of 4 × 4 × 4 boxes, no heuristic, leaf_size 2";
-        return Err(Broken::new(input, axes, "axes 0, 1, 2 at depths 0, 1, 2", "by turns")
-            .looks_like(Some("not by turns: the axis is the depth modulo 3")));
+        return Err(Broken::new(input, axes, "axes 0, 1, 2 at depths 0, 1, 2", "axes in turn")
+            .looks_like(Some("you do not take the axes in turn: the axis is the depth modulo 3")));
     }
     Ok(())
 }
@@ -111,8 +112,8 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> Outcome {
         return refuse(
             &format!("{what}, balanced_counts alone"),
             &on,
-            "about 20 on either side",
-            "the counts are not balanced",
+            "about 20 on each side",
+            "your cut leaves counts that are not balanced",
         );
     }
     let off = first_cut(&build(trial, &crowd, NONE));
@@ -121,14 +122,14 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> Outcome {
             &format!("{what}, no heuristic"),
             &off,
             "a cut in the middle, at 200.25",
-            "without heuristics the cut is in the middle",
+            "your cut is not in the middle of the cell although no heuristic is on",
         );
     }
     Ok(())
 }
 
 pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> Outcome {
-    // Planks across the middle, side by side along y; left and right of a gap at x = 2.5 there is nothing but small boxes.
+    // 12 planks lie across the middle, side by side along y. 4 small boxes lie left of a gap between x = 2 and 3.
     let planks = (0..12).map(|i| Aabb::new(vec3(3.0, i as f32, 0.0), vec3(10.0, i as f32 + 0.5, 0.5)));
     let small =
         (0..4).map(|i| Aabb::new(vec3(0.0, 3.0 * i as f32, 0.0), vec3(2.0, 3.0 * i as f32 + 0.5, 0.5)));
@@ -145,7 +146,7 @@ pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> Outcome {
                 &what,
                 &on,
                 "a cut across x between 2 and 3, with none on both sides",
-                "a plane with many on both sides",
+                "you choose a plane with many on both sides",
             );
         }
     }
@@ -155,13 +156,13 @@ pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> Outcome {
             &format!("{what}, no heuristic"),
             &off,
             "a cut in the middle, with 12 on both sides",
-            "straddlers are avoided although that is switched off",
+            "you avoid straddlers although few_straddlers is switched off",
         );
     }
     Ok(())
 }
 
-/// The share of all space that is in empty leaves down to this depth.
+/// The fraction of the volume that is in empty leaves down to this depth.
 fn empty_share(tree: &KdTree, most_depth: usize) -> f64 {
     let volume = |size: glam::DVec3| size.x * size.y * size.z;
     let (mut empty, mut all) = (0.0, 1.0);
@@ -178,18 +179,19 @@ fn empty_share(tree: &KdTree, most_depth: usize) -> f64 {
 }
 
 pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
-    // Two crowds in opposite corners of a cube: one cut divides them, and three each leave nothing but themselves.
+    // Two groups in opposite corners of a cube: one cut separates them, and three more per group cut off its empty
+    // space.
     let crowd = |corner: f32| {
         (0..27).map(move |i| {
             Vec3::splat(corner) + 0.75 * vec3((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32)
         })
     };
     let all = cubes(crowd(0.0).chain(crowd(18.0)));
-    let what = "two crowds of 27 boxes in opposite corners of a cube of 20";
+    let what = "two groups of 27 boxes in opposite corners of a cube of side 20";
     let describe =
-        |share: f64| format!("{:.0} % of space in empty leaves at depth 4 or above", 100.0 * share);
+        |share: f64| format!("{:.0} % of the volume in empty leaves at depths 0 to 4", 100.0 * share);
     let on = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 4);
-    // 99.8 % of the cube is empty; after four cuts a crowd is still in a cell of a tenth of its side at most twice over.
+    // 99.8 % of the cube is empty, and four cuts are enough to cut most of it off.
     if on < 0.9 {
         return Err(Broken::with_texts(
             format!("build of {what}, cut_off_empty_space alone, leaf_size 2"),
@@ -197,22 +199,22 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
             "at least 90 %",
             "the heuristic",
         )
-        .looks_like(Some("empty margins of a cell are not cut off first")));
+        .looks_like(Some("empty margins of a cell are not cut off first: do it before any other cut")));
     }
-    // The middle alone leaves cells of an eighth, each divided evenly: after four cuts 6/8 and half of the rest.
+    // Cuts in the middle leave less of the volume in empty leaves at depth 2.
     let off = empty_share(&build(trial, &all, NONE), 2);
     let early = empty_share(&build(trial, &all, KdHeuristics { cut_off_empty_space: true, ..NONE }), 2);
     if off >= early {
         let input = format!("build of {what}, with cut_off_empty_space and without, leaf_size 2");
         let yours = format!("with {:.0} %, without {:.0} % empty at depth 2", 100.0 * early, 100.0 * off);
         return Err(Broken::with_texts(input, yours, "more with it than without", "the heuristic")
-            .looks_like(Some("the margins are cut off although that is switched off")));
+            .looks_like(Some("you cut off the margins although cut_off_empty_space is switched off")));
     }
     Ok(())
 }
 
 pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
-    // Planks across the middle: any plane across x that divides anything has most of them on both sides.
+    // Planks lie across the middle: a plane across x that divides the boxes has most of the planks on both sides.
     let planks = |n_across: usize, n_small: usize| -> Vec<Aabb> {
         let across =
             (0..n_across).map(|i| Aabb::new(vec3(0.0, 0.0, i as f32), vec3(64.0, 1.0, i as f32 + 1.0)));
@@ -221,7 +223,7 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
         across.chain(small).collect()
     };
     let stop = KdHeuristics { stop_at_overlap: true, ..NONE };
-    // Left 8 across, right 8 across and as many small ones as there are: 8 of 8 on the left are on the right.
+    // On the left are 8 planks, on the right 8 planks and 12 small boxes: 8 of 8 on the left are also on the right.
     let what = "8 planks from x = 0 to 64 and 12 small boxes right of x = 40";
     let on = build(trial, &planks(8, 12), stop);
     if on.nodes.len() != 1 {
@@ -229,7 +231,7 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
             &format!("{what}, stop_at_overlap alone"),
             &first_cut(&on),
             "a leaf: all 8 on the left are also on the right",
-            "60 % of those on one side, whichever side that is",
+            "you divide although 60 % of those on one side are on both: compare with the count of each side",
         );
     }
     let off = build(trial, &planks(8, 12), NONE);
@@ -238,10 +240,10 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
             &format!("{what}, no heuristic"),
             &first_cut(&off),
             "a cut in the middle",
-            "a leaf for the sake of overlap, although that is switched off",
+            "you make a leaf because of overlap although stop_at_overlap is switched off",
         );
     }
-    // 4 planks across the middle, 4 small boxes on the left and 4 on the right: half of each side, and that is no reason.
+    // 4 planks across the middle, 4 small boxes on the left and 4 on the right: half of each side, which is below 60 %.
     let small = |x: f32| {
         (0..4).map(move |i| {
             Aabb::new(vec3(x + 2.0 * i as f32, 0.0, 0.0), vec3(x + 2.0 * i as f32 + 1.0, 1.0, 1.0))
@@ -254,8 +256,8 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
         return refuse(
             what,
             &first_cut(&divided),
-            "a cut in the middle: half of either side is on the other, and not 60 %",
-            "a leaf too soon",
+            "a cut in the middle: half of each side is on the other, which is below 60 %",
+            "you make a leaf although less than 60 % of each side are on both",
         );
     }
     Ok(())

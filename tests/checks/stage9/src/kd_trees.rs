@@ -1,4 +1,4 @@
-//! The kd-tree: what is where, and the way of a ray through it.
+//! The laws of the kd-tree: which primitives each leaf lists, and the search.
 
 use super::lists::{Fault, ended, endless, judge_references, lists_fault, some_boxes};
 use super::parts;
@@ -21,7 +21,7 @@ fn describe(query: &KdQuery) -> String {
     format!("build(&{boxes},\n&{:?}, {})", query.heuristics, query.leaf_size)
 }
 
-const WHAT_MAKES_IT: &str = "what makes a kd-tree";
+const WHAT_MAKES_IT: &str = "the definition of a kd-tree";
 
 fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
@@ -49,10 +49,10 @@ fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
     let most = KdTree::most_depth(query.bounds.iter().filter(|one| !one.is_empty()).count());
     if yours.depth() > most + 1 {
         let yours = format!("a node at depth {}", yours.depth() - 1);
-        return Some((yours, format!("at most {most}"), "KdTree::most_depth is passed"));
+        return Some((yours, format!("at most {most}"), "the tree is deeper than KdTree::most_depth"));
     }
     if let Some((yours, expected)) = outside {
-        return Some((yours, expected, "a plane outside of the cell divides nothing"));
+        return Some((yours, expected, "you cut at a plane outside the cell"));
     }
     lists_fault(&yours.bounds, &query.bounds, &leaves)
 }
@@ -81,11 +81,11 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
         for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
             let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
             let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
-            let says = "stop at KdTree::most_depth, and where all are on both sides";
+            let says = "stop at KdTree::most_depth, and where all primitives are on both sides";
             let build = || trial.kit.kd_build(std::slice::from_ref(&query)).remove(0);
             let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
             judge_tree(&query, &yours)?;
-            let says = "all are on both sides, again and again: make a leaf of them";
+            let says = "you divide primitives that are all on both sides: make a leaf of them";
             judge_references(&input, &yours.items, 1 << 17, says)?;
         }
     }
@@ -96,7 +96,7 @@ pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
     agrees(trial, Searcher::KdTree)
 }
 
-/// A tree of one cut across x, with these primitives on either side.
+/// A tree of one cut across x, with these primitives on the two sides.
 fn two_leaves(bounds: Aabb, at: f32, left: &[u32], right: &[u32]) -> KdTree {
     let mut tree = KdTree::new(bounds);
     let root = tree.add_node(0, 1);
@@ -114,9 +114,9 @@ fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, 
     judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
 }
 
-/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded in two ways.
+/// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
 pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outcome {
-    let says = "traps A4 and A6: `hit.distance < t'` drops what lies on the far face, and the two t are rounded in two ways; keep the best hit, wherever its cell ends";
+    let says = "traps A4 and A6: `hit.distance < t'` loses a hit on the far face, and the two t are rounded differently; keep the best hit, wherever its cell ends";
     for (size, rough) in [(1.0, false), (1.0, true), (100.0, true), (1e5, true)] {
         let walls = [wall(0, size, size), wall(0, 0.0, size)];
         let scene = Scene { things: walls.into_iter().flatten().collect(), rough };
@@ -124,7 +124,7 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outco
         let whole = two_leaves(bounds, 0.0, &[2, 3], &[0, 1, 2, 3]);
         for i in 0..12 {
             let y = (i as f32 - 5.5) * 0.07;
-            // The far wall, behind nothing; and the wall in the plane of the cut, listed on both sides.
+            // Aim at the far wall, and at the wall in the plane of the cut, which is listed on both sides.
             let right = Ray::new(size * vec3(0.2, y, 0.3 * y), vec3(1.0, 0.2 * y, 0.1).normalize());
             let through = Ray::new(size * vec3(-0.7, y, 0.3 * y), vec3(1.0, 0.2 * y, 0.1).normalize());
             for ray in [right, through] {
@@ -142,9 +142,10 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outco
     Ok(())
 }
 
-/// Trap A6 alone: what lies in a face from the right comes out a step nearer than what lies in it from the left.
+/// Trap A6 alone: two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
+/// left.
 pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
-    let says = "trap A6: t of a hit and t of a cell are rounded in two ways; stop only if the hit is before the cell by more than that";
+    let says = "trap A6: t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error";
     for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7)] {
         let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
         let exact = at - x;
@@ -168,20 +169,19 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
     let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25)]);
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 5.0, 4.0));
     let tree = two_leaves(bounds, 2.0, &[0], &[0, 1]);
-    let says =
-        "the hit of a leaf lies beyond the leaf, where another is nearer: `Some hit → Some hit` is too soon";
+    let says = "the first hit lies beyond its leaf, and the next leaf has a nearer one: `Some hit → Some hit` stops too early";
     ask(
         trial,
         &tree,
         &scene,
         &Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X),
-        "kd-tree; primitive 0 reaches into both leaves",
+        "kd-tree; primitive 0 overlaps both leaves",
         says,
     )?;
-    // And nothing nearer: the hit counts although it lies beyond the first leaf, and the second does not list it.
+    // Without the small sphere, the hit counts although it lies beyond the first leaf and the second does not list it.
     let tree = two_leaves(bounds, 2.0, &[0], &[]);
     let alone = Scene::new(vec![large]);
-    let says = "a hit beyond its leaf was thrown away: it is a hit all the same";
+    let says = "the only hit lies beyond its leaf: a hit counts wherever its leaf ends";
     ask(
         trial,
         &tree,
@@ -194,11 +194,11 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
 
 /// Trap A5: a ray in the plane of a cut, or that starts on it, is on both sides.
 pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outcome {
-    let says = "trap A5: a ray in the plane, or that starts on it, is on both sides; what lies in the plane may be listed on one only";
+    let says = "trap A5: a ray in the plane, or that starts on it, is on both sides, and a primitive in the plane may be listed on one side only: search both";
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
     for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])] {
         let tree = two_leaves(bounds, 1.0, left, right);
-        // Two spheres whose middles lie in the plane, and walls in it.
+        // Three spheres whose centres lie in the plane.
         let spheres = Scene::new(vec![
             sphere(1.0, 5.0, 0.0, 0.5),
             sphere(1.0, 0.0, 5.0, 0.5),
@@ -217,7 +217,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
                 )?;
             }
         }
-        // From a point of the plane to what touches it on either side.
+        // Rays from a point of the plane to spheres on each side.
         let beside = Scene::new(vec![
             sphere(-3.0, 0.5, 0.0, 0.5),
             sphere(-5.0, -0.5, 0.5, 1.0),
@@ -235,7 +235,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
             )?;
         }
     }
-    // A whole wall in the plane, listed on one side: rays at it from either side, from far and near.
+    // A wall in the plane, listed on one side only, and rays at it from both sides, from far and near.
     let wall = Scene::new(wall(0, 1.0, 4.0).to_vec());
     for (left, right) in [(&[0u32, 1][..], &[][..]), (&[][..], &[0, 1][..])] {
         let tree = two_leaves(bounds, 1.0, left, right);

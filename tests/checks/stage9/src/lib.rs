@@ -1,8 +1,9 @@
-//! Stage 9: partitions of space.
+//! The checks of stage 9: partitions of space.
 //!
-//! `resolutions` (and where a ray is in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` · `bsp_searches` · `coherence`.
-//! What they share: `scenes` (what is searched), `structures` (plain builders), `searches` (asked and judged alike), `parts`
-//! (where a ray is in each node), `lists` (what stands in cells).
+//! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
+//! `bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
+//! `searches` (calls a search and judges its answer), `parts` (the interval of a ray in each node), `lists` (judges the
+//! lists of cells).
 
 mod bsp_searches;
 mod bsps;

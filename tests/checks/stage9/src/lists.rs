@@ -1,4 +1,4 @@
-//! What stands in cells: the laws that all builders share.
+//! The laws that all builders share: which primitives a cell lists.
 
 use checks::broken::{Broken, Outcome};
 use checks::judge::known;
@@ -9,7 +9,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::Cell;
 
-/// Boxes on a coarse grid, so that many touch; some flat, some not numbers.
+/// Boxes on a coarse grid, so that many touch. Some are flat, and some have NaN coordinates.
 pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let one =
         (checks::generate::point(4), checks::generate::point(2), 0..20i32).prop_map(|(p, size, kind)| {
@@ -22,16 +22,16 @@ pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
     prop::collection::vec(one, 1..24)
 }
 
-/// What is wrong with the box around all, if anything is: `(yours, expected)`.
+/// `(yours, expected)` if the bounds of a structure do not contain all boxes that are not empty.
 pub(super) fn bounds_fault(bounds: &Aabb, boxes: &[Aabb]) -> Option<(String, String)> {
     let all = checks::tree::around(boxes.iter().filter(|one| !one.is_empty()));
-    (!bounds.contains_box(&all)).then(|| {
-        (format!("the structure ends at {}", bounds.paste()), format!("all of {} within", all.paste()))
-    })
+    (!bounds.contains_box(&all))
+        .then(|| (format!("the bounds {}", bounds.paste()), format!("bounds that contain {}", all.paste())))
 }
 
-/// Whether a box that a cell lists has nothing to do with it: it is farther off than a 64th of all, and than the room that
-/// builders leave, which is 2⁻²² of the largest coordinate at least. Around a single point that is all there is.
+/// Whether a box is too far from a cell that lists it: farther than a 64th of the whole extent, and farther than 2⁻²⁰
+/// of the largest coordinate, which is more than the room that builders leave. For a single point only the second limit
+/// counts.
 pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
     let largest = all.min.abs().max(all.max.abs()).max_element();
     let room = ((all.max - all.min).max_element() / 64.0).max(2f32.powi(-20) * largest);
@@ -39,10 +39,10 @@ pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
     !(gap.max_element() <= room)
 }
 
-/// What is wrong: `(yours, expected, diagnosis)`.
+/// A fault of a structure: `(yours, expected, diagnosis)`.
 pub(super) type Fault = (String, String, &'static str);
 
-/// Judges a tree of `n_nodes` nodes: over `nothing` it has none, and over anything `fault` looks for what is wrong.
+/// Judges a tree of `n_nodes` nodes. If there is `nothing` to list, it must have no nodes; otherwise `fault` judges it.
 pub(super) fn judge_tree(
     describe: impl FnOnce() -> String,
     source: &'static str,
@@ -51,7 +51,9 @@ pub(super) fn judge_tree(
 ) -> Outcome {
     let fault = match (nothing, n_nodes) {
         (true, 0) => None,
-        (true, n) => Some((format!("{n} nodes"), "no nodes".into(), "nothing needs no tree")),
+        (true, n) => {
+            Some((format!("{n} nodes"), "no nodes".into(), "you make nodes although there are no primitives"))
+        }
         (false, _) => fault(),
     };
     fault.map_or(Ok(()), |(yours, expected, diagnosis)| {
@@ -59,7 +61,7 @@ pub(super) fn judge_tree(
     })
 }
 
-/// The tree that `build` makes, if it comes to an end.
+/// The tree that `build` makes; an error if it panics, for example because its recursion does not end.
 pub(super) fn ended<T>(
     input: &str,
     source: &'static str,
@@ -74,7 +76,7 @@ pub(super) fn ended<T>(
     })
 }
 
-/// Whether no more than `most` primitives stand in leaves, each counted once a leaf.
+/// Whether the leaves hold at most `most` references. A primitive counts once per leaf that lists it.
 pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> Outcome {
     let describe = |n: usize| format!("{n} references");
     if yours.len() <= most {
@@ -85,17 +87,21 @@ pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'
     Err(broken.looks_like(Some(says)))
 }
 
-/// What is wrong with the lists of leaves, if anything is. Each leaf comes with its cell.
+/// The first fault in the lists of leaves. Each leaf comes with its cell.
 pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, Vec<u32>)]) -> Option<Fault> {
     if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
-        return Some((yours, expected, "bounds must be around all boxes that are numbers"));
+        return Some((yours, expected, "bounds must contain all boxes that are not empty"));
     }
     for (node, cell, listed) in leaves {
         for (id, one) in boxes.iter().enumerate() {
             let times = listed.iter().filter(|&&other| other == id as u32).count();
             let describe = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if one.is_empty() && times > 0 {
-                return Some((describe(times), describe(0), "what is not a number is in no cell"));
+                return Some((
+                    describe(times),
+                    describe(0),
+                    "you list an empty box or one with NaN: leave it out",
+                ));
             }
             if !one.is_empty() && cell.touches(one) && times != 1 {
                 let touches = (0..3).any(|axis| {
@@ -103,9 +109,9 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
                     high == cell.min[axis] || low == cell.max[axis]
                 });
                 let diagnosis = match times {
-                    0 if touches => "trap A5: what touches a plane belongs to both sides",
-                    0 => "a primitive that reaches into several cells belongs to all of them",
-                    _ => "a primitive is listed twice in one leaf",
+                    0 if touches => "trap A5: a primitive that touches a plane belongs to both sides",
+                    0 => "a primitive that overlaps several cells belongs to all of them",
+                    _ => "you list a primitive twice in one leaf",
                 };
                 return Some((describe(times), describe(1), diagnosis));
             }
@@ -113,7 +119,7 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
                 return Some((
                     describe(times),
                     describe(0),
-                    "a primitive is listed in a leaf that it does not reach",
+                    "you list a primitive in a leaf that it does not overlap",
                 ));
             }
         }
@@ -121,7 +127,7 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
     None
 }
 
-/// Sets of boxes on which builders may not end, each with its name.
+/// Named sets of boxes for which the recursion of a builder may not end.
 pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
     let cube = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let corner = Aabb::new(Vec3::splat(9.0), Vec3::splat(9.0));
@@ -129,7 +135,7 @@ pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
     let line = (0..64).map(|i| Aabb::new(Vec3::X * i as f32, Vec3::X * i as f32)).collect();
     let halving =
         (0..100).map(|i| Aabb::new(Vec3::splat(2f32.powi(-i)), Vec3::splat(2f32.powi(-i)))).collect();
-    // Of ten, six reach across everything.
+    // Six of ten boxes cover everything.
     let long = (0..10).map(|i| {
         let x = i as f32;
         if i < 6 {
@@ -145,10 +151,10 @@ pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
         ("1000 boxes in one place", vec![cube; 1000]),
         ("1000 points in one place", vec![Aabb::new(Vec3::ONE, Vec3::ONE); 1000]),
         ("1000 boxes in one place and a point", std::iter::repeat_n(cube, 1000).chain([corner]).collect()),
-        ("24 boxes in one another", concentric),
+        ("24 concentric boxes", concentric),
         ("64 points in a line", line),
         ("100 points, each half as far as the one before", halving),
-        ("ten boxes of which six are everywhere", long.collect()),
-        ("boxes that are not numbers", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
+        ("ten boxes of which six cover everything", long.collect()),
+        ("boxes with NaN coordinates", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
     ]
 }

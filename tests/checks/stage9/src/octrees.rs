@@ -1,4 +1,4 @@
-//! The octree: what is where, and two ways of a ray through it.
+//! The laws of the octree: which primitives each leaf lists, and two searches.
 
 use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
 use super::parts;
@@ -21,7 +21,7 @@ fn describe(query: &OctreeQuery) -> String {
     format!("build(&{boxes}, {}, {})", query.leaf_size, query.max_depth)
 }
 
-const WHAT_MAKES_IT: &str = "what makes an octree";
+const WHAT_MAKES_IT: &str = "the definition of an octree";
 
 fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
@@ -39,7 +39,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     });
     if deepest > query.max_depth {
         let expected = format!("at most {}", query.max_depth);
-        return Some((format!("a node at depth {deepest}"), expected, "max_depth is passed"));
+        return Some((format!("a node at depth {deepest}"), expected, "the tree is deeper than max_depth"));
     }
     lists_fault(&yours.bounds, &query.bounds, &leaves)
 }
@@ -53,7 +53,7 @@ pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcom
 }
 
 pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
-    // 64 small boxes, one in each cell of the third level, and 8 more in one of them.
+    // 64 small boxes, one per cell of the third level, and 8 more in one of these cells.
     let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;
     let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
     let dense =
@@ -72,11 +72,12 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
         return Ok(());
     }
     let diagnosis = match needless {
-        Some(_) => "cells are divided that hold leaf_size or fewer",
-        None => "cells with more than leaf_size primitives are not divided",
+        Some(_) => "you divide cells that hold leaf_size or fewer primitives",
+        None => "you do not divide all cells with more than leaf_size primitives",
     };
-    let yours = format!("up to {most} primitives a leaf, {depth} levels, {n} nodes");
-    let expected = "2 a leaf, more levels where boxes are dense, and none divided that holds 2";
+    let yours = format!("up to {most} primitives per leaf, {depth} levels, {n} nodes");
+    let expected =
+        "at most 2 per leaf, more levels where boxes are dense, and no division of cells with 2 or fewer";
     Err(Broken::with_texts(
         "build of 64 boxes in 4 × 4 × 4, and 8 more in one corner, leaf_size 2, max_depth 8",
         yours,
@@ -90,7 +91,7 @@ fn is_inner(octree: &Octree, node: u32) -> bool {
     matches!(octree.nodes[node as usize], OctreeNode::Inner { .. })
 }
 
-/// All that stands in the leaves below a node, each once.
+/// The primitives that the leaves below a node list, each once.
 fn below(octree: &Octree, node: u32) -> Vec<u32> {
     let mut found = match octree.nodes[node as usize] {
         OctreeNode::Leaf { first, count } => octree.primitives(first, count).to_vec(),
@@ -110,8 +111,8 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
         let build = || trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
         let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
         judge_octree(&query, &yours)?;
-        // Eight times as many at each of five levels are not worth it, whatever the boxes.
-        let says = "all go to all octants, again and again: make a leaf if dividing does not help";
+        // No set of boxes needs eight times as many references at each of five levels.
+        let says = "you divide primitives that are in all octants: make a leaf if dividing does not help";
         judge_references(&input, &yours.items, 4096 + 64 * n, says)?;
     }
     Ok(())
@@ -125,9 +126,9 @@ pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcom
     agrees(trial, Searcher::Octree)
 }
 
-/// Rays along the edges and through the corners at which octants meet, with zeros of either sign.
+/// Rays along the edges and through the corners at which octants meet, with zeros of both signs in their directions.
 fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Outcome {
-    // Nothing in the middle, where octants meet.
+    // Leave out the sphere in the middle, where octants meet.
     let things: Vec<Thing> = (0..27)
         .filter(|i| *i != 13)
         .map(|i| sphere((i % 3) as f32 * 4.0, (i / 3 % 3) as f32 * 4.0, (i / 9) as f32 * 4.0, 0.5))
@@ -158,18 +159,18 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
 }
 
 pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> Outcome {
-    let says = "a point on a face is in the cell that the ray is about to enter: step onto the face, exactly, and decide by the sign of d";
+    let says = "a point on a face belongs to the cell that the ray is about to enter: choose it by the sign of d, and set the point exactly on the face";
     along_edges(trial, Searcher::OctreeByCells, says)
 }
 
 pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> Outcome {
-    let says = "trap A9: octants that are entered at one t need an order, too, and a ray in a face gives 0 / 0 unless you ask";
+    let says = "trap A9: octants that the ray enters at the same t need an order, too, and a ray in the plane of a face gives 0 / 0";
     along_edges(trial, Searcher::Octree, says)
 }
 
-/// Trap A9: a large sphere that reaches into the first octant is met in the second, behind a small one.
+/// Trap A9: a large sphere that overlaps the first octant is hit in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
-    let says = "trap A9: the hit of an octant lies beyond it, where another is nearer: go on until the next octant begins behind it";
+    let says = "trap A9: the first hit lies beyond its octant, and the next octant has a nearer one: go on until the next octant begins behind the best hit";
     let large = Thing::Sphere(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
     let scene = Scene::new(vec![large, sphere(4.5, 1.0, 1.0, 0.25)]);
     let ray = Ray::new(vec3(-1.0, 1.0, 1.0), Vec3::X);
@@ -183,7 +184,7 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
         ("from the root down", trial.kit.octree_search(queries)),
         ("cell by cell", trial.kit.octree_by_cells(queries)),
     ] {
-        let what = format!("octree, {name}; primitive 0 reaches into two octants along x");
+        let what = format!("octree, {name}; primitive 0 overlaps two octants along x");
         judge(&what, &ray, &query.hits, &yours[0]).map_err(|broken| broken.looks_like(Some(says)))?;
     }
     Ok(())
@@ -200,7 +201,7 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
     {
         let parts = parts::of_octree(&cells, &query.ray);
         judge_visits("octree over 128 spheres, from the root down", &query.ray, &parts, &down, true)?;
-        // On the way down to a leaf, nodes above are visited each time.
+        // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
         let leaves = parts::of_leaves(&cells, &parts);
         let visits = along.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
         let along = CellsAnswer { visits, ..along };

@@ -1,4 +1,4 @@
-//! Where rays are in the nodes of structures, by the definition: every node is asked.
+//! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
 use super::searches::Parts;
 use checks::double::box_interval;
@@ -7,7 +7,7 @@ use raykata::aabb::Aabb;
 use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree, OctreeNode};
 use raykata::ray::Ray;
 
-/// Where the ray is in a cell that is a little wider, so that whatever it touches is in.
+/// The interval of a ray in a cell that is widened a little, so that cells that the ray only touches are included.
 fn part(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
     part_of(ray, cell, (cell.max - cell.min).max_element() * (-16f64).exp2())
 }
@@ -28,14 +28,14 @@ pub(super) fn of_grid(grid: &Grid, ray: &Ray) -> Parts {
     numbered(grid).filter_map(|(i, cell)| part(ray, &cell).map(|(near, far)| (i, near, far))).collect()
 }
 
-/// The cells that the ray goes through, or passes by within `room`.
+/// The cells that the ray enters, or passes by within `room`.
 pub(super) fn near_grid(grid: &Grid, ray: &Ray, room: f64) -> Parts {
     numbered(grid)
         .filter_map(|(i, cell)| part_of(ray, &cell, room).map(|(near, far)| (i, near, far)))
         .collect()
 }
 
-/// The cells that the ray goes through well inside of their faces.
+/// The cells that the ray passes through well inside their faces.
 pub(super) fn inside_grid(grid: &Grid, ray: &Ray) -> Parts {
     numbered(grid)
         .filter_map(|(i, cell)| part_of(ray, &cell, -0.01).map(|(near, far)| (i, near, far)))

@@ -1,4 +1,4 @@
-//! How fine a grid should be, and where a ray is in a cell.
+//! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
 use checks::Trial;
 use checks::broken::{Broken, Outcome};
@@ -26,8 +26,8 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
         let (near, far) = slabs_interval(&query.ray, &query.bounds);
         let range = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
         let expected = (near.max(range.0), far.min(range.1));
-        // Some 2⁻¹⁸ for the room that rounding asks for, of t or of the numbers that t is made of. What a ray passes by at
-        // no more than that, a corner or a box without thickness, it may be said to touch.
+        // Allow 2⁻¹⁸ for rounding, relative to t or to the numbers from which t is computed. If a ray passes a corner
+        // or a flat box within this distance, both answers are accepted.
         let room = |t: f64| (-18f64).exp2() * (1.0 + t.abs());
         let close = |p: f64, q: f64| p == q || (p - q).abs() <= room(q);
         let fits = match yours {
@@ -42,15 +42,17 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
             return Ok(());
         }
         let diagnosis = match yours {
-            Some((t, t_end)) if t.is_nan() || t_end.is_nan() => "0 / 0: the ray runs in the plane of a face",
-            Some(_) if query.bounds.is_empty() => "an empty cell has no inside",
+            Some((t, t_end)) if t.is_nan() || t_end.is_nan() => {
+                "you return NaN: 0 / 0 for a ray in the plane of a face"
+            }
+            Some(_) if query.bounds.is_empty() => "you return a span for an empty cell",
             Some((t, t_end)) if t < range.0 - room(range.0) || t_end > range.1 + room(range.1) => {
-                "the range of the ray is left out"
+                "you ignore the range of the ray"
             }
             _ if query.ray.direction.to_array().contains(&0.0) => {
-                "a ray along a face is in the cell all the way or not at all: ask where it starts; the cell is closed"
+                "a ray along a face is between the two planes for every t or for no t: compare its origin with them; the cell is closed"
             }
-            None if near == far => "the cell is closed: to touch it is to be in it",
+            None if near == far => "you return None for a ray that touches the cell: the cell is closed",
             _ => "",
         };
         let expected = (expected.0 <= expected.1).then_some(expected);
@@ -77,20 +79,22 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
             let n: f64 = yours.to_array().into_iter().map(f64::from).product();
             let side = (query.bounds.max - query.bounds.min) / yours.as_vec3();
             let cubes = side.max_element() <= 2.0 * side.min_element();
-            // To round up or down on three axes of five cells or more changes the number by half at most.
+            // Rounding up or down on three axes of five or more cells changes the number by at most half.
             if cubes && 0.5 * wanted <= n && n <= 2.0 * wanted {
                 return Ok(());
             }
             let diagnosis = match () {
                 () if !cubes && yours.x == yours.y && yours.y == yours.z => {
-                    "as many cells on every axis: a longer side needs more"
+                    "you make as many cells on every axis: a longer side needs more"
                 }
-                () if !cubes => "the cells are no cubes",
+                () if !cubes => "your cells are not nearly cubes",
                 () if (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6 && query.density != 1.0 => {
-                    "the density is left out"
+                    "you leave out the density"
                 }
-                () if n < wanted => "too few cells: n of them along the three axes together, not along each",
-                () => "too many cells",
+                () if n < wanted => {
+                    "you make too few cells: the product over the three axes must be about density · n"
+                }
+                () => "you make too many cells: the product over the three axes must be about density · n",
             };
             let expected = format!("about {wanted} cells that are nearly cubes");
             Err(Broken::with_texts(
@@ -124,17 +128,23 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Outc
     ];
     for (query, expected) in cases {
         let yours = trial.kit.grid_resolution(std::slice::from_ref(&query))[0];
-        // Rounding may go up or down; what is flat is one cell, and the limit holds.
+        // Accept rounding up or down. A flat axis has exactly one cell, and the limit holds.
         let fits = (0..3).all(|axis| match expected[axis] {
             1 => yours[axis] == 1,
             n => yours[axis].abs_diff(n) <= 1.max(n / 8) && (1..=256).contains(&yours[axis]),
         });
         if !fits {
             let diagnosis = match () {
-                () if yours.min_element() == 0 => "an axis without a cell: at least 1",
-                () if yours.max_element() > 256 => "more cells along an axis than MOST_CELLS_ALONG",
-                () if query.bounds.is_empty() || query.n_primitives == 0 => "nothing is one cell",
-                () => "a flat box has no volume: take the axes along which it is thick, an area or a length",
+                () if yours.min_element() == 0 => "you return an axis without a cell: at least 1",
+                () if yours.max_element() > 256 => {
+                    "you return more cells along an axis than MOST_CELLS_ALONG"
+                }
+                () if query.bounds.is_empty() || query.n_primitives == 0 => {
+                    "an empty box, or one without primitives, gets one cell"
+                }
+                () => {
+                    "a flat box has no volume: use only the thick axes, whose product is an area or a length"
+                }
             };
             let describe = describe(&query);
             let broken = Broken::new(describe, yours, expected, "by hand");

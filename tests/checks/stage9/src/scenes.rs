@@ -1,5 +1,5 @@
-//! Spheres and tiles, the boxes and hulls around them, and where a ray hits them: in double precision, then rounded as if
-//! each had a formula of its own.
+//! Scenes of spheres and triangles, with the boxes and hulls around them and the `t` of hits. `t` is computed in double
+//! precision, then rounded as if each primitive had its own formula.
 
 use checks::double::sphere_roots;
 use checks::generate::point;
@@ -10,7 +10,7 @@ use raykata::partition::corners;
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-/// A primitive.
+/// A primitive of a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Thing {
     /// A sphere.
@@ -19,11 +19,12 @@ pub(super) enum Thing {
     Tile(Triangle),
 }
 
-/// What is to be searched, and how `t` is rounded.
+/// The primitives to search, and how `t` is rounded.
 #[derive(Clone, Debug)]
 pub(super) struct Scene {
     pub things: Vec<Thing>,
-    /// Whether every other primitive has a `t` that is two steps off, as another formula would have it.
+    /// Whether every second primitive has a `t` two floats too large and every other one two floats too small, as
+    /// different formulas would give.
     pub rough: bool,
 }
 
@@ -44,7 +45,7 @@ impl Scene {
         self.things.iter().map(hull).collect()
     }
 
-    /// For each primitive the `t` of its nearest hit in front of the ray; `inf` if there is none.
+    /// The `t` of the nearest hit in front of the ray per primitive; `inf` if there is none.
     pub(super) fn hits(&self, ray: &Ray) -> Vec<f32> {
         let hit = |(index, thing): (usize, &Thing)| {
             let t = match thing {
@@ -65,7 +66,7 @@ impl Scene {
     }
 }
 
-/// `(primitive, t)` of the smallest `t` that counts; of equal ones the first.
+/// `(primitive, t)` of the smallest `t` in the range of the ray; of equal ones the first.
 pub(super) fn closest(hits: &[f32], ray: &Ray) -> Option<(u32, f32)> {
     let counting = hits.iter().enumerate().filter(|(_, t)| ray.contains(**t));
     counting.min_by(|(_, p), (_, q)| p.total_cmp(q)).map(|(primitive, t)| (primitive as u32, *t))
@@ -81,7 +82,7 @@ fn bounds(thing: &Thing) -> Aabb {
 fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {
     let [a, b, c] = [tile.a, tile.b, tile.c].map(|p| p.as_dvec3() - ray.origin.as_dvec3());
     let direction = ray.direction.as_dvec3();
-    // Volumes that direction spans with each side; closed, so an edge belongs to both neighbours.
+    // The sign of the volume that the direction spans with each side; points on an edge belong to both neighbours.
     let [u, v, w] = [direction.dot(c.cross(b)), direction.dot(a.cross(c)), direction.dot(b.cross(a))];
     let inside = [u, v, w].iter().all(|x| *x >= 0.0) || [u, v, w].iter().all(|x| *x <= 0.0);
     let normal = (b - a).cross(c - a);
@@ -89,7 +90,7 @@ fn tile_t(ray: &Ray, tile: &Triangle) -> Option<f64> {
     (inside && u + v + w != 0.0 && t > 0.0).then_some(t)
 }
 
-/// The two tiles of a square wall across `axis` at `at`, from `-size` to `size`.
+/// The two triangles of a square wall across `axis` at `at`, from `-size` to `size`.
 pub(super) fn wall(axis: usize, at: f32, size: f32) -> [Thing; 2] {
     let corner = |u: f32, v: f32| {
         let mut p = Vec3::splat(at);
@@ -101,13 +102,13 @@ pub(super) fn wall(axis: usize, at: f32, size: f32) -> [Thing; 2] {
     [Thing::Tile(Triangle { a, b, c }), Thing::Tile(Triangle { a, b: c, c: d })]
 }
 
-/// A sphere.
+/// A sphere with centre `(x, y, z)`.
 pub(super) fn sphere(x: f32, y: f32, z: f32, radius: f32) -> Thing {
     Thing::Sphere(Sphere { center: vec3(x, y, z), radius })
 }
 
-/// Scenes of spheres and walls on a coarse grid, where much touches and coincides, with a ray that likes axes, diagonals and
-/// zeros of either sign.
+/// Scenes of spheres and walls on a coarse grid, where many primitives touch or coincide, with a ray that often runs
+/// along an axis or a diagonal or has zeros of either sign.
 pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
     let spheres = prop::collection::vec((point(6), 1..=12i32), 0..16);
     let walls = prop::collection::vec((0..3usize, -4..=4i32, 1..=4i32), 0..5);
@@ -144,7 +145,7 @@ pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
     })
 }
 
-/// Scenes that break builders and searches, each with its name: moved far away, tiny, huge, flat, all in one place.
+/// Named scenes for which builders and searches often fail: far away, tiny, huge, flat, or all primitives in one place.
 pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
     let cluster = |scale: f32, offset: Vec3| -> Vec<Thing> {
         let place = |i: i32| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32);
@@ -171,7 +172,7 @@ pub(super) fn odd_scenes() -> Vec<(&'static str, Scene, Vec<Ray>)> {
         ("sixty spheres in one place", vec![sphere(1.0, 1.0, 1.0, 1.0); 60], looks(1.0, Vec3::ZERO)),
         ("twelve tiles in one plane", flat, looks(1.0, Vec3::ZERO)),
         ("twenty spheres in a line", line, looks(1.0, Vec3::ZERO)),
-        ("two of fifty primitives not numbers", with_broken, looks(1.0, Vec3::ZERO)),
+        ("fifty primitives of which two have NaN coordinates", with_broken, looks(1.0, Vec3::ZERO)),
         ("48 spheres at (1e5, -1e5, 2e5)", cluster(1.0, far), looks(1.0, far)),
         ("48 spheres of 1e-6", cluster(1e-6, Vec3::ZERO), looks(1e-6, Vec3::ZERO)),
         ("48 spheres of 1e30", cluster(1e30, Vec3::ZERO), looks(1e30, Vec3::ZERO)),

@@ -1,4 +1,4 @@
-//! The five searches of cells, asked and judged alike.
+//! The laws that the five searches of cells share.
 
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
 use super::structures;
@@ -13,7 +13,7 @@ use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// A search of the student.
+/// One of the student's five searches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Searcher {
     Grid,
@@ -24,7 +24,7 @@ pub(super) enum Searcher {
 }
 
 impl Searcher {
-    /// As students know it.
+    /// Its name in messages.
     pub(super) fn name(self) -> &'static str {
         match self {
             Searcher::Grid => "grid",
@@ -35,7 +35,7 @@ impl Searcher {
         }
     }
 
-    /// Asks for all rays at once, in a structure over `scene` that the checks have made.
+    /// Searches for all rays at once, in a structure over `scene` that the checks have built.
     pub(super) fn ask(self, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
         let depth = match self {
             Searcher::Grid | Searcher::OctreeByCells | Searcher::Octree => 3,
@@ -63,13 +63,13 @@ impl Searcher {
     }
 }
 
-/// One query a ray.
+/// One query per ray.
 pub(super) fn queries<S: Clone>(cells: &S, scene: &Scene, rays: &[Ray]) -> Vec<CellsQuery<S>> {
     let query = |ray: &Ray| CellsQuery { cells: cells.clone(), ray: *ray, hits: scene.hits(ray) };
     rays.iter().map(query).collect()
 }
 
-/// One query a ray, each with a grid of its own.
+/// One query per ray, each with its own grid.
 pub(super) fn grid_queries(
     scene: &Scene,
     rays: &[Ray],
@@ -84,7 +84,8 @@ pub(super) fn grid_queries(
     rays.iter().map(query).collect()
 }
 
-/// Small spheres at `places`, and rays at every `step`th of them from three eyes, of which one is at `x`.
+/// Small spheres at `places`, and rays at every `step`th of them from three points, one of which has the x coordinate
+/// `x`.
 pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, Vec<Ray>) {
     let spheres = places.iter().map(|&center| Thing::Sphere(Sphere { center, radius: 0.3 }));
     let eyes = [vec3(-4.0, 1.1, 1.2), vec3(x, 6.0, 5.0), vec3(3.5, -6.0, 1.5)];
@@ -93,7 +94,7 @@ pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, 
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
-/// Whether the answer is that of brute force.
+/// Compares the answer with that of brute force.
 pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> Outcome {
     let expected = closest(hits, ray);
     let found = yours.hit.map(|hit| (hit.primitive, hit.t));
@@ -102,19 +103,19 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
     }
     let tested = expected.is_some_and(|(primitive, _)| yours.tests.contains(&primitive));
     let diagnosis = match (found, expected) {
-        (Some((_, t)), _) if !ray.contains(t) => "a hit outside of the ray's range",
+        (Some((_, t)), _) if !ray.contains(t) => "you return a hit outside the ray's range",
         (Some((_, t)), Some((_, best))) if t == best => {
-            "of two hits at one t the smaller primitive number wins"
+            "of two hits at the same t the smaller primitive number wins"
         }
         (Some(_), Some(_)) if tested => {
-            "the farther of two hits was kept: keep the best so far, over all cells"
+            "you keep the farther of two hits: keep the best hit so far, over all cells"
         }
-        (Some(_), Some(_)) => "the search stopped before it came to a cell with a nearer hit",
-        (None, Some(_)) if tested => "a hit was found and thrown away: it counts wherever its cell ends",
+        (Some(_), Some(_)) => "you stop before a cell with a nearer hit",
+        (None, Some(_)) if tested => "you find a hit and reject it: it counts wherever its cell ends",
         (None, Some(_)) if yours.visits.is_empty() => {
-            "nothing was visited: does the ray meet the box around all?"
+            "you visit no cell although the ray enters the structure's bounds"
         }
-        (None, Some(_)) => "a cell was left out that the ray goes through",
+        (None, Some(_)) => "you leave out a cell that the ray passes through",
         _ => "",
     };
     let hits: Vec<String> = hits
@@ -128,10 +129,10 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
     Err(Broken::new(input, found, expected, "brute force, (primitive, t)").looks_like(known(diagnosis)))
 }
 
-/// What brute force finds, in random scenes and in odd ones.
+/// Compares a search with brute force, in random scenes and in degenerate ones.
 pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
-    // Three spheres in a row in one leaf, the nearest of them listed last; and a sphere that reaches through many
-    // cells, with a nearer one before it.
+    // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
+    // with a nearer small one before it.
     let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
     let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
@@ -162,10 +163,11 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
     Ok(())
 }
 
-/// Where a ray is in the nodes of a structure: `(node, entry, exit)`, in double precision.
+/// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
 pub(super) type Parts = Vec<(u32, f64, f64)>;
 
-/// What a search visits must be entered by the ray before its hit: `parts` are all nodes that the ray so much as touches.
+/// Judges the visits of a search: the ray must enter each visited node before its hit. `parts` are all nodes that the
+/// ray enters or touches.
 pub(super) fn judge_visits(
     what: &str,
     ray: &Ray,
@@ -174,26 +176,26 @@ pub(super) fn judge_visits(
     fewest: bool,
 ) -> Outcome {
     let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
-    // 2⁻¹⁴, far more than roundings need and far less than a cell.
+    // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
     let room = (-14f64).exp2();
     let input = || format!("{what}\n{}", ray.paste());
     for visit in &yours.visits {
         let Some((_, enter, _)) = parts.iter().find(|(node, ..)| node == visit) else {
             let broken =
-                Broken::with_texts(input(), format!("a visit to {visit}"), "none", "the ray passes it by");
-            return Err(broken.looks_like(Some("a cell was visited that the ray does not enter")));
+                Broken::with_texts(input(), format!("a visit to {visit}"), "none", "the ray misses it");
+            return Err(broken.looks_like(Some("you visit a cell that the ray does not enter")));
         };
         if *enter > end + room * end.abs() {
             let yours = format!("a visit to {visit}, which begins at t = {enter:.4}");
             let expected = format!("none beyond the hit at t = {end}");
             let broken = Broken::with_texts(input(), yours, expected, "counted");
             return Err(broken.looks_like(Some(
-                "the search goes on behind the best hit: nearest cells first, and stop where they begin behind it",
+                "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
             )));
         }
         if fewest && yours.visits.iter().filter(|other| *other == visit).count() > 1 {
             let broken = Broken::with_texts(input(), format!("{visit} is visited again"), "once", "counted");
-            return Err(broken.looks_like(Some("a cell is visited several times")));
+            return Err(broken.looks_like(Some("you visit a cell several times")));
         }
     }
     Ok(())

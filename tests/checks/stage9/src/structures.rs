@@ -1,6 +1,7 @@
-//! Structures to search. Where they divide follows a pattern that knows nothing of the primitives, and each leaf lists what
-//! touches it, by the definition. The last cell lists one primitive too many, wherever that primitive is: a search must
-//! allow for it, and as answers to the exercises these structures are wrong. A grid is made for one ray, from its hits.
+//! Structures to search. They divide by a pattern that does not depend on the primitives, and each leaf lists the
+//! primitives that touch it, by the definition. The last cell lists one primitive too many, wherever that primitive is.
+//! A search must allow for it, and as answers to the exercises these structures are wrong. A grid is made for one ray,
+//! from its hits.
 
 use super::parts;
 use super::scenes::{Scene, closest};
@@ -10,12 +11,12 @@ use raykata::aabb::Aabb;
 use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree};
 use raykata::ray::Ray;
 
-/// Boxes with room for rounding, numbered; what is not a number is left out.
+/// Numbered boxes with room for rounding. Empty boxes and boxes with NaN are left out.
 fn loose(boxes: &[Aabb]) -> (Vec<(u32, Aabb)>, Aabb) {
     let usable = |one: &&Aabb| !one.is_empty();
     let all = around(boxes.iter().filter(usable));
     let largest = all.min.abs().max_element().max(all.max.abs().max_element());
-    // 2⁻²⁰ of the largest coordinate: four steps of it.
+    // Use 2⁻²⁰ of the largest coordinate as room.
     let room = largest * (-20f32).exp2();
     let widen = |one: &Aabb| Aabb::new(one.min - room, one.max + room);
     let kept = boxes.iter().enumerate().filter(|(_, one)| usable(one));
@@ -28,12 +29,12 @@ fn in_cell(boxes: &[(u32, Aabb)], cell: &Cell) -> Vec<(u32, Aabb)> {
     boxes.iter().filter(|(_, one)| cell.touches(one)).copied().collect()
 }
 
-/// From the largest number down: of two hits at one `t` the larger number comes first.
+/// The numbers in descending order: of two hits at the same `t` the larger number comes first.
 fn ids(boxes: &[(u32, Aabb)]) -> Vec<u32> {
     boxes.iter().rev().map(|(id, _)| *id).collect()
 }
 
-/// What a cell lists; the last one, one primitive too many.
+/// The list of a cell. The last cell lists one primitive too many.
 fn listed(boxes: &[(u32, Aabb)], cell: &Cell, is_last: bool) -> Vec<u32> {
     let mut inside = ids(&in_cell(boxes, cell));
     if let (true, Some((first, _))) = (is_last, boxes.first())
@@ -44,14 +45,14 @@ fn listed(boxes: &[(u32, Aabb)], cell: &Cell, is_last: bool) -> Vec<u32> {
     inside
 }
 
-/// The box around all with room for rounding, and that room.
+/// The box around all boxes with room for rounding, and that room.
 pub(super) fn around_loosely(boxes: &[Aabb]) -> (Aabb, f64) {
     let (_, all) = loose(boxes);
     let room = f64::from(all.min.abs().max_element().max(all.max.abs().max_element())) * (-20f64).exp2();
     (all, room)
 }
 
-/// A grid with these lists, one for each cell.
+/// A grid with these lists, one per cell.
 pub(super) fn filled(bounds: Aabb, resolution: UVec3, lists: &[Vec<u32>]) -> Grid {
     let mut grid = Grid { bounds, resolution, starts: vec![0], items: Vec::new() };
     for list in lists {
@@ -61,27 +62,27 @@ pub(super) fn filled(bounds: Aabb, resolution: UVec3, lists: &[Vec<u32>]) -> Gri
     grid
 }
 
-/// A grid for one ray only: a primitive is listed in the cells in which the ray is when it hits the primitive. Those that are
-/// not hit first, or not hit at all, are listed in some others as well, so that what a cell lists may lie far off.
+/// A grid for one ray only: a primitive is listed in the cells in which the ray hits the primitive. All primitives
+/// except the closest one are listed in some other cells as well, so that a cell may list primitives that are far away.
 ///
-/// A search finds in it what it finds in a grid that lists boxes, because hits are all that it learns of primitives.
+/// A search returns the same hit as in a grid that lists boxes, because a search knows primitives only by their hits.
 pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), resolution: UVec3) -> Grid {
-    // Locate the hits, whatever formula rounds `t`.
+    // Compute the hits without the rounding of different formulas.
     let hits = Scene { rough: false, ..scene.clone() }.hits(ray);
     let first = closest(&scene.hits(ray), ray).map(|(primitive, _)| primitive);
     let n_cells = resolution.element_product();
     let mut lists = vec![Vec::new(); n_cells as usize];
     // Find the cells along the ray.
     let way = parts::near_grid(&filled(bounds, resolution, &lists), ray, room);
-    // List each primitive, from the largest number down: of two hits at one `t` the larger number comes first.
+    // List the primitives in descending order: of two hits at the same `t` the larger number comes first.
     for id in (0..hits.len() as u32).rev() {
         let t = f64::from(hits[id as usize]);
-        // Eight times what `t` is rounded by.
+        // Allow eight times the rounding error of `t`.
         let slack = (-21f64).exp2() * t.abs();
         let at_hit = way.iter().filter(|(_, near, far)| near - slack <= t && t <= far + slack);
         let mut cells: Vec<u32> = at_hit.map(|(cell, ..)| *cell).collect();
         if cells.is_empty() && t.is_finite() {
-            // A hit out of the ray's range.
+            // List a primitive that is hit outside the ray's range in all cells.
             cells = (0..n_cells).collect();
         }
         let elsewhere = (0..n_cells).filter(|cell| first != Some(id) && (cell + id) % 4 == 0);
@@ -92,7 +93,7 @@ pub(super) fn grid_for(ray: &Ray, scene: &Scene, (bounds, room): (Aabb, f64), re
     filled(bounds, resolution, &lists)
 }
 
-/// An octree over the box around all: of eight octants three are divided again.
+/// An octree over the box around all boxes, in which some octants of each node are divided again.
 pub(super) fn octree(boxes: &[Aabb], max_depth: usize) -> Octree {
     let (boxes, bounds) = loose(boxes);
     if boxes.is_empty() {
@@ -113,7 +114,7 @@ pub(super) fn octree(boxes: &[Aabb], max_depth: usize) -> Octree {
     octree
 }
 
-/// A kd-tree with planes in the middle, across x, y, z by turns. Every fifth node is a leaf.
+/// A kd-tree with planes in the middle of the cells, across x, y, z in turn. Every fifth node is a leaf.
 pub(super) fn kd_tree(boxes: &[Aabb], max_depth: usize) -> KdTree {
     let (boxes, bounds) = loose(boxes);
     let mut tree = KdTree::new(bounds);
@@ -156,7 +157,7 @@ fn add_bsp_node(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, m
     }
     let normals = [DVec3::X, DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0), DVec3::NEG_Z, DVec3::ONE];
     let normal = normals[depth % normals.len()].normalize();
-    // Through a corner, so that planes and primitives touch.
+    // Put the plane through a corner of a primitive, so that they touch.
     let corner = hulls[ids[ids.len() / 2] as usize][0].as_dvec3();
     let plane = CutPlane { normal, offset: normal.dot(corner) };
     let [back, front] =
@@ -165,7 +166,7 @@ fn add_bsp_node(bsp: &mut Bsp, hulls: &[Vec<Vec3>], ids: &[u32], depth: usize, m
     node
 }
 
-/// The primitives behind and in front of a plane, with four steps of the largest coordinate as room.
+/// The primitives behind and in front of a plane, with 2⁻²⁰ of the largest coordinate as room.
 pub(super) fn on_sides(hulls: &[Vec<Vec3>], ids: &[u32], plane: &CutPlane) -> [Vec<u32>; 2] {
     let reaches = |id: u32, side: f64| {
         hulls[id as usize].iter().any(|corner| {
