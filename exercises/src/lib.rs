@@ -1,4 +1,4 @@
-//! A ray tracer, stage by stage: one module per file of exercises. The last line connects them with the kit.
+//! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the modules with the kit.
 
 pub mod stage10_stability;
 pub mod stage1_shapes;

@@ -1,10 +1,12 @@
-//! Stage 10 · stability: the same questions as before, asked so that roundings decide; and answers that survive it.
+//! Stage 10 · stability: intersection tests of earlier stages, for inputs where rounding errors decide the answer.
 //!
 //! Slides: "Ray-Sphere Intersection", "Inside Test", "Numerical precision", "Bounding Volumes"; Woop, Benthin and Wald
 //! 2013; Ize 2013; Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section 6.8.
 //!
-//! What you wrote in earlier stages may do already. `cargo run --release -- gauntlet --kit exercises` shows what it
-//! costs and where it fails.
+//! Your functions of earlier stages may already be good enough. `cargo run --release -- gauntlet --kit exercises` shows
+//! what they cost and where they fail.
+//!
+//! A hit with a triangle or a sphere counts if `ray.contains(t)`, that is `t_min < t < t_max`: both ends are open.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
@@ -12,65 +14,105 @@ use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// The real roots of `a t² + b t + c = 0`, the smaller one first; a double root is there twice. `None` if there is none,
-/// if `a` is 0, or if some number is not finite.
+/// Computes the real roots of `a t² + b t + c = 0` without cancellation.
 ///
-/// Where the formula lies: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` comes out as 0. Add
-/// numbers of the same sign, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
+/// Returns the smaller root first, for every sign of `a` and `b`. A double root is returned twice, and for `b = c = 0`
+/// both roots are 0. Returns `None` if there is no real root, if `a` is 0, or if a coefficient is NaN or infinite. No
+/// root is NaN; a root too large for `f32` is infinite.
+///
+/// Pitfall: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` becomes 0. Add numbers of the same
+/// sign instead, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
+///
+/// Slide: "Ray-Sphere Intersection".
 pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
-    todo!("never subtract what is nearly the same: q first, then q / a and c / q")
+    todo!("avoid the difference of two nearly equal numbers: q first, then q / a and c / q")
 }
 
-/// Ray against triangle such that no ray slips through between two triangles that share an edge or a corner, at any size
-/// and any place; with the `t`, β and γ of the hit.
+/// Intersects a ray with a triangle such that no ray escapes between two triangles that share an edge or a corner, at
+/// any size and at any place.
 ///
-/// Where the formula lies: each triangle rounds for itself, and a ray at a shared edge is beside both. Decide on which
-/// side of an edge the ray passes by one computation on its two ends, which the neighbour repeats.
+/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. Scaling ray
+/// and triangle by a power of two changes no answer, unless a number over- or underflows. `t` is accurate also on
+/// triangles a million times as long as wide. NaN or infinite inputs give `None` or a finite hit.
+///
+/// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
+/// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
+///
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
-    todo!("see the triangle from the ray, and decide each edge by its two ends alone")
+    todo!("transform the triangle to the ray's coordinates, and decide each edge by its two ends only")
 }
 
-/// Where `ray` enters and leaves `bounds`, as in stage 3, but never `None` for a box that the ray meets: not at its
-/// corners, not if it is flat, not far away, not along its faces, not for -0.0.
+/// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that
+/// the ray meets.
 ///
-/// Where the formula lies: widening boxes by 1e-5 does nothing at 1000 and more. Make the way out longer by the error of
-/// its own three roundings instead, `1 + 2 γ₃`, and the way in earlier by as much: a search compares it with the `t` of
-/// hits, which are rounded in another way.
+/// This holds at corners, for flat boxes, far away, along faces and for directions of -0.0, with `t_min >= 0` and with
+/// `inverse_direction` finite wherever the direction is not 0. A box with a hit at `t` is entered at `t` or before. A
+/// box that the ray passes by at more than 64 roundings gives `None`, and so does the empty box. Neither result is ever
+/// NaN.
+///
+/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Multiply the exit by `1 + 2 γ₃`, the
+/// bound on its own three rounding errors, and the entry by `1 - 2 γ₃`, because a search compares the entry with the
+/// `t` of hits, which are rounded differently.
+///
+/// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
-    todo!("compare so that NaN changes nothing, and let the way out be a little longer")
+    todo!("compare so that NaN changes nothing; make the exit a little later and the entry a little earlier")
 }
 
-/// Where a ray along `direction` starts from a surface whose true place is within `error` of `point` along each axis:
-/// off the surface, on the side to which it goes, and no farther than it must.
+/// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same
+/// surface again (shadow acne).
 ///
-/// Where the formula lies: any fixed distance is too small somewhere and too large elsewhere: at a size of 0.001 a ray
-/// that starts 0.0001 away misses what touches the surface.
+/// The true surface lies within `error` of `point` along each axis. Move the point along the unit `normal` by
+/// `error · |normal|`, to the side to which `direction` goes, and then each coordinate by one float outwards, because
+/// the sum is rounded as well. If `direction` is perpendicular to the normal, take the side of the normal. The height
+/// above `point` may be at most 4 times this bound plus 64 rounding steps of the largest coordinate.
+///
+/// Pitfall: any fixed distance is too small in one scene and too large in another. In a scene of size 0.001, a ray that
+/// starts 0.0001 away misses objects that touch the surface.
+///
+/// Source: Pharr, Jakob and Humphreys, section 6.8.
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
-    todo!("move the point along the normal by its error, and then by a step of the last digit")
+    todo!("move the point along the normal by its error, then each coordinate by one float outwards")
 }
 
-/// `v / |v|` for every v that has a direction, however short or long; `None` for 0 and for what is not finite.
+/// Normalises a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
 ///
-/// Where the formula lies: the squares of 1e-30 are 0 and those of 1e30 are infinite.
+/// Returns `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or infinite.
+///
+/// Pitfall: in single precision the square of 1e-30 is 0 and the square of 1e30 is infinite.
+///
+/// Slide: "Numerical precision".
 pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     todo!("scale by the largest coordinate first")
 }
 
-/// Ray against triangle by Cramer's rule as in stage 2, `β (a - b) + γ (a - c) + t d = a - o`, with every number in `f64`
-/// and only the three results rounded. The range of the ray is asked about the rounded `t`. Scenes with
-/// `precision = "double"` are rendered with this.
+/// Intersects a ray with a triangle in double precision, by Cramer's rule as in stage 2:
+/// `β (a - b) + γ (a - c) + t d = a - o`.
 ///
-/// Where the formula lies: what was rounded before it was converted stays rounded, so `(a - b).as_dvec3()` buys nothing.
-/// And in no precision has an epsilon on the determinant a meaning: it grows with the cube of the size.
+/// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges
+/// belong to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. A hit counts if the range of the ray contains the
+/// rounded `t`. An input with NaN gives `None`, and so does a determinant of 0. Every hit is finite. Scenes with
+/// `precision = "double"` are rendered with this function.
+///
+/// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do
+/// not compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
+///
+/// Slide: "Cramer's Rule".
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("convert all five vectors first, then Cramer's rule; round t, β and γ last")
 }
 
-/// Ray against sphere in the same way: the `t` of the nearest hit that counts, rounded once. A sphere without a radius
-/// above 0 is never hit, and NaN is no hit.
+/// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, rounded
+/// to `f32` once.
 ///
-/// Where the formula lies: `(o - c).as_dvec3()` is off by up to 3 thousandths of a radius for a sphere 100,000 radii
-/// away, and all that follows is right for another sphere.
+/// A ray that starts inside hits the far side. A ray that touches the sphere hits it. A sphere whose radius is 0,
+/// negative or NaN is never hit. An input with NaN gives `None`, and every `t` is finite.
+///
+/// Pitfall: `(o - c).as_dvec3()` has an error of up to 3 thousandths of a radius for a sphere 100,000 radii away. The
+/// rest of the computation is then exact for a sphere at a wrong place.
+///
+/// Slide: "Ray-Sphere Intersection".
 pub fn sphere_in_double(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
-    todo!("convert origin, direction, centre and radius first, then any way of stage 1")
+    todo!("convert origin, direction, centre and radius first, then use any method of stage 1")
 }

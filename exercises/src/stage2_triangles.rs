@@ -1,10 +1,17 @@
-//! Stage 2 · triangles: three ways to meet one, three ways to be inside, and what a mesh makes of it.
+//! Stage 2 · triangles: three methods of ray-triangle intersection, three inside tests, and the normals of meshes.
 //!
 //! Slides: "Finding the intersection", "Cramer's Rule", "Ray-triangle intersection precomputations",
 //! "Ray-Triangle Intersection" I, II, III, "Smooth Shading", "Normals of Vertices".
 //!
-//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`: points on
-//! an edge belong to the triangle, and either side can be hit. The ray's range decides which `t` count.
+//! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`. With
+//! `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of the hit for the corners a, b and c.
+//!
+//! The contract of the three intersection functions: points on an edge belong to the triangle. The triangle is hit
+//! from the front and from the back, so the order of the corners does not matter. `t` counts lengths of `direction`,
+//! which need not be a unit vector. A hit counts if `ray.contains(t)`: the range is open. The triangle may have any
+//! size, so no fixed epsilon is right. The result is `None` for a ray along the plane of the triangle, a triangle
+//! without area, a direction of 0, and a NaN anywhere. If the sizes overflow single precision, a hit and a miss are
+//! both right, but no part of a hit is NaN or infinite.
 
 use glam::{DVec2, DVec3, Vec3};
 use raykata::bvh::{PrimitiveHit, Probe};
@@ -13,87 +20,129 @@ use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Ray against triangle by Cramer's rule on `β (a - b) + γ (a - c) + t d = a - o`.
+/// Ray-triangle intersection by Cramer's rule: solve `β (a - b) + γ (a - c) + t d = a - o`, which is three equations
+/// (x, y and z) with three unknowns.
 ///
-/// Where the formula lies: the slide's determinant `D` repeats terms of the numerator of x. It is right for triangles
-/// along the axes and loses more than half of all others. Weakness of the method itself: neighbours that share an
-/// edge round differently, so one ray in ten that is aimed at the edge slips between them.
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// Pitfall: the determinant `D` on the slide is wrong, because it repeats terms of the numerator of x. It is right
+/// for triangles along the axes and loses more than half of the hits of all others. The method itself has a weakness,
+/// too: two triangles that share an edge round differently, so one in ten rays that are aimed at the edge hits neither.
 pub fn triangle_cramer(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("solve the three equations for β, γ and t by Cramer's rule")
 }
 
-/// The four numbers of a triangle that the Gram method needs, computed once: `u·v`, `v·v`, `u·u` and
+/// The four numbers of a triangle that the Gram method needs, computed once per triangle: `u·v`, `v·v`, `u·u` and
 /// `D = (u·v)² - (u·u)(v·v)` for `u = b - a`, `v = c - a`.
 ///
-/// Where the formula lies: for a thin triangle `D` is the difference of two nearly equal numbers, and comes out zero
-/// or even positive. It is the same number as `-|u × v|²`.
+/// All are in world units: squared for the dot products, to the fourth power for `D`. `D` is 0 for a triangle without
+/// area and negative otherwise.
+///
+/// Pitfall: for a thin triangle `D` is the difference of two nearly equal numbers, so this formula gives zero or even
+/// a positive number. `D` is equal to `-|u × v|²`, which is never positive.
 pub fn gram_scalars(triangle: &Triangle) -> GramScalars {
     todo!("compute u·v, v·v, u·u and D for u = b - a and v = c - a")
 }
 
-/// Ray against triangle the other way: first its plane, then the weights `s` (here β) and `t` (here γ) of the point
-/// `I = P - a` from the Gram matrix.
+/// Ray-triangle intersection by the Gram matrix: first the `t` at which the ray hits the plane of the triangle, then
+/// the barycentric coordinates `s` (here β) and `t` (here γ) of the point `I = P - a = s u + t v`.
 ///
-/// Where the formula lies: "0 ≤ s + t ≤ 1" alone lets points in with one weight below zero. Weakness of the method
-/// itself: the point is rounded before it is tested, so far from the origin the error of `P` decides.
+/// `scalars` are the [`gram_scalars`] of `triangle`.
+///
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// Pitfall: "0 ≤ s + t ≤ 1" alone accepts points with a negative coordinate. Test `s ≥ 0` and `t ≥ 0` as well. The
+/// method itself has a weakness, too: it rounds the point before the test, so far from the origin that error decides.
 pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> Option<TriangleHit> {
-    todo!("meet the plane of the triangle, then find s and t from the Gram scalars")
+    todo!("find t from the plane of the triangle, then β and γ from the Gram scalars")
 }
 
-/// Ray against triangle by a method of your choice. Your pictures are made with this one.
+/// Ray-triangle intersection by a method of your choice. Your pictures use this function.
 ///
-/// The reference is watertight: a ray aimed at a shared edge hits at least one of the two triangles, always (Woop,
-/// Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013).
+/// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
+/// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
+/// No size is too small. The full contract is at the top of this file.
+///
+/// The reference is watertight: a ray that is aimed at a shared edge always hits at least one of the two triangles
+/// (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The checks of this stage do not demand
+/// that.
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
 }
 
-/// Inside test I: the plane through the ray's origin and a side of the triangle has `point` on its inner side, for
-/// all three sides.
+/// Inside test I: the ray's origin and each side of the triangle span a plane, and `point` is inside if it lies on
+/// the same side of all three planes.
 ///
-/// Where the formula lies: "distance < 0 → outside" holds for one winding only. Accept the point if it lies on the
-/// same side of all three planes, whichever that is, and on a plane counts as inside. Normalising changes no sign.
+/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order, clockwise or
+/// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
+/// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
+///
+/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals, because
+/// that changes no sign and turns a normal of 0 into NaN.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     todo!("test on which side of the plane through ray.origin and each side the point lies")
 }
 
-/// Inside test II: seen along the ray, `point` lies on the same side of all three sides: the sign of
-/// `d · ((T₂ - P) × (T₁ - P))`.
+/// Inside test II: seen along the ray, `point` is inside if it lies on the same side of all three edges. The sign of
+/// `d · ((T₂ - P) × (T₁ - P))` tells the side for the edge from `T₁` to `T₂`.
+///
+/// `point` lies in the plane of the triangle, up to rounding. The corners may have either order. Points on an edge
+/// are inside. With a NaN the result is `false`.
 pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     todo!("test the sign of d · ((T2 - P) × (T1 - P)) for each side")
 }
 
-/// Inside test III: the weights `(α, β, γ)` of the corners a, b, c as shares of the area, if `point` is inside.
+/// Inside test III: the barycentric coordinates `(α, β, γ)` of `point`, each of which is the area of a triangle
+/// between `point` and two corners, divided by the area of the whole triangle.
 ///
-/// Where the formula lies: areas without a sign cannot tell (-0.2, -0.2) from (0.2, 0.2). Measure each area along the
-/// normal of the triangle, so that it goes negative outside.
+/// `point` lies in the plane of the triangle, up to rounding. α belongs to corner a and the area opposite of it, β to
+/// b, and γ to c. Points on an edge are inside. The result is `None` if `point` is outside, if the triangle has no
+/// area, or for a NaN.
+///
+/// Pitfall: areas without a sign cannot tell (-0.2, -0.2) from (0.2, 0.2). Measure each area along the normal of the
+/// triangle, so that it is negative outside.
 pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
-    todo!("return the three signed areas over the area of the triangle, if none is below zero")
+    todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
 }
 
-/// The value at weights `(α, β, γ)` between values at the three corners.
+/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
+/// at the corners a, b and c. The result is not normalised.
 pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
-    todo!("weigh the three corners")
+    todo!("return the sum of the three corners, each times its weight")
 }
 
-/// The unit normal `u × v / |u × v|` of a triangle, `None` if it has no area.
+/// The unit normal `u × v / |u × v|` of a triangle, with `u = b - a` and `v = c - a`.
 ///
-/// Where the formula lies: for edges of 1e-11 the product of two lengths squared underflows, and the "unit" normal is
-/// 1 % too long; for 1e-12 it is NaN. Scale the edges first: their lengths do not matter.
+/// The result has length 1 up to rounding for a triangle of any size. It is `None` for a triangle without area and
+/// for a NaN.
+///
+/// Pitfall: for edges of 1e-11 the square of `|u × v|` underflows, and the "unit" normal is 1 % too long. For edges
+/// of 1e-12 it is NaN. Scale the edges first, because their lengths do not change the direction of the normal.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     todo!("normalise u × v, and return None for a triangle without area")
 }
 
-/// One unit normal a vertex: the average of the normals of the triangles around it.
+/// One unit normal per vertex: the normalised sum of the unit normals of the triangles that use the vertex.
 ///
-/// Where the formula lies: opposite normals average to zero, and zero cannot be normalised. Then take the normal of
-/// one of the faces. A vertex that no proper face uses may have any unit normal.
+/// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
+/// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
+///
+/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalised. Then take the
+/// normal of one of the triangles around the vertex.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     todo!("add up the face normals at each vertex and normalise")
 }
 
-/// The closest hit among primitives `0..n_primitives`: ask `probe.hit(primitive, ray)` for each. Of two hits at the
-/// same `t` the primitive with the smaller number wins, so that every search agrees with every other.
+/// The closest hit among primitives `0..n_primitives`: call `probe.hit(primitive, ray)` for each of them and keep the
+/// hit with the smallest `t`.
+///
+/// Each primitive is asked exactly once. Only hits in the ray's range count, and `probe.hit` returns no others. Of
+/// two hits at the same `t` the primitive with the smaller number wins, so that all search functions return the same
+/// hit. The result is `None` if nothing is hit.
 pub fn brute_force(n_primitives: u32, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
     todo!("ask every primitive, and keep the hit with the smallest t")
 }

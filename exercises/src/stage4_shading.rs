@@ -1,54 +1,86 @@
-//! Stage 4 · shading: how bright is a point, and does light reach it at all?
+//! Stage 4 · shading: the Phong model, shadow rays and gamma correction.
 //!
 //! Slides: "Local illumination", "Shadow ray", "Cost of shadow computation", "Coloured Lights", "Smooth Shading",
 //! "Gamma Correction".
 //!
-//! All directions are of unit length and point away from the surface. [`Surface`] has the point, its two normals (both
-//! on the viewer's side) and a bound on the rounding error of the point.
+//! All directions have unit length and point away from the surface, unless a function says otherwise. [`Surface`] has
+//! the point, its two unit normals (both on the viewer's side) and a bound on the rounding error of the point.
 
 use glam::Vec3;
 use raykata::kit::{LightSample, Surface};
 use raykata::material::Material;
 use raykata::ray::Ray;
 
-/// The normal to shade with, on the side from which a ray of direction `direction` comes: on a smooth surface the
-/// `interpolated` one, otherwise the `geometric` one.
+/// The unit normal for shading, on the viewer's side: the `interpolated` normal on a smooth surface, and the
+/// `geometric` normal otherwise.
 ///
-/// Where the formula lies: normals may average to zero or to NaN, which has no direction. Then the surface is shaded
-/// flat.
+/// `direction` is the direction of the ray that comes from the viewer. `geometric` has unit length; it is negated if
+/// its dot product with `direction` is above 0. `interpolated` has any length and either sign; it is normalised, and
+/// negated if its dot product with the turned geometric normal is below 0. If `interpolated` is `None`, has length 0
+/// or is NaN, the turned geometric normal is returned. For a dot product of 0 either sign passes.
+///
+/// Pitfall: the average of several normals may be zero or NaN, which has no direction.
+///
+/// Slide "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
     todo!("normalise the interpolated normal if there is one, and turn it to the viewer's side")
 }
 
-/// `cos θ` between normal and light, the share of diffuse light. A light behind the surface gives 0, not less.
+/// The diffuse term of the Phong model: `cos θ`, the cosine of the angle between the normal and the direction to the
+/// light.
+///
+/// Both vectors have unit length. For a light behind the surface, where the cosine is negative, the result is 0.
+///
+/// Slide "Local illumination".
 pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
     todo!("return the cosine, but never less than 0")
 }
 
-/// `cosⁿ φ` between the mirrored light and the viewer, the strength of the highlight; 0 if the light is behind the
-/// surface.
+/// The specular term of the Phong model: `cosⁿ φ`, where φ is the angle between the reflected light and the viewer,
+/// and n is `exponent`.
 ///
-/// Where the formula lies: for `cos φ < 0` an even power is positive, and a broken one is NaN.
+/// All vectors have unit length, and `exponent` is at least 0. The result is 0 if the light is behind the surface
+/// (`cos θ < 0`, with θ as in [`diffuse_term`]) or if `cos φ < 0`. This holds for every exponent, also for 0. If one of
+/// the two cosines is 0, both 0 and the power pass.
+///
+/// Pitfall: a negative cosine to an even power is positive, and to a fractional power it is NaN. `max(0, cos φ)` to the
+/// power of 0 is 1.
+///
+/// Slide "Local illumination".
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
-    todo!("mirror the light on the normal and raise its cosine with the viewer to the exponent")
+    todo!("reflect the light by the normal, and raise the cosine with the viewer to the exponent")
 }
 
-/// The ray that asks whether `light` is visible from `surface`: it starts just off the surface, has the light's
-/// direction, and ends just before the light. `None` if the light is behind the surface or has no light to give, for
-/// then no ray is worth tracing.
+/// The shadow ray from `surface` to `light`: an object that it hits occludes the light.
 ///
-/// Where the formula lies: a ray from the point itself hits the surface it starts on in half of all cases, and one
-/// that reaches all the way hits the light. A fixed distance fails at other scales: move by the error of the point.
+/// The result is `None` if `light.radiance` is 0, or if the light is behind the surface: if the dot product of
+/// `light.direction` with the geometric normal or with the shading normal is 0 or less. Otherwise the ray has the
+/// direction of the light. It ends just before the light, between 0.99 of `light.distance` and the distance itself (not
+/// included); an infinite distance stays infinite. It starts on the viewer's side of the surface. The distance of its
+/// start from the point along the geometric normal n is at least `error·|n|`, because the true surface may be that far
+/// from the rounded point. It is at most `4 error·|n|` plus 64 rounding steps of the largest coordinate, so that close
+/// objects are hit.
+///
+/// Pitfall: a ray that starts at the rounded point hits its own surface in about half of all cases (shadow acne), and a
+/// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales.
+///
+/// Slides "Shadow ray" and "Cost of shadow computation".
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
-    todo!("return None for a light behind the surface; else a ray that leaves out both ends")
+    todo!("return None for a light behind the surface, otherwise a ray that excludes both ends")
 }
 
-/// The colour that the viewer sees: `A·ka + Σ V_i (I_i·kd·cosθ_i + I_i·ks·cosⁿφ_i)`, channel by channel, with
-/// `material.ambient`, `diffuse`, `specular` and `exponent`. `visible(i, ray)` traces a shadow ray for light `i`; ask
-/// only when the answer can matter.
+/// The colour that the viewer sees, by the Phong model: `A·ka + Σ V_i (I_i·kd·cosθ_i + I_i·ks·cosⁿφ_i)`.
 ///
-/// Where the formula lies: 1000 × 1000 pixels with 10 lights need 10,000,000 shadow rays at most. A light behind the
-/// surface, or one that adds nothing, needs none.
+/// Colours are multiplied channel by channel. A is `ambient`, I_i is `lights[i].radiance`, and ka, kd, ks and n are
+/// `material.ambient`, `diffuse`, `specular` and `exponent`. The cosines are those of [`diffuse_term`] and
+/// [`specular_term`] with `surface.shading_normal`. V_i is 1 if `visible(i, ray)` is true for the ray of
+/// [`shadow_ray`], and 0 otherwise. Call `visible` before you add a light, at most once per light. Do not call it if
+/// `shadow_ray` returns `None` or if the light would add 0. The colour is not clamped.
+///
+/// Pitfall: 1000 × 1000 pixels with 10 lights need at most 10,000,000 shadow rays. A light behind the surface, or one
+/// that adds 0, needs none.
+///
+/// Slides "Local illumination", "Shadows" and "Cost of shadow computation".
 pub fn shade(
     surface: &Surface,
     to_viewer: Vec3,
@@ -57,17 +89,24 @@ pub fn shade(
     lights: &[LightSample],
     mut visible: impl FnMut(usize, &Ray) -> bool,
 ) -> Vec3 {
-    todo!("add up ambient light and, for each light that is visible, its diffuse and specular part")
+    todo!("add up the ambient term and, for each visible light, its diffuse and specular terms")
 }
 
-/// Linear light to a byte with gamma 2: the square root of `linear`, in `0..=255`, rounded.
+/// The byte for a component of linear light with gamma 2: 255 times the square root of `linear`, rounded to the nearest
+/// byte.
 ///
-/// Where the formula lies: the root of -1e-8 is NaN, and NaN becomes a silent black.
+/// `linear` is clamped to `0..=1`: values below 0, also -∞, give 0, and values above 1, also ∞, give 255. NaN gives 0.
+///
+/// Pitfall: the square root of -1e-8 is NaN, and `NaN as u8` is 0 without a warning.
+///
+/// Slide "Gamma Correction".
 pub fn encode_gamma(linear: f32) -> u8 {
     todo!("take the square root and scale to 0..=255; mind values below 0 and above 1")
 }
 
-/// A byte back to linear light with gamma 2.
+/// The component of linear light for a byte with gamma 2: `(byte / 255)²`, in `0..=1`.
+///
+/// Slide "Gamma Correction".
 pub fn decode_gamma(byte: u8) -> f32 {
     todo!("scale to 0..=1 and square")
 }

@@ -1,10 +1,10 @@
-//! Stage 7 · effects: look at the scene first, and compute only what it calls for.
+//! Stage 7 · effects: analyse the scene first, and compute only what it needs.
 //!
-//! Slides: "Cost of shadow computation", "Distributed Ray Tracing", "Each vertex holds … texture coordinates"; and the promise of this kit that
-//! no effect costs anything where it is not seen.
+//! Slides: "Cost of shadow computation", "Distributed Ray Tracing", "Each vertex holds … texture coordinates". This kit
+//! promises that an effect costs nothing where it is not visible.
 //!
-//! What you return decides what the tracer does. Too much, and the picture is right but costs more than it should; too
-//! little, and something is missing.
+//! The tracer does what your functions return. If they return too much, the picture is right but costs too many rays; if
+//! they return too little, something is missing in the picture.
 
 use glam::{Vec2, Vec3};
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
@@ -12,78 +12,118 @@ use raykata::kit::{MaterialHits, RayCounts};
 use raykata::material::{Emitter, Fresnel, Light, Material, Texture, Wrap};
 use raykata::scene::{Quality, Scene};
 
-/// What a light takes: for one without any light nothing at all, `LightEffects::default()`. Otherwise it casts shadows
-/// if `light.shadows`; an area light is spread over `quality.light_samples` places if there are any; everything else
-/// shines from 1 place.
+/// Computes how many samples a light needs, whether they are spread over an area, and whether it casts shadows.
+///
+/// - A light whose [`Light::radiance`] is zero in all channels emits nothing and needs nothing:
+///   `LightEffects::default()`.
+/// - An area light needs `quality.light_samples` samples, and `area` is `true`, if that number is above 0.
+/// - Every other light needs 1 sample, and `area` is `false`. So does an area light if `quality.light_samples` is 0.
+/// - `shadows` is `light.shadows`.
+///
+/// Pitfall: a light emits nothing if its colour or its intensity is 0. A red light has two channels of 0 and still emits.
 pub fn light_effects(light: &Light, quality: &Quality) -> LightEffects {
-    todo!("no light: nothing; a light with an extent: quality.light_samples places; else one place")
+    todo!("radiance zero: the default; an area light: quality.light_samples samples; else 1 sample")
 }
 
-/// What a surface takes that is made of `material`.
+/// Computes which lights, secondary rays and images can change the colour of a surface of `material`.
 ///
-/// - A light matters if some channel of its [`Light::radiance`] meets a `diffuse` or `specular` that is not 0 there.
-/// - Rays are mirrored if `mirror` is not 0, or if the surface lets light through and `fresnel` mirrors part of it; they
-///   go through if `transmission` is not 0; neither if `quality.max_depth` is 0.
-/// - Rough is only what is also mirrored or seen through. An image matters if `diffuse` or `ambient` is not 0.
+/// - `lights`: the indices of the lights that matter, in ascending order. A light matters if, in some channel, its
+///   [`Light::radiance`] is not 0 and `diffuse` or `specular` is not 0.
+/// - `transmission`: whether `material.transmission` is not 0 in some channel, for every index of refraction.
+/// - `mirror`: whether `material.mirror` is not 0 in some channel, or rays are refracted and `fresnel` is not
+///   [`Fresnel::None`], because then the surface also reflects a part of this light.
+/// - Both are `false` if `quality.max_depth` is 0.
+/// - `glossy`: whether `roughness` is above 0 and `mirror` or `transmission` is set.
+/// - `texture`: whether there is an image and `diffuse` or `ambient`, which the image multiplies, is not 0.
+///
+/// Pitfall: a red light adds nothing to a green wall, although neither is black. Multiply channel by channel.
 pub fn material_effects(material: &Material, lights: &[Light], quality: &Quality) -> MaterialEffects {
-    todo!("which lights matter, and whether it mirrors, lets through, blurs, reads an image")
+    todo!("find the lights that matter; then set mirror, transmission, glossy and texture")
 }
 
-/// What the scene takes. [`Scene::shown`] lists all shapes that are in it, with their materials and whether they move.
+/// Computes the effects that the scene needs. [`Scene::shown`] lists the shapes that a root of the scene reaches, with
+/// their materials and meshes and whether they move.
 ///
-/// - The lens matters if its aperture is above 0.
-/// - Time matters if something that is shown moves, and the shutter closes later than it opens.
-/// - Materials of which nothing is shown take nothing, `MaterialEffects::default()`. Meshes of which none is shown are
-///   not smooth.
-/// - `indirect_light` is as the scene says.
+/// - `lens`: whether there is a lens whose aperture is above 0.
+/// - `motion`: whether a shown shape moves and the shutter closes later than it opens. Without a shutter it is `false`.
+/// - `indirect_light`: as in the scene.
+/// - `lights`: [`light_effects`] for each light of the scene, in order, also for lights that emit nothing.
+/// - `materials`: [`material_effects`] for each material that some shown shape has, and `MaterialEffects::default()` for
+///   all others, in the order of the scene.
+/// - `smooth_meshes`: for each mesh of the scene whether it is smooth and shown.
+///
+/// Pitfall: a mesh can have several materials, and a node that no root reaches is not shown.
 pub fn effects(scene: &Scene) -> Effects {
-    todo!("ask what is shown, and put together what each part takes")
+    todo!("list the shown shapes; then combine the effects of camera, lights, materials and meshes")
 }
 
-/// The most rays that the scene can take, as if every ray hit the surface that costs most.
+/// Computes an upper bound on the number of rays of each kind, as if every ray hit the most expensive material.
 ///
-/// - One ray from the camera for each sample of each pixel.
-/// - A hit mirrors at most as many rays as the material that mirrors most of them: 1, or `quality.glossy_samples` if it
-///   is rough; likewise for rays that go through, and for both together. This goes on for `quality.max_depth` bounces,
-///   or until even the brightest ray counts too little: a ray is traced while the weight of the mirror image (of the
-///   glass) as a whole is above 0 and reaches `quality.min_contribution`, and counts its part of that weight. With
-///   `fresnel`, the mirror image weighs at most `mirror + transmission`.
-/// - Each hit sends a shadow ray to each place of each light that matters and casts shadows, at most as many as for the
-///   material with most of them.
+/// - `primary`: one ray from the camera per sample of each pixel.
+/// - `reflection`: each hit spawns as many reflected rays as the material with most of them: `quality.glossy_samples` if
+///   that is glossy, else 1. `transmission` counts the refracted rays in the same way. The next level has as many rays
+///   per hit as the material with the largest sum of both.
+/// - There are at most `quality.max_depth` bounces. Another bounce is traced only while the weight of the whole
+///   reflection or refraction is above 0 and at least `quality.min_contribution`.
+/// - A camera ray has the weight 1. A reflection weighs the largest channel of `mirror` (with `fresnel`, of
+///   `mirror + transmission`), a refraction the largest channel of `transmission`, times the weight of the ray that hits.
+///   The largest weight over all materials counts. Each of the `glossy_samples` rays has an equal part of that weight.
+/// - `shadow`: each hit, also one of the last bounce, needs one shadow ray per sample of each light that matters to its
+///   material and casts shadows. The material with the largest sum counts.
 ///
-/// Products and sums that do not fit stay at `u64::MAX`.
+/// A product or sum that does not fit `u64` is `u64::MAX`.
+///
+/// Pitfall: a hit has one material. Take the maximum over the materials, for each kind of ray separately, not the sum.
 pub fn most_rays(scene: &Scene, effects: &Effects) -> RayCounts {
-    todo!("primary rays; then level by level what the worst material sends on; then shadows for every hit")
+    todo!("count camera rays; then secondary rays bounce by bounce; then shadow rays of all hits")
 }
 
-/// The rays that these hits take, exactly: one ray each that made the hits (`primary`); one to each place on a light in
-/// front of the surface, if the light matters to the material and casts shadows; and what the material sends on, 1 ray
-/// of a kind or `quality.glossy_samples` if it is rough.
+/// Counts the rays of each kind that these hits need, exactly. Each row of the table names its material by an index into
+/// `effects.materials`; several rows can name the same material.
 ///
-/// Where the formula lies: hits times lights is right only if every surface is lit by every light.
+/// - `primary`: one ray made each hit, so this is the sum of `hits`.
+/// - `shadow`: the sum of `in_front[light]` over all lights that matter to the material and cast shadows. `in_front`
+///   counts the samples of a light in front of the surface, over all hits of the row.
+/// - `reflection`: for each hit of a material with `mirror`, `quality.glossy_samples` rays if it is glossy, else 1.
+///   `transmission`: the same for a material with `transmission`.
+///
+/// Pitfall: hits times lights is right only if all lights lie in front of all surfaces.
 pub fn rays_of_hits(hits: &[MaterialHits], effects: &Effects, quality: &Quality) -> RayCounts {
-    todo!("add up, material by material, only what its effects say")
+    todo!("add up the rays row by row, as the effects of the row's material say")
 }
 
-/// How many random samples it takes until their mean is off by no more than `error` on average, if one sample is off by
-/// `deviation`: n with `deviation / √n <= error`, the smallest one, at least 1; as many as there can be (`u32::MAX`) if
-/// none is enough.
+/// Computes how many random samples make the standard error of their mean at most `error`, if the standard deviation of
+/// one sample is `deviation`. Both are 0 or more.
+///
+/// The result is the smallest n of at least 1 with `deviation / √n <= error`, computed in double precision. It is
+/// `u32::MAX` if n does not fit `u32` or no n is large enough, and 1 if `deviation` is 0, also with an `error` of 0.
+///
+/// Pitfall: the error falls with the square root of n, so half the error needs four times as many samples.
 pub fn samples_for_error(deviation: f32, error: f32) -> u32 {
     todo!("solve deviation / √n = error for n, and round up")
 }
 
-/// The column (or row) of an image of `size` columns that is shown where column `index` would be, which may lie far
-/// outside: `Repeat` begins again, `Clamp` draws out the border, `Mirror` goes back and forth, showing the border twice.
+/// Computes which column (or row) of an image is shown at `index`, which may lie far outside of the image. The image has
+/// `size` columns, at least 1; the result is in `0..size`.
 ///
-/// Where the formula lies: `%` of a negative number is negative.
+/// - [`Wrap::Repeat`]: the image starts again: 0 follows `size - 1`.
+/// - [`Wrap::Clamp`]: the border continues: the result is 0 below 0, and `size - 1` above.
+/// - [`Wrap::Mirror`]: the image runs back and forth and shows each border pixel twice in a row: -1 gives 0, and `size`
+///   gives `size - 1`.
+///
+/// Pitfall: `%` of a negative number is negative or 0. Use `rem_euclid`.
 pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
-    todo!("bring the index into 0..size")
+    todo!("map the index into 0..size, as the wrap mode says")
 }
 
-/// The colour of the image at `uv`, from the four nearest pixels (bilinear). `(0, 0)` is the lower left corner of the
-/// image and `(1, 1)` the upper right one; rows are stored from the top. A coordinate that is not finite counts as 0.
+/// Computes the colour of the texture at `uv` by bilinear interpolation of the four nearest pixels.
 ///
-/// Where the formula lies: the colour of a pixel belongs to its middle, so pixel 0 is at half a pixel and not at 0.
+/// `(0, 0)` is the lower left corner of the image and `(1, 1)` its upper right corner. Rows are stored from the top.
+/// Outside of the image, [`texel`] with `texture.wrap` gives the column and the row of each of the four pixels. Every
+/// `uv` gives a colour: a coordinate that is NaN or infinite counts as 0, and so does one whose product with the width
+/// or height is infinite.
+///
+/// Pitfall: the colour of a pixel belongs to its centre, so column 0 lies at half a pixel, not at 0.
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
-    todo!("find the four pixels around uv, and blend them by how near they are")
+    todo!("find the four pixels around uv and interpolate between them")
 }

@@ -1,10 +1,10 @@
-//! Stage 8 · scene graph: every shape in a space of its own, and one mesh in a hundred thousand places.
+//! Stage 8 · scene graph: each shape has its own space, and one mesh can have a hundred thousand instances.
 //!
 //! Slides: "Scene Graph", "Ray-Scene Intersection", "Bounding Volumes", "Transformations" (meshes), "Rotate Bounding
 //! Boxes", "Combine Transformations".
 //!
-//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the ray enters the volume
-//! around a node) and `hit` (where it hits a primitive).
+//! Given: [`Graph`], whose nodes have children and primitives; [`Probe`] with `enter` (where the ray enters the bounding
+//! volume of a node) and `hit` (where it hits a primitive).
 
 use glam::{Affine3A, DAffine3, Vec3};
 use raykata::aabb::Aabb;
@@ -13,61 +13,100 @@ use raykata::graph::{Graph, Placement, Savings};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// The same ray in the space of an object: a hit has the same `t` in both.
+/// Transforms a ray from the world to the space of an object, so that each hit has the same `t` in both spaces.
 ///
-/// Where the formula lies: the slide sends the direction through the inverse *transpose*, which is for normals only (and
-/// the same for scales along the axes, so that such tests do not notice). And a direction that is made a unit vector again
-/// changes `t`, which can then not be compared with the `t` of another object.
+/// `to_object` is the inverse transform, from the world to the object. The origin is transformed as a point and the
+/// direction as a vector, which keeps the length that the transform gives it. `t_min`, `t_max` and `time` stay the
+/// same. For an object far from the origin of the world, single precision loses digits of the ray's origin; double
+/// precision keeps them.
+///
+/// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
+/// the axes both give the same result, so tests with such scales do not show the mistake. A normalised direction is
+/// wrong, too: it changes the unit of `t`, which then cannot be compared with the `t` of another object.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
-    todo!("carry the origin as a point and the direction as a vector; leave its length alone")
+    todo!("transform the origin as a point and the direction as a vector; do not normalise it")
 }
 
-/// The unit normal in the world of a surface whose normal in its own space is `normal`: through the transpose of
-/// `to_object`, the inverse transpose of the way to the world. Outside stays outside, in a mirror, too.
+/// Transforms the unit normal `normal` of a surface from the space of its object to the world. The result has unit
+/// length.
+///
+/// `to_object` is the inverse of the transform to the world, so its transpose is the inverse transpose that normals
+/// need. A normal that points outwards still does after the transform, also for a reflection.
+///
+/// Pitfall: a normal that is transformed like a point is not perpendicular to a stretched surface. Do not flip the result
+/// for a negative determinant.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
-    todo!("multiply by the transpose of to_object, then make it a unit vector")
+    todo!("multiply by the transpose of to_object, then normalise")
 }
 
-/// Where a node stands whose ancestors' transforms, from the root down to its own, are `path`: `M₁ M₂ … Mₙ` to the world,
-/// and `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹` back. `None` if one of them cannot be undone.
+/// Computes the transform from the space of a node to the world, and its inverse.
+///
+/// `path` holds the transforms `M₁ M₂ … Mₙ` from the root to the node itself, each from a node to its parent.
+/// `to_world` is their product `M₁ M₂ … Mₙ`, and `to_object` is `Mₙ⁻¹ … M₂⁻¹ M₁⁻¹`. An empty path gives the identity
+/// for both. The result is `None` if some determinant is exactly 0 or some inverse is not finite. A small or negative
+/// determinant is valid.
+///
+/// Pitfall: the inverse of a product is the product of the inverses in reverse order.
 pub fn placement(path: &[Affine3A]) -> Option<Placement> {
-    todo!("multiply the transforms from the root down, and the inverses the other way round")
+    todo!("multiply the transforms from the root to the node, and the inverses in reverse order")
 }
 
-/// A box around `bounds` after the transform `to_world`, with no point of it outside and little room: its eight corners,
-/// rounded outwards. The empty box stays empty.
+/// Computes an axis-aligned box that contains all points of `bounds` after the transform `to_world`.
 ///
-/// Where the formula lies: rounded to nearest, the largest corner ends up inside the true box in half of all cases, and
-/// a ray at it misses.
+/// It is the box around the eight transformed corners, rounded outwards, and larger than the exact box by a few rounding
+/// errors of the terms at most. An empty box (`min` above `max` on some axis) gives [`Aabb::EMPTY`].
+///
+/// Pitfall: rounded to nearest, the largest corner lies inside the exact box in half of all cases, and a ray that hits
+/// the object there misses the box.
+///
+/// Source: Arvo, "Transforming axis-aligned bounding boxes", Graphics Gems, 1990; slide "Rotate Bounding Boxes".
 pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
-    todo!("transform what matters of the eight corners, and round outwards")
+    todo!("sum the smaller and the larger product per axis, and round outwards")
 }
 
-/// A sphere that holds all of `points`, one or more. It need not be the smallest, but no radius may be more than twice as
-/// large as that: around the middle of their box is small enough.
-pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
-    todo!("take a centre, and the largest distance from it, rounded up")
-}
-
-/// Where `ray` enters the sphere, within `t_min..=t_max`: at `t_min` if it starts inside; `None` if it does not come into
-/// it. The like of the slab test for spheres.
-pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
-    todo!("the nearer root, or t_min from inside; nothing if the ray passes or ends before")
-}
-
-/// The closest hit in a scene graph: a node's own primitives, then the nodes below. Of two hits at the same `t` the smaller
-/// primitive number wins. `savings` says which questions are to be saved; the hit is the same for all of them.
+/// Computes a sphere that contains all `points`, of which there is at least one.
 ///
-/// - `volumes`: ask `enter` for a node first, the root included, and leave out what the ray does not enter. Without it,
-///   `enter` is never asked, and there is nothing to skip or to sort by.
-/// - `skip`: what is entered beyond the closest hit so far is left out.
-/// - `sort`: of the children that are entered, the nearest is looked into first.
+/// It need not be the smallest such sphere, but its radius must be at most twice as large. The sphere around the centre
+/// of the points' bounding box is small enough. No point may lie outside, also not by a rounding error.
+///
+/// Pitfall: a radius that is rounded to nearest is too small in half of all cases. Round it up.
+pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
+    todo!("take the centre of the points' box and the largest distance from it, rounded up")
+}
+
+/// Computes the `t` at which `ray` enters the sphere: the slab test's counterpart for bounding spheres.
+///
+/// The result lies in `t_min..=t_max` and counts lengths of the direction. It is `t_min` if the ray starts inside, and
+/// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to the sphere. The result
+/// must not be later than the exact entry, and may be earlier by a few rounding errors.
+///
+/// Pitfall: a search compares this `t` with the `t` of hits. If it is late by a rounding error, the search skips a sphere
+/// that contains a hit at the same `t`.
+pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
+    todo!("return the nearer root, or t_min from inside; None if the ray misses the sphere")
+}
+
+/// Finds the closest hit of `ray` in a scene graph: tests a node's own primitives first, then visits its children. Node
+/// 0 is the root; a graph without nodes gives `None`.
+///
+/// Of two hits at the same `t` the smaller primitive number wins. `probe.hit` tests a primitive; test each one at most
+/// once. `savings` switches on three optimisations, and the hit is the same for all combinations:
+///
+/// - `volumes`: call `probe.enter` once for each node before its primitives are tested, also for the root, and skip a
+///   node that the ray does not enter, with all nodes below. Without `volumes`, `enter` is never called, and every node
+///   is visited.
+/// - `skip`: skip a node that the ray enters beyond the closest hit so far. Decide this when you are about to visit the
+///   node. A node that begins exactly at the closest hit must be visited.
+/// - `sort`: visit the entered children in the order in which the ray enters them. Without `sort`, visit them as listed.
+///
+/// Pitfall: a hit at exactly `t_max` does not count. If the range shrinks to the closest hit, a hit at the same `t`
+/// with a smaller number is lost.
 pub fn closest_hit_in_graph(
     graph: &Graph,
     probe: &mut impl Probe,
     ray: &Ray,
     savings: Savings,
 ) -> Option<PrimitiveHit> {
-    todo!("hit the node's primitives, then look into the children that are worth it")
+    todo!("test the node's primitives, then visit the children as savings says")
 }

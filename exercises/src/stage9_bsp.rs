@@ -1,4 +1,4 @@
-//! Stage 9 · the BSP tree: planes in any direction, those of the polygons themselves.
+//! Stage 9 · the BSP tree: planes of any direction divide space, above all the planes of the polygons themselves.
 //!
 //! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
 //!
@@ -10,23 +10,37 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Bsp, BspNode, Cells, CutPlane};
 use raykata::ray::Ray;
 
-/// Builds a BSP tree over hulls: the corners of a polygon, or the eight of a box. Candidates for a cut are the planes of
-/// the polygons, and one across the longest extent in the middle of things, for those of a convex body divide nothing. The
-/// plane is taken that leaves few primitives on its fuller side, and fewer still on both. A leaf is made if there are no
-/// more than `leaf_size`, at `max_depth`, or if no plane leaves fewer on either side and less than 60 % on both.
+/// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
 ///
-/// A primitive is listed on each side that it reaches into; one that touches the plane, on both. What is not a number is
-/// left out.
+/// The candidates for a cut are the planes of the polygons, and one plane across the longest extent through the median
+/// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
+/// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
+/// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
+/// on both.
+///
+/// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out
+/// hulls that have no corner, or a corner with NaN or infinity. Without a usable hull the tree has no nodes.
+///
+/// Pitfall: many polygons in one plane, or around one line, are on both sides of each of their planes. The recursion
+/// must end there.
+///
+/// Slide: "Binary Space Partition (BSP) Tree".
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
     todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
 }
 
-/// The closest hit: the side that the ray comes from first, then the other one, each with the part of the ray that is on
-/// it.
+/// Finds the closest hit. At each plane search the side of the ray's origin first and the other side second, each with
+/// the part of the ray that is on it.
 ///
-/// Where the formula lies: `if (t < min_t) || (t < max_t)) return no_intersection` gives up where the plane is behind the
-/// ray or beyond its end; there the ray is on one side all the way, and that side must be searched. A ray in the plane is
-/// on both sides, and so is one that starts on it.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit or no node. Visit a node at most once, and only if the ray enters it before the best hit.
+/// A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: `if (t < min_t) || (t < max_t)) return no_intersection` is wrong if the plane is behind the ray or beyond
+/// its end. There the ray is on one side along its whole length, and that side must be searched. A ray in the plane is
+/// on both sides, and so is a ray that starts on it; a primitive in the plane may be listed on one side only.
+///
+/// Slide: "Binary Space Partition (BSP) Tree".
 pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!("search the near side of each plane first, then the far one if it can matter")
+    todo!("search the near side of each plane first, then the far side unless the best hit is before it")
 }

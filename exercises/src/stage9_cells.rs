@@ -1,78 +1,103 @@
-//! Stage 9 · partitions: space divided into cells, each with a list of what reaches into it. Here is what all of them need;
-//! the grid, the octree, the kd-tree, the BSP tree and the coherence of rays have a file each.
+//! Stage 9 · partitions: space is divided into cells, and each cell lists the primitives that overlap it. This file has
+//! the functions that all partitions share. The grid, the octree, the kd-tree, the BSP tree and the coherence of rays
+//! have a file each.
 //!
 //! Slides: "Kd-Trees", "Uniform Grid", "Octree", "Binary Space Partition (BSP) Tree".
 //!
-//! Given: [`Cells`] with `visit` (call it for each node or cell that the search comes to) and `hit` (where the ray hits a
-//! primitive); [`Cell`], a box in double precision, with its octants and halves. Of two hits at the same `t` the smaller
-//! primitive number wins, as in stage 3.
+//! Given: [`Cells`] with `visit` (call it once per node or cell that the search visits) and `hit` (the `t` at which the
+//! ray hits a primitive); [`Cell`], a closed box in double precision, with its octants and halves. Of two hits at the
+//! same `t` the smaller primitive number wins, as in stage 3.
 
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells};
 use raykata::ray::Ray;
 
-/// The `t` of a hit and that of a cell come from different formulas, so neither is before or behind the other unless by
-/// more than this share: 16 times `u = 2⁻²⁴`, where three roundings make 3 u and a grazing triangle some more. Where lists
-/// are tight, nothing else keeps a hit on a face. It costs next to nothing, a cell more for about one ray in 10,000, as
-/// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/partitions.rs).
+/// The relative room for rounding when the `t` of a hit is compared with the `t` of a cell.
+///
+/// The two come from different formulas, so their order is certain only if they differ by more than this fraction: 16
+/// times `u = 2⁻²⁴`. Three roundings give an error of 3 u, and a grazing triangle gives some more. If lists are tight,
+/// only this room keeps a hit on a face. It costs one more cell for about one ray in 10,000, as the test
+/// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/suite/partitions.rs).
 pub const ROUNDING: f64 = 16.0 * (f32::EPSILON as f64) / 2.0;
 
-/// Boxes as builders take them: with room around each.
+/// Boxes for builders, each widened by some room for rounding.
 pub struct Widened {
-    /// The box around all.
+    /// The box around all widened boxes.
     pub around: Aabb,
-    /// Number and box of each primitive that can be met.
+    /// The number and the widened box of each primitive that a ray can hit.
     pub boxes: Vec<(u32, Aabb)>,
 }
 
-/// The boxes that are no nonsense, each with a little room on all sides, so that a hit that rounding puts just outside of
-/// its box is still in a cell that lists it. What is not a number, or empty, is left out: no ray meets it.
+/// Widens every box a little on all sides, so that a hit that rounding moves just outside its box is still in a cell
+/// that lists it. Boxes that are empty or have a NaN coordinate are left out, because no ray hits them.
 ///
-/// Room is 2⁻¹⁸ of the largest extent, because a test in single precision is off by some 2⁻²³ of the distance to the
-/// ray's origin, and cameras stand within 32 extents; but at least 2⁻²² of the largest coordinate, which is some steps.
+/// The room is 2⁻¹⁸ of the largest extent: a test in single precision has an error of about 2⁻²³ of the distance to the
+/// ray's origin, and cameras are usually within 32 extents. It is at least 2⁻²² of the largest coordinate, which is a
+/// few floats. The result stays within ±`f32::MAX`.
+///
+/// Pitfall: the extent of huge boxes overflows in single precision, and infinite corners give cells without a middle.
 pub fn widened(bounds: &[Aabb]) -> Widened {
-    todo!("leave out what is empty or not a number, and give every other box a little room")
+    todo!("leave out boxes that are empty or NaN, and widen every other box a little")
 }
 
-/// The part of `t..=t'` in which `ray` is at height 0 or more above a plane, where its height is `height + rate · t`:
-/// one side of a cut. `room` is how far below still counts. A ray along the plane, `rate = 0`, is above it for ever or
-/// never; one within it is on both sides.
+/// Computes the part of the closed interval `t..=t_end` in which a ray is on one side of a plane: where its height
+/// above the plane, `height + rate · t`, is at least `-room`.
 ///
-/// Where the formula lies: `tHit <= t → snd` leaves out the side of a ray that starts in the plane, and
-/// `direction = 0: origin <= value → left` that of one that stays in it.
+/// `height` is the height of the ray's origin, and `rate` its change per unit of `t`. With `rate = 0` the result is the
+/// whole interval or `None`. A ray within the plane is on both sides. The result may be a single `t`; it is `None` if
+/// no `t` of the interval is above.
+///
+/// Pitfall: `tHit <= t → snd` leaves out one side for a ray that starts in the plane.
+/// `direction = 0: origin <= value → left` leaves out one side for a ray that stays in it.
+///
+/// Slide: "kd-Tree Traversal".
 #[inline]
 pub fn part_above(height: f64, rate: f64, room: f64, (t, t_end): (f64, f64)) -> Option<(f64, f64)> {
-    todo!("cut the interval where the ray crosses the plane; mind a ray along it")
+    todo!("cut the interval where the ray crosses the plane; treat a ray along the plane separately")
 }
 
-/// Where `ray` enters and leaves a cell, in double precision and within its own range: the part that is above all six
-/// faces. The cell is closed, and range and faces have [`ROUNDING`] as room, so nothing is lost that single precision
-/// would find. `None` for an empty cell.
+/// Computes the `t` at which `ray` enters and leaves a cell, in double precision: the part of its range that is above
+/// all six faces.
+///
+/// The cell is closed: a ray along a face or through a corner is in the cell. Both the range of the ray and the faces
+/// have [`ROUNDING`] as room, so that no hit found in single precision is lost. A ray that starts inside enters at
+/// `t_min`. Returns `None` if the ray misses the cell within its range, and for an empty cell.
+///
+/// Pitfall: for a ray that runs in the plane of a face, dividing by the direction gives 0 / 0.
+///
+/// Slide: "kd-Tree Traversal".
 #[inline]
 pub fn span(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
     todo!("intersect the range of the ray with the parts above all six faces")
 }
 
-/// The range of a ray, with room for rounding at both ends.
+/// The range of a ray, widened by [`ROUNDING`] at both ends.
 pub fn range(ray: &Ray) -> (f64, f64) {
     let [t_min, t_max] = [ray.t_min, ray.t_max].map(f64::from);
     (t_min - ROUNDING * t_min.abs(), t_max + ROUNDING * t_max.abs())
 }
 
-/// Tests the primitives of a cell: keeps the closest hit in `best`, and shortens the ray by it. A hit counts wherever it
-/// lies, for the cell does not end the primitive; and a primitive that reaches into several cells may be tested again,
-/// which changes nothing.
+/// Tests the primitives of a cell: keeps the closest hit in `best`, and shortens the ray to it.
+///
+/// A hit counts also if it lies outside the cell, because a primitive may extend beyond its cell. At equal `t` the
+/// smaller primitive number wins. A primitive that overlaps several cells may be tested several times; that does not
+/// change the result.
+///
+/// Pitfall: if the ray ends exactly at the best hit, another primitive at the same `t` is not reported, because the
+/// range of a ray is open. End it one float above `t`.
 #[inline]
 pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best: &mut Option<PrimitiveHit>) {
     todo!("ask probe.hit about each primitive, and keep the closest; at one t the smaller number")
 }
 
-/// Whether the search may stop before a cell that the ray enters at `entry`: the best hit lies before it, and by more
-/// than [`ROUNDING`].
+/// Whether the search may stop before a cell that the ray enters at `entry`: the best hit lies before the entry by more
+/// than [`ROUNDING`]. `false` if there is no hit yet.
 ///
-/// Where the formula lies: `hit.distance < t'` throws a hit away that lies on the far face of its cell, and takes `t` and
-/// `t'` from two formulas for comparable.
+/// Pitfall: `hit.distance < t'` rejects a hit on the far face of its cell, and it compares two `t` from different
+/// formulas without room for rounding.
+///
+/// Slide: "kd-Tree Traversal".
 #[inline]
 pub fn settled(best: &Option<PrimitiveHit>, entry: f64) -> bool {
     todo!("compare the best hit with the entry; leave room for rounding")

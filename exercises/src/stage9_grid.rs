@@ -1,9 +1,9 @@
-//! Stage 9 · the uniform grid: cells of one size, and rays that go from one to the next.
+//! Stage 9 · the uniform grid: cells of equal size, and a search that steps along the ray from cell to cell.
 //!
-//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells; "How choose suitable grid
-//! resolution?").
+//! Slides: "Uniform Grid" (index primitives according to overlaps; trace rays through grid cells; "How choose suitable
+//! grid resolution?").
 //!
-//! Given: [`Grid`] with `plane` (where a cell begins), `number` and `primitives`.
+//! Given: [`Grid`] with `plane` (the coordinate at which a cell begins), `number` and `primitives`.
 
 use crate::stage9_cells::{look_into, settled, span, widened};
 use glam::{DVec3, UVec3};
@@ -12,22 +12,44 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Grid, MOST_CELLS_ALONG};
 use raykata::ray::Ray;
 
-/// How many cells along each axis make about `density · n_primitives` cells that are nearly cubes. An axis along which the
-/// box is thinner than a cell gets one; no axis gets more than [`MOST_CELLS_ALONG`]. An empty box, or nothing in it, is
-/// one cell.
+/// Chooses the number of cells along each axis, such that the grid has about `density · n_primitives` cells that are
+/// nearly cubes.
+///
+/// An axis along which the box is thinner than a cell gets one cell. Every axis gets at least 1 and at most
+/// [`MOST_CELLS_ALONG`] cells. An empty box, a single point and `n_primitives = 0` get one cell.
+///
+/// Pitfall: a flat box has no volume. Use the area of the two remaining axes, or the length of the one remaining axis.
+///
+/// Slide: "Uniform Grid" (How choose suitable grid resolution?).
 pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     todo!("find the side of a cube of which density · n fill the box; flat boxes have fewer axes")
 }
 
-/// Puts each primitive into all cells that its box reaches into, touching included.
+/// Builds a grid of `resolution` cells over the box around all primitives: lists each primitive in all cells that its
+/// box overlaps.
+///
+/// A box that touches a cell overlaps it. Each primitive is listed once per cell. Empty boxes and boxes with NaN are
+/// left out. An axis with resolution 0 gets one cell.
+///
+/// Pitfall: the quotient that gives the index of a cell is rounded. Compare with [`Grid::plane`] after the division.
+///
+/// Slide: "Uniform Grid" (index primitives according to overlaps).
 pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
-    todo!("for each box find the first and the last cell on each axis, and list it in all between")
+    todo!("for each box find the first and the last cell on each axis, and list it in all cells between")
 }
 
-/// The closest hit: from the cell that the ray enters first to the next one, until the best hit lies before the cell.
+/// Finds the closest hit: visits the cells in the order in which the ray enters them, and stops when the best hit lies
+/// before the next cell.
 ///
-/// Where the formula lies: the hit of a cell need not be in it, and a later cell may hold a nearer one; `tMax += tDelta`
-/// adds up roundings, so that in a fine grid wrong cells are visited: work out `t` from the number of the cell.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, or if the ray misses the grid. Visit each cell at most once. At a corner, visit any
+/// sequence of cells that share a face.
+///
+/// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
+/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
+/// the cell, in double precision.
+///
+/// Slide: "Uniform Grid" (trace rays through grid cells).
 pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!("look into the cell, find the nearest of its three far planes, and step across it")
+    todo!("test the cell's primitives, find the nearest of its three far planes, and step across it")
 }

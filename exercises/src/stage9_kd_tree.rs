@@ -1,4 +1,4 @@
-//! Stage 9 · the kd-tree: planes across the axes, put where five heuristics want them.
+//! Stage 9 · the kd-tree: planes across the axes divide space, and five heuristics choose the planes.
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
@@ -10,23 +10,42 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 
-/// Builds a kd-tree from the top down. A node with more than `leaf_size` primitives is divided, if it is not at
-/// [`KdTree::most_depth`] yet and not all primitives would be on both sides. A primitive that touches a plane is on both.
+/// Builds a kd-tree from the root down.
 ///
-/// Each heuristic does one thing: `longest_axis` cuts across the longest side of the cell, or else across x, y, z by
-/// turns, from x at the root; `balanced_counts` keeps the counts of the two sides alike; `few_straddlers` keeps those on
-/// both few (together, the sum of the difference and the number on both is least; with neither the cut is in the middle);
-/// `cut_off_empty_space` takes a margin of a tenth of the cell or more away first; `stop_at_overlap` makes a leaf if 60 %
-/// of those on one side would also be on the other.
+/// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
+/// depth 0) or all primitives would be on both sides. A plane lies within its cell. List a primitive once in every leaf
+/// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
+/// Without a usable box the tree has no nodes.
+///
+/// Each heuristic can be switched on alone:
+/// - `longest_axis` cuts across the longest side of the cell. Without it the cuts take x, y, z in turn, with x at the
+///   root.
+/// - `balanced_counts` minimises the difference of the counts of the two sides.
+/// - `few_straddlers` minimises the number of primitives on both sides. With both heuristics the sum of the two numbers
+///   is minimal; with neither the cut is in the middle of the cell.
+/// - `cut_off_empty_space` first cuts off an empty margin of more than a tenth of the cell.
+/// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides.
+///
+/// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
+/// there.
+///
+/// Slides: "Kd-Trees", "Heuristics" 1 to 5.
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
 }
 
-/// The closest hit, with the interval of `t` in which the ray is in each cell: the nearer side of a plane first, then the
-/// farther one, unless the best hit lies before it.
+/// Finds the closest hit, with the interval of `t` in which the ray is in each cell: searches the near side of each
+/// plane first, then the far side, unless the best hit lies before it.
 ///
-/// Where the formula lies: `hit.distance < t'` drops a wall on the face of the box, and what reaches out of its leaf; and
-/// a ray in the plane, or from it, is on both sides, for a builder may list what lies in the plane on one side only.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit a node at most once, and only
+/// if the ray enters it before the best hit. A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: `hit.distance < t'` loses a wall on the face of the box, and a primitive that extends beyond its leaf
+/// (traps A4 and A6). A ray in the plane, or one that starts on it, is on both sides (trap A5), because a builder may
+/// list a primitive in the plane on one side only.
+///
+/// Slide: "kd-Tree Traversal" with `t` and `t'`.
 pub fn closest_hit(tree: &KdTree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!("search the nearer side of each plane first, then the farther one if it can matter")
+    todo!("search the near side of each plane first, then the far side unless the best hit is before it")
 }

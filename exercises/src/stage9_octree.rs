@@ -1,7 +1,7 @@
-//! Stage 9 · the octree: cells that are divided in eight wherever there is much, and two ways through it.
+//! Stage 9 · the octree: cells with many primitives are divided into eight octants. It has two searches.
 //!
-//! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or, check
-//! rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
+//! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
+//! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
 //! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`.
 
@@ -12,27 +12,47 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Octree, OctreeNode};
 use raykata::ray::Ray;
 
-/// Divides the box around all, made a cube, into octants for as long as there are more than `leaf_size` primitives and it
-/// helps, down to `max_depth` (the root is at depth 0). A primitive is listed in every leaf that its box reaches into,
-/// touching included. Nothing makes no node.
+/// Builds an octree: makes a cube of the box around all primitives, and divides every cell that holds more than
+/// `leaf_size` primitives into octants.
 ///
-/// Where the formula lies: a thousand copies of one box reach into the same octants again and again; if all octants
-/// together would hold more than three times as many, a leaf is better.
+/// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
+/// its octants together would hold more than three times as many primitives. List a primitive once in every leaf that
+/// its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.
+///
+/// Pitfall: a thousand copies of one box are in the same octants at every level. Without the limit on the growth the
+/// build does not end in reasonable time.
+///
+/// Slide: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     todo!("make a leaf if the primitives are few; else divide the cell and build all eight octants")
 }
 
-/// The closest hit, from cell to cell: find the leaf that holds the point at which the ray enters, look into it, go on
-/// just past its exit. Every node on the way down to a leaf is visited.
+/// Finds the closest hit from cell to cell: goes down from the root to the leaf that contains the point of entry, tests
+/// its primitives, and continues with the leaf behind its exit.
+///
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit every node on the way down to
+/// a leaf, and each leaf at most once. A hit may lie outside the leaf that lists its primitive.
+///
+/// Pitfall: a point on a face belongs to two cells. Take the cell that the ray is about to enter, and set the point
+/// exactly on the face; otherwise the search makes no progress along edges.
+///
+/// Slide: "Octree" (trace rays through neighbor cells).
 pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!("go down to the leaf that holds the point, look into it, and go on at its exit")
+    todo!("go down to the leaf that contains the point, test its primitives, and continue at its exit")
 }
 
-/// The closest hit, from the root down: of the octants that the ray meets the nearest one first, and none beyond the best
-/// hit.
+/// Finds the closest hit from the root down: searches the octants that the ray enters in the order of their entries,
+/// and stops at an octant that begins behind the best hit.
 ///
-/// Where the formula lies: "sort eight boxes" needs an order for boxes that are entered at one `t`, and the hit of an
-/// octant need not be in it: stop only at an octant that begins behind the best hit.
+/// Returns the hit with the smallest `t` in the range of the ray; at equal `t` the smaller primitive number wins.
+/// `None` if there is no hit, if the ray misses the bounds, or if there is no node. Visit each node at most once, and
+/// only if the ray enters it before the best hit.
+///
+/// Pitfall: "sort eight boxes" needs an order also for octants that the ray enters at the same `t`. A primitive of an
+/// octant may be hit outside the octant, so stop only at an octant that begins behind the best hit (trap A9).
+///
+/// Slide: "Octree" (sort eight boxes front-to-back).
 pub fn closest_hit(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
     todo!("sort the octants by where the ray enters them, and search them in that order")
 }
