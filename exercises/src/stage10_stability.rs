@@ -76,7 +76,7 @@ pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) ->
     todo!("move the point along the normal by its error, then each coordinate by one float outwards")
 }
 
-/// Normalises a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
+/// Normalizes a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
 ///
 /// Returns `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or infinite.
 ///

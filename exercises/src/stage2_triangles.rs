@@ -81,7 +81,7 @@ pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
 /// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
 ///
-/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals, because
+/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalize the normals, because
 /// that changes no sign and turns a normal of 0 into NaN.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     todo!("test on which side of the plane through ray.origin and each side the point lies")
@@ -110,7 +110,7 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 }
 
 /// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
-/// at the corners a, b and c. The result is not normalised.
+/// at the corners a, b and c. The result is not normalized.
 pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
     todo!("return the sum of the three corners, each times its weight")
 }
@@ -123,18 +123,18 @@ pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
 /// Pitfall: for edges of 1e-11 the square of `|u × v|` underflows, and the "unit" normal is 1 % too long. For edges
 /// of 1e-12 it is NaN. Scale the edges first, because their lengths do not change the direction of the normal.
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
-    todo!("normalise u × v, and return None for a triangle without area")
+    todo!("normalize u × v, and return None for a triangle without area")
 }
 
-/// One unit normal per vertex: the normalised sum of the unit normals of the triangles that use the vertex.
+/// One unit normal per vertex: the normalized sum of the unit normals of the triangles that use the vertex.
 ///
 /// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
 /// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
 ///
-/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalised. Then take the
+/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalized. Then take the
 /// normal of one of the triangles around the vertex.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
-    todo!("add up the face normals at each vertex and normalise")
+    todo!("add up the face normals at each vertex and normalize")
 }
 
 /// The closest hit among primitives `0..n_primitives`: call `probe.hit(primitive, ray)` for each of them and keep the

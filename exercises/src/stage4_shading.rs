@@ -15,7 +15,7 @@ use raykata::ray::Ray;
 /// `geometric` normal otherwise.
 ///
 /// `direction` is the direction of the ray that comes from the viewer. `geometric` has unit length; it is negated if
-/// its dot product with `direction` is above 0. `interpolated` has any length and either sign; it is normalised, and
+/// its dot product with `direction` is above 0. `interpolated` has any length and either sign; it is normalized, and
 /// negated if its dot product with the turned geometric normal is below 0. If `interpolated` is `None`, has length 0
 /// or is NaN, the turned geometric normal is returned. For a dot product of 0 either sign passes.
 ///
@@ -23,7 +23,7 @@ use raykata::ray::Ray;
 ///
 /// Slide "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
-    todo!("normalise the interpolated normal if there is one, and turn it to the viewer's side")
+    todo!("normalize the interpolated normal if there is one, and turn it to the viewer's side")
 }
 
 /// The diffuse term of the Phong model: `cos θ`, the cosine of the angle between the normal and the direction to the

@@ -21,7 +21,7 @@ use raykata::ray::Ray;
 ///
 /// Slide "Perfect reflection direction".
 pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
-    todo!("reflect direction by the normal, and normalise")
+    todo!("reflect direction by the normal, and normalize")
 }
 
 /// The direction of the refracted ray by Snell's law, `n1 sin θ1 = n2 sin θ2`.

@@ -21,11 +21,11 @@ use raykata::shape::Sphere;
 /// precision keeps them.
 ///
 /// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
-/// the axes both give the same result, so tests with such scales do not show the mistake. A normalised direction is
+/// the axes both give the same result, so tests with such scales do not show the mistake. A normalized direction is
 /// wrong, too: it changes the unit of `t`, which then cannot be compared with the `t` of another object.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
-    todo!("transform the origin as a point and the direction as a vector; do not normalise it")
+    todo!("transform the origin as a point and the direction as a vector; do not normalize it")
 }
 
 /// Transforms the unit normal `normal` of a surface from the space of its object to the world. The result has unit
@@ -37,7 +37,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
 /// Pitfall: a normal that is transformed like a point is not perpendicular to a stretched surface. Do not flip the result
 /// for a negative determinant.
 pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
-    todo!("multiply by the transpose of to_object, then normalise")
+    todo!("multiply by the transpose of to_object, then normalize")
 }
 
 /// Computes the transform from the space of a node to the world, and its inverse.

@@ -114,7 +114,7 @@ pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) ->
     // </solution>
 }
 
-/// Normalises a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
+/// Normalizes a vector: `v / |v|`, with length 1 up to rounding, for every finite `v` except 0, however short or long.
 ///
 /// Returns `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or infinite.
 ///
@@ -127,7 +127,7 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     if largest == 0.0 || !v.is_finite() {
         return None;
     }
-    // Normalise in double precision, in which the square of every finite `f32` fits.
+    // Normalize in double precision, in which the square of every finite `f32` fits.
     Some(v.as_dvec3().normalize().as_vec3())
     // <stub> todo!("scale by the largest coordinate first")
     // </solution>

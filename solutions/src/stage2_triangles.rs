@@ -184,7 +184,7 @@ pub fn longest_axis(v: Vec3) -> usize {
 /// counterclockwise. A point on a plane lies on both of its sides, so points on an edge are inside, and the plane of
 /// a side whose line contains the ray's origin (its normal is 0) accepts every point. A NaN gives `false`.
 ///
-/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalise the normals, because
+/// Pitfall: "distance < 0 → outside" is right for one order of the corners only. Do not normalize the normals, because
 /// that changes no sign and turns a normal of 0 into NaN.
 pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
     // <solution>
@@ -237,7 +237,7 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
 }
 
 /// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
-/// at the corners a, b and c. The result is not normalised.
+/// at the corners a, b and c. The result is not normalized.
 pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // <solution>
     weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2]
@@ -259,16 +259,16 @@ pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     let normal = unit_sized(triangle.b - triangle.a).cross(unit_sized(triangle.c - triangle.a));
     // Return None for a cross product of zero or NaN.
     normal.try_normalize()
-    // <stub> todo!("normalise u × v, and return None for a triangle without area")
+    // <stub> todo!("normalize u × v, and return None for a triangle without area")
     // </solution>
 }
 
-/// One unit normal per vertex: the normalised sum of the unit normals of the triangles that use the vertex.
+/// One unit normal per vertex: the normalized sum of the unit normals of the triangles that use the vertex.
 ///
 /// The result has as many normals as the mesh has positions, in the same order. Each triangle counts once, whatever
 /// its area. A triangle without area does not count. A vertex that no triangle with an area uses gets any unit vector.
 ///
-/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalised. Then take the
+/// Pitfall: opposite normals add up to zero, or to rounding errors, and zero cannot be normalized. Then take the
 /// normal of one of the triangles around the vertex.
 pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
     // <solution>
@@ -284,13 +284,13 @@ pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
             of_one_face[vertex as usize] = normal;
         }
     }
-    // Normalise each sum. A sum below this limit consists of rounding errors: take the normal of one face.
+    // Normalize each sum. A sum below this limit consists of rounding errors: take the normal of one face.
     let cancelled = |sum: Vec3| sum.length_squared() < 1e-10;
     sums.iter()
         .zip(of_one_face)
         .map(|(&sum, face)| if cancelled(sum) { face } else { sum.normalize() })
         .collect()
-    // <stub> todo!("add up the face normals at each vertex and normalise")
+    // <stub> todo!("add up the face normals at each vertex and normalize")
     // </solution>
 }
 

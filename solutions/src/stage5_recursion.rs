@@ -27,7 +27,7 @@ use crate::stage4_shading::off_surface;
 pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
     // <solution>
     (direction - 2.0 * direction.dot(normal) * normal).normalize()
-    // <stub> todo!("reflect direction by the normal, and normalise")
+    // <stub> todo!("reflect direction by the normal, and normalize")
     // </solution>
 }
 

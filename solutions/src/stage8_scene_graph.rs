@@ -21,7 +21,7 @@ use raykata::shape::Sphere;
 /// precision keeps them.
 ///
 /// Pitfall: the slide transforms the direction by the inverse *transpose*, which is for normals only. For scales along
-/// the axes both give the same result, so tests with such scales do not show the mistake. A normalised direction is
+/// the axes both give the same result, so tests with such scales do not show the mistake. A normalized direction is
 /// wrong, too: it changes the unit of `t`, which then cannot be compared with the `t` of another object.
 #[inline]
 pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
@@ -32,7 +32,7 @@ pub fn ray_to_object(ray: &Ray, to_object: &Affine3A) -> Ray {
         direction: to_object.transform_vector3(ray.direction),
         ..*ray
     }
-    // <stub> todo!("transform the origin as a point and the direction as a vector; do not normalise it")
+    // <stub> todo!("transform the origin as a point and the direction as a vector; do not normalize it")
     // </solution>
 }
 
@@ -48,7 +48,7 @@ pub fn normal_to_world(normal: Vec3, to_object: &Affine3A) -> Vec3 {
     // <solution>
     let rows = to_object.as_daffine3().matrix3.transpose();
     (rows * normal.as_dvec3()).normalize_or_zero().as_vec3()
-    // <stub> todo!("multiply by the transpose of to_object, then normalise")
+    // <stub> todo!("multiply by the transpose of to_object, then normalize")
     // </solution>
 }
 

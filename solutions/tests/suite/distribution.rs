@@ -139,7 +139,7 @@ fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
 }
 
 #[test]
-fn what_lies_on_the_plane_of_focus_is_sharp_for_every_ray_of_the_lens() {
+fn what_lies_on_the_focal_plane_is_sharp_for_every_ray_of_the_lens() {
     let mut scene = full(1);
     scene.nodes.clear();
     scene.roots.clear();

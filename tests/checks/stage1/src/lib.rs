@@ -17,11 +17,12 @@ use roots::{nearest_root_is_the_smaller_one_that_counts, nearest_root_of_nan_is_
 use spheres::{
     sphere_algebraic_agrees_with_double_precision, sphere_algebraic_counts_lengths_of_the_direction,
     sphere_algebraic_far_away_and_tiny, sphere_algebraic_leaves_the_surface,
-    sphere_algebraic_respects_the_range, sphere_algebraic_starts_inside, sphere_algebraic_survives_nonsense,
-    sphere_algebraic_touches, sphere_geometric_agrees_with_double_precision,
-    sphere_geometric_counts_lengths_of_the_direction, sphere_geometric_far_away_and_tiny,
-    sphere_geometric_leaves_the_surface, sphere_geometric_respects_the_range, sphere_geometric_starts_inside,
-    sphere_geometric_survives_nonsense, sphere_geometric_touches, sphere_normal_points_outwards,
+    sphere_algebraic_respects_the_range, sphere_algebraic_starts_inside,
+    sphere_algebraic_survives_invalid_numbers, sphere_algebraic_touches,
+    sphere_geometric_agrees_with_double_precision, sphere_geometric_counts_lengths_of_the_direction,
+    sphere_geometric_far_away_and_tiny, sphere_geometric_leaves_the_surface,
+    sphere_geometric_respects_the_range, sphere_geometric_starts_inside,
+    sphere_geometric_survives_invalid_numbers, sphere_geometric_touches, sphere_normal_points_outwards,
 };
 
 checks::stage! { ($ crate) 1 [
@@ -34,7 +35,7 @@ checks::stage! { ($ crate) 1 [
     sphere_algebraic_far_away_and_tiny
     sphere_algebraic_touches
     sphere_algebraic_leaves_the_surface
-    sphere_algebraic_survives_nonsense
+    sphere_algebraic_survives_invalid_numbers
     sphere_geometric_agrees_with_double_precision
     sphere_geometric_starts_inside
     sphere_geometric_counts_lengths_of_the_direction
@@ -42,7 +43,7 @@ checks::stage! { ($ crate) 1 [
     sphere_geometric_far_away_and_tiny
     sphere_geometric_touches
     sphere_geometric_leaves_the_surface
-    sphere_geometric_survives_nonsense
+    sphere_geometric_survives_invalid_numbers
     sphere_normal_points_outwards
     plane_agrees_with_double_precision
     plane_is_missed_by_rays_along_it

@@ -19,8 +19,8 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
             return Ok(());
         }
         let length = query.ray.direction.length();
-        let endless = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
-        let mirrored = |t: f32| double::plane(&endless, &query.plane).accepts(Some(-t));
+        let infinite = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
+        let mirrored = |t: f32| double::plane(&infinite, &query.plane).accepts(Some(-t));
         let diagnosis = match (yours, expected) {
             (Some(t), _) if t.is_nan() => "you return NaN: compare so that NaN fails",
             (Some(t), _) if !query.ray.contains(t) => "you return a t that ray.contains(t) refuses",

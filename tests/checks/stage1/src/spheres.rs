@@ -31,7 +31,7 @@ for_both_methods! {
     sphere_algebraic_far_away_and_tiny sphere_geometric_far_away_and_tiny sphere_far;
     sphere_algebraic_touches sphere_geometric_touches sphere_tangent;
     sphere_algebraic_leaves_the_surface sphere_geometric_leaves_the_surface sphere_on_surface;
-    sphere_algebraic_survives_nonsense sphere_geometric_survives_nonsense sphere_nonsense;
+    sphere_algebraic_survives_invalid_numbers sphere_geometric_survives_invalid_numbers sphere_invalid_numbers;
 }
 
 pub(super) fn sphere_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
@@ -190,7 +190,7 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
     )
 }
 
-pub(super) fn sphere_nonsense(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: Method) -> Outcome {
     let ray = Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X);
     let unit = Sphere { center: Vec3::ZERO, radius: 1.0 };
     let nothing =

@@ -83,9 +83,9 @@ pub(super) fn describe(margin: f64) -> String {
 
 fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str {
     let Wrong { query, yours, margin, .. } = worst;
-    let endless = TriangleQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
+    let infinite = TriangleQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
     let on_the_line =
-        meet(&endless.ray, Body::Triangle(query.triangle)).is_some_and(|it| it.verdict.is_hit());
+        meet(&infinite.ray, Body::Triangle(query.triangle)).is_some_and(|it| it.verdict.is_hit());
     let beyond_the_third_edge = || {
         let weights = triangle::weights(&query.ray, &query.triangle).flatten();
         weights.is_some_and(|[beta, gamma]| beta >= 0.0 && gamma >= 0.0)

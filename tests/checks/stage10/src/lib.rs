@@ -24,8 +24,8 @@ use doubles::{
 use glam::Vec3;
 use oracle::splitmix::Random;
 use points::{
-    directions_have_length_one_at_every_length, nothing_has_no_direction,
-    offsets_are_as_small_as_they_can_be, offsets_leave_the_surface_at_any_scale,
+    directions_have_length_one_at_every_length, offsets_are_as_small_as_they_can_be,
+    offsets_leave_the_surface_at_any_scale, zero_has_no_direction,
 };
 use raykata::kit::TriangleQuery;
 use raykata::ray::Ray;
@@ -86,7 +86,7 @@ checks::stage! { ($ crate) 10 [
     offsets_leave_the_surface_at_any_scale
     offsets_are_as_small_as_they_can_be
     directions_have_length_one_at_every_length
-    nothing_has_no_direction
+    zero_has_no_direction
     double_triangle_is_right_at_edges
     double_triangle_has_the_nearest_t
     double_sphere_is_right_at_rims

@@ -117,7 +117,7 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> O
     })
 }
 
-pub(super) fn nothing_has_no_direction(trial: &Trial<'_>) -> Outcome {
+pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> Outcome {
     let bad = [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
     let mut queries = vec![Vec3::ZERO, Vec3::splat(-0.0)];
     for number in &bad[2..] {

@@ -107,8 +107,8 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
     let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
     let plainest = wrong.iter().max_by(|(p, ..), (q, ..)| margin(p).total_cmp(&margin(q)));
     let Some((query, yours, exact)) = plainest else { return Ok(()) };
-    let endless = SphereQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
-    let on_the_line = meet(&endless.ray, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
+    let infinite = SphereQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
+    let on_the_line = meet(&infinite.ray, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
     let only_the_far_root =
         sphere::roots(&query.ray, &query.sphere).is_some_and(|it| !it.near_counts && it.far_counts);
     let diagnosis = match yours {

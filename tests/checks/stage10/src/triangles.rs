@@ -64,8 +64,8 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             if yours.is_some() == exact.verdict.is_hit() || margin <= STABLE {
                 return Ok(());
             }
-            let endless = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-            let on_the_line = meet(&endless, body).is_some_and(|exact| exact.verdict.is_hit());
+            let infinite = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let on_the_line = meet(&infinite, body).is_some_and(|exact| exact.verdict.is_hit());
             let diagnosis = match (distribution.name, yours) {
                 (_, Some(_)) if on_the_line => {
                     "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
@@ -126,7 +126,7 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                 mesh.triangles.len(),
                 mesh.name
             );
-            let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+            let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
             let hits = |ray: Ray| {
                 let near: Vec<TriangleQuery> =
                     fan(*vertex).map(|triangle| TriangleQuery { ray, triangle }).collect();
@@ -140,7 +140,7 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
                 () if !hits(Ray::new(ray.origin, middle - ray.origin)) => {
                     "your code misses even the middle of a triangle: a determinant that is small is not 0"
                 }
-                () if mesh.name.contains("needle") && hits(endless) => {
+                () if mesh.name.contains("needle") && hits(infinite) => {
                     "t has lost all digits and its sign: compute it from the plane"
                 }
                 () => {

@@ -31,7 +31,7 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
                 c.paste()
             );
             let diagnosis = if (yours.normalize_or_zero() - expected.normalize_or_zero()).length() < 1e-6 {
-                "your value is normalised: return the weighted sum as it is"
+                "your value is normalized: return the weighted sum as it is"
             } else {
                 "multiply the corners a, b, c by α, β, γ in this order"
             };
@@ -135,7 +135,7 @@ pub(super) fn judge_normals(
                 () if (yours.length() - 1.0).abs() > 1e-4 => "your normal is not of unit length",
                 () if (yours + expected).length() < 1e-3 => "your normal points inwards",
                 () if same(weighed.iter().sum()) => {
-                    "you weight each face by its area: normalise the face normals before you add them"
+                    "you weight each face by its area: normalize the face normals before you add them"
                 }
                 () if weighed.iter().any(|&face| same(face)) => {
                     "you return the normal of one face: add up those of all faces around the vertex"

@@ -67,7 +67,7 @@ pub(super) fn judge_inside(
 
 pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
     judge_inside(trial, "inside_by_planes", |kit, queries| kit.inside_by_planes(queries))?;
-    // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalising it gives NaN.
+    // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalizing it gives NaN.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
     let eye = vec3(-4.0, 0.0, 0.0);
     let query = InsideQuery { ray: Ray::new(eye, vec3(5.0, 0.0, 0.0)), point: vec3(1.0, 0.0, 0.0), triangle };
@@ -75,7 +75,7 @@ pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -
         [true] => Ok(()),
         ref yours => Err(Broken::new(query.call("inside_by_planes"), yours, [true], "exact arithmetic")
             .looks_like(Some(
-                "the ray's origin is on the line of a side: accept its 0, and do not normalise (0/0)",
+                "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
             ))),
     }
 }
@@ -84,7 +84,7 @@ pub(super) fn inside_by_direction_agrees_with_double_precision(trial: &Trial<'_>
     judge_inside(trial, "inside_by_direction", |kit, queries| kit.inside_by_direction(queries))
 }
 
-pub(super) fn inside_by_areas_gives_the_weights_of_the_corners(trial: &Trial<'_>) -> Outcome {
+pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -> Outcome {
     trial.forall(4000, plane_points(), |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
         compare(cases, trial.kit.inside_by_areas(&queries), |(query, weights), yours| {

@@ -19,21 +19,21 @@ use closest::brute_force_finds_the_closest_of_all;
 use golden::{hit_table_of_a_fan, picture_of_an_octahedron};
 use gram::gram_scalars_of_thin_triangles_keep_their_sign;
 use inside::{
-    inside_by_areas_gives_the_weights_of_the_corners, inside_by_direction_agrees_with_double_precision,
+    inside_by_areas_gives_barycentric_coordinates, inside_by_direction_agrees_with_double_precision,
     inside_by_planes_agrees_with_double_precision,
 };
 use meet::{
     triangle_choice_agrees_with_double_precision, triangle_choice_far_from_the_origin,
     triangle_choice_has_no_smallest_size, triangle_choice_is_hit_from_either_side,
-    triangle_choice_is_missed_where_there_is_none, triangle_choice_knows_inside_from_outside,
+    triangle_choice_knows_inside_from_outside, triangle_choice_misses_degenerate_triangles,
     triangle_choice_owns_its_edges, triangle_choice_respects_the_range,
     triangle_cramer_agrees_with_double_precision, triangle_cramer_far_from_the_origin,
     triangle_cramer_has_no_smallest_size, triangle_cramer_is_hit_from_either_side,
-    triangle_cramer_is_missed_where_there_is_none, triangle_cramer_knows_inside_from_outside,
+    triangle_cramer_knows_inside_from_outside, triangle_cramer_misses_degenerate_triangles,
     triangle_cramer_owns_its_edges, triangle_cramer_respects_the_range,
     triangle_gram_agrees_with_double_precision, triangle_gram_far_from_the_origin,
     triangle_gram_has_no_smallest_size, triangle_gram_is_hit_from_either_side,
-    triangle_gram_is_missed_where_there_is_none, triangle_gram_knows_inside_from_outside,
+    triangle_gram_knows_inside_from_outside, triangle_gram_misses_degenerate_triangles,
     triangle_gram_owns_its_edges, triangle_gram_respects_the_range,
 };
 
@@ -45,7 +45,7 @@ checks::stage! { ($ crate) 2 [
     triangle_cramer_owns_its_edges
     triangle_cramer_has_no_smallest_size
     triangle_cramer_far_from_the_origin
-    triangle_cramer_is_missed_where_there_is_none
+    triangle_cramer_misses_degenerate_triangles
     triangle_gram_agrees_with_double_precision
     triangle_gram_knows_inside_from_outside
     triangle_gram_is_hit_from_either_side
@@ -53,7 +53,7 @@ checks::stage! { ($ crate) 2 [
     triangle_gram_owns_its_edges
     triangle_gram_has_no_smallest_size
     triangle_gram_far_from_the_origin
-    triangle_gram_is_missed_where_there_is_none
+    triangle_gram_misses_degenerate_triangles
     triangle_choice_agrees_with_double_precision
     triangle_choice_knows_inside_from_outside
     triangle_choice_is_hit_from_either_side
@@ -61,11 +61,11 @@ checks::stage! { ($ crate) 2 [
     triangle_choice_owns_its_edges
     triangle_choice_has_no_smallest_size
     triangle_choice_far_from_the_origin
-    triangle_choice_is_missed_where_there_is_none
+    triangle_choice_misses_degenerate_triangles
     gram_scalars_of_thin_triangles_keep_their_sign
     inside_by_planes_agrees_with_double_precision
     inside_by_direction_agrees_with_double_precision
-    inside_by_areas_gives_the_weights_of_the_corners
+    inside_by_areas_gives_barycentric_coordinates
     interpolation_weighs_the_corners
     face_normal_has_unit_length_at_any_size
     vertex_normals_average_their_faces

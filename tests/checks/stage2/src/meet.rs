@@ -55,9 +55,9 @@ for_all_methods! {
     triangle_gram_far_from_the_origin
     triangle_choice_far_from_the_origin
         triangle_far;
-    triangle_cramer_is_missed_where_there_is_none
-    triangle_gram_is_missed_where_there_is_none
-    triangle_choice_is_missed_where_there_is_none
+    triangle_cramer_misses_degenerate_triangles
+    triangle_gram_misses_degenerate_triangles
+    triangle_choice_misses_degenerate_triangles
         triangle_missed;
 }
 
@@ -126,14 +126,14 @@ pub(super) fn triangle_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
         ray: Ray::new(vec3(-1.0, -1.0, z), Vec3::NEG_Z).with_range(t_min, t_max),
         triangle,
     };
-    let endless = f32::INFINITY;
+    let infinite = f32::INFINITY;
     method.judge_exact(
         trial,
         &[
-            (at(4.0, 0.0, endless), hit(4.0), ""),
-            (at(-4.0, 0.0, endless), None, "the triangle is behind the ray: a negative t does not count"),
-            (at(0.0, 0.0, endless), None, "the ray starts in the triangle: t = 0 does not count"),
-            (at(4.0, 5.0, endless), None, "the hit lies before t_min"),
+            (at(4.0, 0.0, infinite), hit(4.0), ""),
+            (at(-4.0, 0.0, infinite), None, "the triangle is behind the ray: a negative t does not count"),
+            (at(0.0, 0.0, infinite), None, "the ray starts in the triangle: t = 0 does not count"),
+            (at(4.0, 5.0, infinite), None, "the hit lies before t_min"),
             (at(4.0, 0.0, 3.0), None, "the hit lies beyond t_max"),
             (at(4.0, 0.0, 4.0), None, "the range is open: a hit at t_max does not count"),
             (at(4.0, 3.0, 5.0), hit(4.0), ""),

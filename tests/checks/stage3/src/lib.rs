@@ -30,8 +30,8 @@ use searches::{
 };
 use slabs::{
     slab_agrees_with_double_precision, slab_hits_the_corners_it_is_aimed_at,
-    slab_is_entered_at_once_from_inside, slab_is_hit_by_rays_within_a_face, slab_of_a_flat_box_is_hit,
-    slab_of_nothing_is_missed, slab_respects_the_range, slab_takes_zeros_of_either_sign,
+    slab_is_entered_at_once_from_inside, slab_is_hit_by_rays_within_a_face, slab_misses_the_empty_box,
+    slab_of_a_flat_box_is_hit, slab_respects_the_range, slab_takes_zeros_of_either_sign,
 };
 use splits::{
     object_median_makes_equal_halves, spatial_median_cuts_in_the_middle,
@@ -54,7 +54,7 @@ checks::stage! { ($ crate) 3 [
     slab_is_hit_by_rays_within_a_face
     slab_of_a_flat_box_is_hit
     slab_respects_the_range
-    slab_of_nothing_is_missed
+    slab_misses_the_empty_box
     slab_hits_the_corners_it_is_aimed_at
     object_median_makes_equal_halves
     spatial_median_cuts_in_the_middle

@@ -79,11 +79,11 @@ fn misses_by_one_axis(query: &SlabQuery) -> bool {
         let (near, far) = box_interval(&query.ray, bounds);
         near.max(0.0) <= far
     };
-    let mut endless = [query.bounds; 3];
-    for (axis, bounds) in endless.iter_mut().enumerate() {
+    let mut infinite = [query.bounds; 3];
+    for (axis, bounds) in infinite.iter_mut().enumerate() {
         (bounds.min[axis], bounds.max[axis]) = (f32::MIN, f32::MAX);
     }
-    !meets(&query.bounds) && endless.iter().any(meets)
+    !meets(&query.bounds) && infinite.iter().any(meets)
 }
 
 pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
@@ -275,7 +275,7 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
     })
 }
 
-pub(super) fn slab_of_nothing_is_missed(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_misses_the_empty_box(trial: &Trial<'_>) -> Outcome {
     let dirs = [Vec3::X, Vec3::NEG_X, Vec3::ONE, -Vec3::ONE, vec3(0.0, -0.0, 1.0)];
     let cases = dirs.map(|direction| (Ray::new(vec3(0.5, 0.5, 0.5), direction), Aabb::EMPTY, false));
     judge_slabs_exactly(

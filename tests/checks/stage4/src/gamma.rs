@@ -77,7 +77,7 @@ pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn gamma_survives_nonsense(trial: &Trial<'_>) -> Outcome {
+pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> Outcome {
     let cases =
         [(-1e-8, 0), (-5.0, 0), (1.0000001, 255), (7.0, 255), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0)];
     for ((linear, expected), yours) in cases.iter().zip(trial.kit.encode_gamma(&cases.map(|case| case.0))) {

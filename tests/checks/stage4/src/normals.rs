@@ -40,7 +40,7 @@ pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
             let diagnosis = match () {
                 () if same(-expected) => "your normal points away from the viewer: negate it",
                 () if (yours.normalize_or_zero() - expected).length() < 1e-4 => {
-                    "your normal does not have unit length: normalise the interpolated normal"
+                    "your normal does not have unit length: normalize the interpolated normal"
                 }
                 () if interpolated.is_some() && same(facing) => {
                     "you return the geometric normal where there is an interpolated one"

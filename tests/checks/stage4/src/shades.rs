@@ -193,7 +193,7 @@ pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> Outcome {
     trial.forall(2000, shade_query(), |queries| judge_shades(trial, queries))
 }
 
-pub(super) fn shade_traces_one_ray_a_light_at_most(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Outcome {
     // Every fourth surface is black.
     let queries = (shade_query(), 0..4i32).prop_map(|(mut query, which)| {
         if which == 0 {

@@ -164,7 +164,7 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn shadow_ray_is_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> Outcome {
     let behind = (unit(), unit(), point(4)).prop_filter_map("a light behind", |(normal, to_light, at)| {
         (normal.dot(to_light) < -1e-3).then(|| shadow(at, normal, to_light, 5.0, 1e-6))
     });

@@ -69,7 +69,7 @@ pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> O
         "less than 1e-6",
         "the definition",
     );
-    Err(broken.looks_like(Some("the rounding errors of the length add up: normalise the result")))
+    Err(broken.looks_like(Some("the rounding errors of the length add up: normalize the result")))
 }
 
 /// Snell's law in double precision, `None` beyond the critical angle; and cos² θ2, which is 0 at the critical angle.
@@ -131,7 +131,7 @@ pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> 
                 "you multiply the angle by n1 / n2: multiply its sine"
             }
             _ if near(turned(query, |sine, ratio| {
-                // The sine after normalising a direction with the cosine √(1 - n1 / n2 sin² θ1).
+                // The sine after normalizing a direction with the cosine √(1 - n1 / n2 sin² θ1).
                 let (along, across) = (ratio * sine, (1.0 - ratio * sine * sine).sqrt());
                 along / along.hypot(across)
             })) =>
@@ -175,7 +175,7 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> Outcome 
     Ok(())
 }
 
-pub(super) fn refract_beyond_the_critical_angle_is_nothing(trial: &Trial<'_>) -> Outcome {
+pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Outcome {
     // R2: 60° inside glass; then the critical angle, and one float of the sine to either side, where NaN is wrong.
     let at_sine = |sine: f32| {
         let direction = vec3(sine, -(1.0 - f64::from(sine).powi(2)).sqrt() as f32, 0.0);

@@ -12,38 +12,37 @@ mod weights;
 
 use directions::{
     reflect_keeps_the_angle, reflect_stays_of_unit_length_in_a_corridor,
-    refract_beyond_the_critical_angle_is_nothing, refract_goes_straight_where_it_must, refract_obeys_snell,
+    refract_beyond_the_critical_angle_is_none, refract_goes_straight_where_it_must, refract_obeys_snell,
     refract_survives_rounded_directions,
 };
 use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees_with_double_precision};
 use scatter::{
-    scatter_are_not_traced_in_vain, scatter_leave_glass_as_they_entered,
-    scatter_totally_reflected_are_not_refracted, scatter_weigh_what_the_surface_says,
+    scatter_refracts_nothing_in_total_reflection, scatter_skips_rays_without_weight,
+    scatter_swaps_indices_when_leaving_glass, scatter_weighs_rays_by_the_material,
 };
-use spawn::rays_that_go_on_leave_their_surface;
+use spawn::secondary_rays_leave_their_surface;
 use trees::{
-    facing_mirrors_end, tree_ends_at_its_depth, tree_ends_where_children_count_too_little,
-    tree_of_a_glass_sphere,
+    facing_mirrors_end, tree_ends_at_its_depth, tree_ends_below_min_contribution, tree_of_a_glass_sphere,
 };
-use weights::scatter_count_by_their_own_weight;
+use weights::scatter_tests_the_weight_of_each_ray;
 
 checks::stage! { ($ crate) 5 [
     reflect_keeps_the_angle
     reflect_stays_of_unit_length_in_a_corridor
     refract_obeys_snell
     refract_goes_straight_where_it_must
-    refract_beyond_the_critical_angle_is_nothing
+    refract_beyond_the_critical_angle_is_none
     refract_survives_rounded_directions
     fresnel_schlick_agrees_with_double_precision
     fresnel_exact_agrees_with_double_precision
-    scatter_weigh_what_the_surface_says
-    scatter_leave_glass_as_they_entered
-    scatter_totally_reflected_are_not_refracted
-    scatter_are_not_traced_in_vain
-    scatter_count_by_their_own_weight
-    rays_that_go_on_leave_their_surface
+    scatter_weighs_rays_by_the_material
+    scatter_swaps_indices_when_leaving_glass
+    scatter_refracts_nothing_in_total_reflection
+    scatter_skips_rays_without_weight
+    scatter_tests_the_weight_of_each_ray
+    secondary_rays_leave_their_surface
     tree_ends_at_its_depth
-    tree_ends_where_children_count_too_little
+    tree_ends_below_min_contribution
     facing_mirrors_end
     tree_of_a_glass_sphere
 ] }

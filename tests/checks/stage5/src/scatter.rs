@@ -78,7 +78,7 @@ pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     )
 }
 
-pub(super) fn scatter_weigh_what_the_surface_says(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> Outcome {
     judge_weights(trial, &drawn()).into_iter().collect::<Outcome>()?;
     trial.forall(3000, queries(), |queries| judge_weights(trial, queries))
 }
@@ -159,7 +159,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
 const ENTERING: &str = "entering: n1 = 1 (air), n2 = index_of_refraction (glass)";
 
 /// R4: a ray through a pane of glass leaves it in the direction in which it entered.
-pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Outcome {
     let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
     for direction in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
         let enter = ScatterQuery {
@@ -201,7 +201,7 @@ pub(super) fn scatter_leave_glass_as_they_entered(trial: &Trial<'_>) -> Outcome 
     Ok(())
 }
 
-pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) -> Outcome {
     // R5: 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
     for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
         let query = ScatterQuery {
@@ -234,7 +234,7 @@ pub(super) fn scatter_totally_reflected_are_not_refracted(trial: &Trial<'_>) -> 
     Ok(())
 }
 
-pub(super) fn scatter_are_not_traced_in_vain(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> Outcome {
     // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing.
     let dull = (queries(), 0..3i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },

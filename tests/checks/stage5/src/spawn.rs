@@ -48,7 +48,7 @@ fn describe((surface, child): &Leaving) -> String {
 }
 
 /// R6: the slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
-pub(super) fn rays_that_go_on_leave_their_surface(trial: &Trial<'_>) -> Outcome {
+pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> Outcome {
     // Begin with a point with a large error, because known mistakes differ most there.
     let drawn = [Bounce::Reflection, Bounce::Transmission].map(|bounce| {
         leaving(vec3(30.0, -20.0, 10.0), vec3(0.0, 0.6, 0.8), vec3(0.6, 0.0, 0.8), bounce, 1e-3)

@@ -71,7 +71,7 @@ pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
     judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "you trace rays of weight 0")
 }
 
-pub(super) fn tree_ends_where_children_count_too_little(trial: &Trial<'_>) -> Outcome {
+pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> Outcome {
     // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays.
     let parent = "you test the weight of the incoming ray: test the secondary ray’s own weight";
     let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };

@@ -10,7 +10,7 @@ use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
 /// X8: a secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.
-pub(super) fn scatter_count_by_their_own_weight(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> Outcome {
     let [slanted, ..] = drawn();
     let (direction, normal) = (slanted.direction, slanted.normal);
     // Weights are exact and often equal to the limit, because they are products of eighths. The index is 1, so that

@@ -79,7 +79,7 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
                 () if beside && (offset.y == 0.0 || offset.z == 0.0) => {
                     "you leave out the normal: your disk is parallel to a coordinate plane"
                 }
-                () if beside => "your point is outside the plane of the disk: normalise disk.normal first",
+                () if beside => "your point is outside the plane of the disk: normalize disk.normal first",
                 () => "your point is farther from the centre than the radius",
             };
             let broken = Broken::new(input, point, "a point of the disk", "the definition");

@@ -139,7 +139,7 @@ fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
     start + (f64::from(query.lens.focal_distance) - start.dot(towards)) / direction.dot(towards) * direction
 }
 
-pub(super) fn plane_of_focus_is_sharp(trial: &Trial<'_>) -> Outcome {
+pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> Outcome {
     let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));

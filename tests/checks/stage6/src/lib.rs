@@ -18,15 +18,15 @@ use area_lights::{
 use checks::generate::unit;
 use glam::Vec3;
 use lens::{
-    lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens, lens_without_width_is_a_pinhole,
-    places_on_the_disk_are_even, places_on_the_disk_are_places, plane_of_focus_is_sharp,
+    focal_plane_is_sharp, lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens,
+    lens_without_width_is_a_pinhole, places_on_the_disk_are_even, places_on_the_disk_are_places,
 };
 use motion::{
     lerp_is_exact_where_it_must, lerp_stays_on_the_way, motion_bounds_covers_the_way_and_no_more,
     temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
 };
 use pixels::{
-    each_sampler_has_its_places, filter_pixel_is_the_weighted_mean, filter_pixel_of_nothing_is_black,
+    each_sampler_has_its_places, filter_pixel_is_the_weighted_mean, filter_pixel_of_no_samples_is_black,
     gaussian_weight_is_a_bell_that_ends, jittered_samples_cover_the_pixel_evenly,
     jittered_samples_stay_in_their_cells,
 };
@@ -48,12 +48,12 @@ checks::stage! { ($ crate) 6 [
     each_sampler_has_its_places
     gaussian_weight_is_a_bell_that_ends
     filter_pixel_is_the_weighted_mean
-    filter_pixel_of_nothing_is_black
+    filter_pixel_of_no_samples_is_black
     places_on_the_disk_are_places
     places_on_the_disk_are_even
     lens_without_width_is_a_pinhole
     lens_rays_start_on_the_lens
-    plane_of_focus_is_sharp
+    focal_plane_is_sharp
     lens_is_as_sharp_a_million_units_away
     places_on_a_rectangle_are_even
     places_on_a_round_light_are_even

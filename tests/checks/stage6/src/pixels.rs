@@ -160,7 +160,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome 
                 () if near(expected * std::f64::consts::FRAC_2_PI)
                     || near(expected * std::f64::consts::FRAC_2_PI.sqrt()) =>
                 {
-                    "you normalise the weight: leave it, because filter_pixel divides by the sum"
+                    "you normalize the weight: leave it, because filter_pixel divides by the sum"
                 }
                 () if outside && yours > 0.0 => {
                     "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS"
@@ -232,7 +232,7 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, samples, judge)
 }
 
-pub(super) fn filter_pixel_of_nothing_is_black(trial: &Trial<'_>) -> Outcome {
+pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> Outcome {
     let nothing = [vec![], vec![WeightedColor { color: Vec3::ONE, weight: 0.0 }; 3]];
     for (samples, yours) in nothing.iter().zip(trial.kit.filter_pixel(&nothing)) {
         if yours != Vec3::ZERO {

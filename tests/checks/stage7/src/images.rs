@@ -322,7 +322,7 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn images_survive_nonsense(trial: &Trial<'_>) -> Outcome {
+pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> Outcome {
     let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -0.0, 1e-40];
     for wrap in WRAPS {
         let image = texture(3, 2, wrap);

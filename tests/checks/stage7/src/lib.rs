@@ -13,7 +13,8 @@ mod whole;
 use decisions::{lights_take_what_they_are, materials_take_what_they_show};
 use hits::{rays_of_hits_are_exact, samples_reach_the_error_that_is_asked_for};
 use images::{
-    images_are_blended, images_survive_nonsense, middles_of_pixels_show_the_pixel, texels_wrap_as_they_should,
+    images_are_blended, images_survive_invalid_numbers, middles_of_pixels_show_the_pixel,
+    texels_wrap_as_they_should,
 };
 use rays::{bound_follows_the_bounces, bound_stays_at_the_largest_number, shadow_arithmetic_of_the_lecture};
 use whole::{
@@ -36,5 +37,5 @@ checks::stage! { ($ crate) 7 [
     texels_wrap_as_they_should
     middles_of_pixels_show_the_pixel
     images_are_blended
-    images_survive_nonsense
+    images_survive_invalid_numbers
 ] }

@@ -44,8 +44,8 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
         ray: Ray::new(vec3(1.0, 0.0, 0.0), Vec3::NEG_Z).with_range(-1.0, 1.0),
         solid: square.clone(),
     };
-    let normalised = "the ray starts on the line of an edge: the plane through both has the normal 0, and \
-        normalising 0 gives NaN";
+    let normalized = "the ray starts on the line of an edge: the plane through both has the normal 0, and \
+        normalizing 0 gives NaN";
     let winding = "the order of the corners must not matter: a ray can hit the polygon from both sides";
     judge_cases(
         trial,
@@ -60,7 +60,7 @@ pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
                 None,
                 "the ray passes just beside an edge: do not widen the polygon by an epsilon",
             ),
-            (on_an_edge, Some(0.0), normalised),
+            (on_an_edge, Some(0.0), normalized),
             (down(&turned, 0.5, 1.5), Some(3.0), winding),
             (down(&turned, 2.0, 2.0), Some(3.0), winding),
             (

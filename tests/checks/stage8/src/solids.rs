@@ -118,14 +118,14 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
 
 fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Option<f32>) -> &'static str {
     let SolidQuery { ray, solid } = query;
-    let endless = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+    let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
     // The answer is wrong already. This tolerance only chooses the diagnosis.
     let near = |t: f32, right: f32| (t - right).abs() <= 1e-3 * right.abs().max(0.1);
-    let first = solid.meet(&endless).and_then(|meeting| meeting.t);
+    let first = solid.meet(&infinite).and_then(|meeting| meeting.t);
     let inside = solid.meet(&ray.with_range(f32::NEG_INFINITY, 0.0)).is_some_and(|back| back.t.is_some())
         && solid.meet(&ray.with_range(0.0, f32::INFINITY)).is_some_and(|front| front.t.is_some());
     let last = || {
-        let back = Ray { direction: -ray.direction, ..endless };
+        let back = Ray { direction: -ray.direction, ..infinite };
         solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -t)
     };
     match (yours.map(|hit| hit.t), exact) {
@@ -197,7 +197,7 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 () if turned => {
                     "you return the normal of the other side: it does not depend on where the ray comes from"
                 }
-                () if normal.is_nan() => "your normal is NaN: you normalised a vector of length 0",
+                () if normal.is_nan() => "your normal is NaN: you normalized a vector of length 0",
                 () if outward => "your normal does not have unit length",
                 () if beyond(-normal) <= 2e-3 => "your normal points inwards",
                 () if unit => "you return a unit vector that is not perpendicular to the surface at the hit",
@@ -241,7 +241,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
                 return Ok(());
             }
             let t = answer.map(|hit| hit.t / 1024.0);
-            // Scaling by a power of two is exact, but a method may normalise the direction, which rounds. Allow 1e-5,
+            // Scaling by a power of two is exact, but a method may normalize the direction, which rounds. Allow 1e-5,
             // which is eighty such rounding errors, of t or, near the origin, of the coordinates.
             let same = match (t, scaled) {
                 (Some(t), Some(hit)) => (hit.t - t).abs() <= 1e-5 * t.max(0.01),
@@ -265,10 +265,10 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
             .looks_like(diagnosis))
         })
     })?;
-    nonsense::<S>(trial)
+    invalid_numbers::<S>(trial)
 }
 
-fn nonsense<S: Solid>(trial: &Trial<'_>) -> Outcome {
+fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> Outcome {
     let mut solids = Vec::new();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     for _ in 0..20 {

@@ -133,7 +133,7 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
         let unit = (yours.direction.length() - 1.0).abs() < 1e-6;
         let diagnosis = match () {
             () if !same_length && unit => {
-                "you normalise the direction: t then has another unit than in the world and cannot be \
+                "you normalize the direction: t then has another unit than in the world and cannot be \
                  compared"
             }
             () if !same_length && (yours.direction.length() / ray.direction.length() - 1.0).abs() < 1e-6 => {
@@ -168,7 +168,7 @@ fn normal(query: &NormalQuery) -> DVec3 {
 fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
     compare(queries, trial.kit.normal_to_world(queries), |query, yours| {
         let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
-        // The tolerance covers a normalised sum of three products whose terms are at most ten times as large as the sum.
+        // The tolerance covers a normalized sum of three products whose terms are at most ten times as large as the sum.
         if (yours.as_dvec3() - right).length() <= 1e-5 {
             return Ok(());
         }

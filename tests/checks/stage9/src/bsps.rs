@@ -133,7 +133,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
         ("thirty sheets through one line", star),
         ("twenty slivers in a line", line.collect()),
     ];
-    let sets = super::lists::endless().into_iter().map(|(name, all)| (name, boxes(all)));
+    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all)));
     for (name, hulls) in hulls.into_iter().chain(sets) {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };

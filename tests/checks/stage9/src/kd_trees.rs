@@ -1,6 +1,6 @@
 //! The laws of the kd-tree: which primitives each leaf lists, and the search.
 
-use super::lists::{Fault, ended, endless, judge_references, lists_fault, some_boxes};
+use super::lists::{Fault, ended, infinite, judge_references, lists_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, closest, sphere, wall};
 use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
@@ -77,7 +77,7 @@ pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outco
 }
 
 pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
-    for (name, bounds) in endless() {
+    for (name, bounds) in infinite() {
         for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
             let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
             let input = format!("build of {name}, {heuristics:?}, leaf_size 1");

@@ -128,7 +128,7 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
 }
 
 /// Named sets of boxes for which the recursion of a builder may not end.
-pub(super) fn endless() -> Vec<(&'static str, Vec<Aabb>)> {
+pub(super) fn infinite() -> Vec<(&'static str, Vec<Aabb>)> {
     let cube = Aabb::new(Vec3::ZERO, Vec3::ONE);
     let corner = Aabb::new(Vec3::splat(9.0), Vec3::splat(9.0));
     let concentric = (1..=24).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();

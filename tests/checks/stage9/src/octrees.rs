@@ -1,6 +1,6 @@
 //! The laws of the octree: which primitives each leaf lists, and two searches.
 
-use super::lists::{Fault, ended, endless, judge_references, judge_tree, lists_fault, some_boxes};
+use super::lists::{Fault, ended, infinite, judge_references, judge_tree, lists_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
 use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
@@ -103,7 +103,7 @@ fn below(octree: &Octree, node: u32) -> Vec<u32> {
 }
 
 pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
-    for (name, bounds) in endless() {
+    for (name, bounds) in infinite() {
         let n = bounds.len();
         let query = OctreeQuery { bounds, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");
