@@ -187,7 +187,7 @@ impl fmt::Display for Effect {
             Effect::AreaLights => "area lights",
             Effect::Mirrors => "mirrors",
             Effect::Transmission => "transmission",
-            Effect::Glossy => "sample_phong_lobe",
+            Effect::Glossy => "glossy",
             Effect::Lens => "lens",
             Effect::Motion => "motion",
             Effect::SmoothNormals => "smooth normals",

@@ -161,7 +161,7 @@ mod tests {
         let gap = catch(|| -> i32 { todo!("add the numbers") });
         let Err(KitError::NotWritten { task, place }) = gap else { panic!("{gap:?}") };
         assert_eq!(task, "add the numbers");
-        assert!(place.starts_with("src/kit/error.rs:"), "{place}");
+        assert!(place.starts_with("src/kit/kit_error.rs:"), "{place}");
     }
 
     #[test]

@@ -197,10 +197,10 @@ fn a_scene_is_explained_and_predictions_hold() {
     for line in [
         "  shadows         light 1 (rectangle), light 2 (point)",
         "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
-        "  glossy           `brushed` (brass ball)",
-        "  lens            camera: opening 0.12, sharp at 7",
+        "  glossy          `brushed` (brass ball)",
+        "  lens            camera: aperture 0.12, focal distance 7",
         "  motion          toy ball",
-        "  indirect light  [environment] does not ask for it",
+        "  indirect light  [environment] does not request it",
     ] {
         assert!(said.contains(line), "no `{line}` in\n{said}");
     }

@@ -29,7 +29,7 @@ fn every_setting_arrives() {
          [camera]\nposition = [1, 0, 0]\ndirection = [3, 0, 0]\nup = [0, 0, 2]\nvertical_fov = 90\n\
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
-         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\ngloss_samples = 7\nmax_depth = 0\n\
+         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\nmax_depth = 0\n\
          min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'gram'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
