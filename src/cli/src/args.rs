@@ -1,5 +1,6 @@
-//! The command line: the commands and their options, their help, and the values that were given. It is written by hand,
-//! because a general command line parser takes longer to build than the rest of this program.
+//! The command line: the commands and their options, their help, and the values that were given. It is
+//! written by hand, because a general command line parser takes longer to build than the rest of this
+//! program.
 
 use std::ffi::{OsStr, OsString};
 use std::fmt::{self, Display, Write};

@@ -1,5 +1,5 @@
-//! Starts the judge, the program that contains the checks and the exact oracle. It is built when it is needed, so that a
-//! picture does not wait for that.
+//! Starts the judge, the program that contains the checks and the exact oracle. It is built when it is
+//! needed, so that a picture does not wait for that.
 
 use crate::kits::{Need, Program, Which, build};
 use anyhow::{Context, Result};

@@ -1,5 +1,5 @@
-//! The kits: the exercises and the solutions. Both run in worker programs, which cargo builds when they are needed and with
-//! which this program communicates through a pipe; it links neither.
+//! The kits: the exercises and the solutions. Both run in worker programs, which cargo builds when they are
+//! needed and with which this program communicates through a pipe; it links neither.
 
 use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
@@ -149,8 +149,8 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
     built.into_iter().next().context("nothing was built")
 }
 
-/// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If something has to
-/// be built, it prints a line that names `what`, followed by the output of cargo.
+/// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
+/// something has to be built, it prints a line that names `what`, followed by the output of cargo.
 pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
     for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
@@ -195,8 +195,8 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     programs.iter().map(|program| placed(folder, program)).collect()
 }
 
-/// The path of a program that cargo has built. A program that was built with a feature is copied to a name of its own,
-/// because a build without the feature would overwrite it.
+/// The path of a program that cargo has built. A program that was built with a feature is copied to a name of
+/// its own, because a build without the feature would overwrite it.
 fn placed(folder: &Path, program: &Program) -> Result<PathBuf> {
     let built = folder.join(program.file());
     let Some(feature) = program.feature else { return Ok(built) };

@@ -130,14 +130,14 @@ impl State {
     fn line(&self, gone: Duration) -> String {
         let mut line = String::new();
         if self.total == 0 {
-            let _ = write!(line, "{} gone  {}", clock(gone), self.message);
+            let _ = write!(line, "{} elapsed  {}", clock(gone), self.message);
         } else {
             let share = (self.done as f64 / self.total as f64).min(1.0);
             let full = (share * BAR as f64) as usize;
             let _ = write!(line, "{}{} {:>3.0} %", "█".repeat(full), "░".repeat(BAR - full), 100.0 * share);
             if self.done > 0 {
                 let left = gone.mul_f64((1.0 - share) / share.max(1e-9));
-                let _ = write!(line, "  {} gone, {} to go", clock(gone), clock(left));
+                let _ = write!(line, "  {} elapsed, {} left", clock(gone), clock(left));
             }
             let _ = write!(line, "  {}", self.message);
         }
@@ -162,10 +162,10 @@ mod tests {
     fn a_line_says_how_far_it_is_and_how_long_it_takes() {
         let mut state =
             State { done: 0, total: 0, message: "a frame".into(), began: Instant::now(), drawn: None };
-        assert_eq!(state.line(Duration::from_secs(7)), "7 s gone  a frame");
+        assert_eq!(state.line(Duration::from_secs(7)), "7 s elapsed  a frame");
         (state.done, state.total) = (1, 4);
         let line = state.line(Duration::from_secs(40));
-        assert!(line.ends_with(" 25 %  40 s gone, 2:00 min to go  a frame"), "{line}");
+        assert!(line.ends_with(" 25 %  40 s elapsed, 2:00 min left  a frame"), "{line}");
         state.message = "x".repeat(200);
         assert_eq!(state.line(Duration::from_secs(40)).chars().count(), LINE);
     }

@@ -39,8 +39,8 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         save(&heat, file)?;
     }
     println!(
-        "\ntests-*.png: visits, box tests and primitive tests of all rays of a pixel; black is 1, white is {}, and the scale \
-         is logarithmic; the work of a packet is counted at one of its pixels",
+        "\ntests-*.png: visits, box tests and primitive tests of all rays of a pixel; black is 1, white is \
+         {}, and the scale is logarithmic; the work of a packet is counted at one of its pixels",
         Thousands(most as u64)
     );
     Ok(())

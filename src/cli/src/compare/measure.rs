@@ -41,7 +41,8 @@ pub struct Measured {
     pub nanoseconds: f64,
     /// Half the distance between the quartiles of the times, as a fraction of the median.
     pub spread: f64,
-    /// The factor by which columns and rows were divided, because the whole picture would take too long; 1 if they were not.
+    /// The factor by which columns and rows were divided, because the whole picture would take too long; 1 if
+    /// they were not.
     pub slice: u32,
     /// Number of pixels that differ from the picture of the hierarchy by surface area at the same size.
     pub different_pixels: u64,
@@ -125,21 +126,23 @@ impl Bench<'_> {
         })
     }
 
-    /// The factor by which columns and rows are divided so that the picture takes seconds. It is estimated from a tiny
-    /// picture, and before that from a single pixel where even the tiny picture may take minutes; `None` if one pixel
-    /// takes minutes.
+    /// The factor by which columns and rows are divided so that the picture takes seconds. It is estimated
+    /// from a tiny picture, and before that from a single pixel where even the tiny picture may take minutes;
+    /// `None` if one pixel takes minutes.
     fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<Option<u32>> {
         let longer = scene.film.width.max(scene.film.height);
         let tiny = (longer / 10).max(1);
         let tried = match row.quality.accelerator {
-            // Each primitive is in one leaf, and a ray tests some tens even in the forest, so whole pictures take seconds.
+            // Each primitive is in one leaf, and a ray tests some tens even in the forest, so whole pictures
+            // take seconds.
             Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
             // A ray may test all primitives, or all in a node or a cell.
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes
             | Accelerator::BoundingSpheres
             | Accelerator::Grid => &[longer, tiny][..],
-            // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the forest).
+            // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the
+            // forest).
             Accelerator::Octree | Accelerator::OctreeByCells | Accelerator::KdTree | Accelerator::Bsp => {
                 &[tiny][..]
             }

@@ -1,5 +1,5 @@
-//! `raykata compare`: the structures of stages 3, 8 and 9 on one scene: build time, memory, tests per ray and time of each,
-//! and pictures of its cells and of the cost of each pixel.
+//! `raykata compare`: the structures of stages 3, 8 and 9 on one scene: build time, memory, tests per ray and
+//! time of each, and pictures of its cells and of the cost of each pixel.
 //!
 //! `rows` (what is compared) · `measure` (counts and times) · `table` and `plot` (the report) · `drawing` (pictures)
 
@@ -29,8 +29,9 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--of",
                 "WHAT",
-                "What is compared: all accelerators; the optimisations of a scene graph search; the kd-tree without each \
-                 of its heuristics; grids of growing resolution; or instances and copies [default: structures].",
+                "What is compared: all accelerators; the optimisations of a scene graph search; the kd-tree \
+                 without each of its heuristics; grids of growing resolution; or instances and copies \
+                 [default: structures].",
             )
             .choices(&names(&Of::NAMES)),
             Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
@@ -75,7 +76,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--only", "--of")?;
         Ok(Options {
@@ -93,8 +94,8 @@ impl Options {
     }
 }
 
-/// Measures, prints the table and writes the rest. Returns whether all rows make the same picture; copies and instances
-/// may differ, because a ray that is transformed into another space is rounded.
+/// Measures, prints the table and writes the rest. Returns whether all rows make the same picture; copies and
+/// instances may differ, because a ray that is transformed into another space is rounded.
 pub fn run(options: &Options) -> Result<bool> {
     let mut scene = load_scene(&options.scene)?;
     options.parameters.apply(&mut scene);

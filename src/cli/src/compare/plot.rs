@@ -1,4 +1,5 @@
-//! The plot: bars for time and for tests, one pair per row, on logarithmic scales. The same numbers give the same SVG file.
+//! The plot: bars for time and for tests, one pair per row, on logarithmic scales. The same numbers give the
+//! same SVG file.
 
 use super::measure::Measured;
 use anyhow::{Context, Result};

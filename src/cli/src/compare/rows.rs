@@ -9,7 +9,8 @@ use raykata::scene::{Accelerator, Quality, Scene, Split};
 pub enum Of {
     /// Every accelerator; the hierarchy with each of its splits.
     Structures,
-    /// The optimisations of a scene graph search: volumes, skipping, sorting; and a hierarchy with a cache or packets.
+    /// The optimisations of a scene graph search: volumes, skipping, sorting; and a hierarchy with a cache or
+    /// packets.
     Savings,
     /// The kd-tree without each of its five heuristics.
     Heuristics,

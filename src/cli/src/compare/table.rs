@@ -56,8 +56,8 @@ pub fn print(title: &str, rows: &[Measured]) {
         println!("{:<width$}{cells}{off:>10}{slice}", row.name);
     }
     println!(
-        "* smallest of its column; visits: nodes or cells that were visited; ns: on all threads together, median of rounds;\n\
-         pixels off: pixels that differ from those of the hierarchy by surface area"
+        "* smallest of its column; visits: nodes or cells that were visited; ns: on all threads together, \
+         median of rounds;\npixels off: pixels that differ from those of the hierarchy by surface area"
     );
     if rows.iter().any(|row| row.slice > 1) {
         println!("1/n: with an n-th of the columns and rows, because the whole picture would take too long");

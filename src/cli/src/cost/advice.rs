@@ -1,5 +1,5 @@
-//! The best settings for a time or an error, by greedy search: from the cheapest setting, always the step that lowers the
-//! error most for its time.
+//! The best settings for a time or an error, by greedy search: from the cheapest setting, always the step
+//! that lowers the error most for its time.
 
 use super::greedy::{GreedySearch, Tried};
 use super::ladder::Parameter;
@@ -138,7 +138,8 @@ fn is_faster(one: &Point, other: &Point) -> bool {
     one.seconds + one.spread + other.spread < other.seconds
 }
 
-/// The setting with the best value of every parameter that is chosen once, and a sentence for each faster value that leaks.
+/// The setting with the best value of every parameter that is chosen once, and a sentence for each faster
+/// value that leaks.
 fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String>) {
     let (mut setting, mut passed_over) = (own.clone(), Vec::new());
     let leaks = |point: &Point| point.hits.map_or(0, |hits| hits.leaks);

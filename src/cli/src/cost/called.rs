@@ -28,8 +28,8 @@ impl Called<'_> {
         self.shows(|shape, _| matches!(shape, Shape::Sphere(_)))
     }
 
-    /// Whether `is_so` holds for a shape that is shown; its second argument is whether the shape moves while the shutter
-    /// is open.
+    /// Whether `is_so` holds for a shape that is shown; its second argument is whether the shape moves while
+    /// the shutter is open.
     fn shows(&self, is_so: impl Fn(&Shape, bool) -> bool) -> bool {
         let motion = self.effects.calls_for(Effect::Motion);
         self.scene.shown().iter().any(|shown| {

@@ -14,9 +14,11 @@ const DARK: f64 = 0.01;
 pub struct Errors {
     /// Root mean square error over all channels of all pixels, in linear light.
     pub rmse: f64,
-    /// Relative mean square error: the mean of `error² / (reference² + 0.01)`, which weights errors in the dark as the eye does.
+    /// Relative mean square error: the mean of `error² / (reference² + 0.01)`, which weights errors in the
+    /// dark as the eye does.
     pub relative_mse: f64,
-    /// Mean structural similarity of the pictures as a screen shows them (MSSIM, Wang and others, 2004): 1 for equal pictures.
+    /// Mean structural similarity of the pictures as a screen shows them (MSSIM, Wang and others, 2004): 1
+    /// for equal pictures.
     pub similarity: f64,
     /// The number of pixels with NaN. They count as black.
     pub not_a_number: usize,
@@ -39,8 +41,8 @@ pub fn errors(film: &Film, right: &Film) -> Result<Errors> {
 /// Side of the windows of [`similarity`], in pixels.
 const WINDOW: u32 = 8;
 
-/// Mean structural similarity of two pictures of the same size, for the worst channel. The windows do not overlap; those at
-/// the right and at the bottom may be smaller, and have a smaller weight.
+/// Mean structural similarity of two pictures of the same size, for the worst channel. The windows do not
+/// overlap; those at the right and at the bottom may be smaller, and have a smaller weight.
 fn similarity(yours: &RgbImage, right: &RgbImage) -> f64 {
     let (width, height) = right.dimensions();
     let corners = || {

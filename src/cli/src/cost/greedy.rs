@@ -1,4 +1,5 @@
-//! The greedy search: from the cheapest value of every parameter, always the step that lowers the error most for its time.
+//! The greedy search: from the cheapest value of every parameter, always the step that lowers the error most
+//! for its time.
 
 use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
 use super::ladder::Parameter;
@@ -16,7 +17,8 @@ const SHARE: f64 = 0.95;
 /// The most samples per pixel that are proposed.
 const MOST_SAMPLES: u32 = 65_536;
 
-/// How often the number of samples is corrected, each time by at least a twentieth, because times vary by some percent.
+/// How often the number of samples is corrected, each time by at least a twentieth, because times vary by
+/// some percent.
 const ATTEMPTS: u32 = 4;
 
 /// The settings that have been measured. Each is measured once and then kept.
@@ -64,7 +66,8 @@ struct Candidate {
 }
 
 impl<'a, 't> GreedySearch<'a, 't> {
-    /// Starts at the lowest level of all ladders, with everything else as in `start`. `None` if even that takes too long.
+    /// Starts at the lowest level of all ladders, with everything else as in `start`. `None` if even that
+    /// takes too long.
     pub fn new(
         tried: &'a mut Tried<'t>,
         measured: &'a Measured,

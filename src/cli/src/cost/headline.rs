@@ -1,7 +1,8 @@
-//! The lecture's headline example, measured: n triangles and one ray per pixel of a screen, with a hierarchy and without.
+//! The lecture's headline example, measured: n triangles and one ray per pixel of a screen, with a hierarchy
+//! and without.
 //!
-//! Brute force for a whole screen takes days. It is timed on a slice of rays that takes about a second, and extrapolated;
-//! the report shows the multiplication.
+//! Brute force for a whole screen takes days. It is timed on a slice of rays that takes about a second, and
+//! extrapolated; the report shows the multiplication.
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
@@ -69,8 +70,8 @@ impl Row {
 /// Measures 12 times each power of ten up to `most` triangles, prints the table, and writes it to a file.
 pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     println!(
-        "A landscape of n triangles on {} × {} pixels: one ray per pixel, normals as colours, {} threads.\nBrute force is timed \
-         on a slice of rays; means are over a sixteenth of the rays.\n",
+        "A landscape of n triangles on {} × {} pixels: one ray per pixel, normals as colours, {} \
+         threads.\nBrute force is timed on a slice of rays; means are over a sixteenth of the rays.\n",
         SCREEN.0,
         SCREEN.1,
         if bench.threads == 0 { crate::queue::cores() } else { bench.threads }
@@ -125,7 +126,8 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
 fn arithmetic(row: &Row) {
     let rays = u64::from(SCREEN.0) * u64::from(SCREEN.1);
     println!(
-        "\n  brute force: {} triangles × {} rays = {} tests\n               × {:.2} ns per test ({} rays of a slice took {:.2} s) = {}",
+        "\n  brute force: {} triangles × {} rays = {} tests\n               × {:.2} ns per test ({} rays of \
+         a slice took {:.2} s) = {}",
         Thousands(row.triangles),
         Thousands(rays),
         Thousands(row.triangles * rays),
@@ -135,9 +137,9 @@ fn arithmetic(row: &Row) {
         duration(row.brute_seconds())
     );
     println!(
-        "  hierarchy:   {:.1} box tests and {:.2} triangle tests per ray; log2 n is {:.1}\n               {} for the \
-         frame after {} for the build ({:.0} bytes per triangle)\n  so the frame is {} times as fast, {} times with the \
-         build",
+        "  hierarchy:   {:.1} box tests and {:.2} triangle tests per ray; log2 n is {:.1}\n               {} \
+         for the frame after {} for the build ({:.0} bytes per triangle)\n  so the frame is {} times as \
+         fast, {} times with the build",
         row.box_tests,
         row.triangle_tests,
         (row.triangles as f64).log2(),

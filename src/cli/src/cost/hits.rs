@@ -1,5 +1,5 @@
-//! Compares the first hits of rays with exact ones. The judge, a separate program that is built when it is needed, computes
-//! the exact hits; this module asks the kit for its hits.
+//! Compares the first hits of rays with exact ones. The judge, a separate program that is built when it is
+//! needed, computes the exact hits; this module asks the kit for its hits.
 
 use super::measure::{Bench, Measured};
 use crate::judge::Judge;
@@ -16,13 +16,15 @@ use std::path::Path;
 pub struct Verdicts {
     /// The number of rays that were tested.
     pub rays: u64,
-    /// The number of these rays that report a wrong first hit: another primitive, no hit, or a hit where there is none.
+    /// The number of these rays that report a wrong first hit: another primitive, no hit, or a hit where
+    /// there is none.
     pub wrong: u64,
     /// The number of wrong rays that passed through a closed surface.
     pub leaks: u64,
 }
 
-/// Judges all settings of parameters that decide only how hits are found. A scene that is too large or empty is not judged.
+/// Judges all settings of parameters that decide only how hits are found. A scene that is too large or empty
+/// is not judged.
 pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measured) -> Result<()> {
     let geometric = measured.series.iter().filter(|series| series.parameter.is_geometric());
     let mut places: Vec<usize> =

@@ -56,7 +56,8 @@ const MOST_SAMPLES: u32 = 64;
 /// The most primitives for structures that test a ray against many of them; more take minutes.
 const MOST_ASKED: u64 = 2_000;
 
-/// The most primitives for a BSP tree: over more it takes more than ten seconds to build, and it is built for every picture.
+/// The most primitives for a BSP tree: over more it takes more than ten seconds to build, and it is built for
+/// every picture.
 const MOST_IN_BSP: u64 = 500_000;
 
 /// The depth of paths in the reference, which the ladder of depths reaches at least.
@@ -99,7 +100,8 @@ impl Parameter {
         }
     }
 
-    /// Whether the parameter decides only how hits are found: if all tests are right, all values make the same picture.
+    /// Whether the parameter decides only how hits are found: if all tests are right, all values make the
+    /// same picture.
     pub fn is_geometric(self) -> bool {
         !matches!(
             self,
@@ -221,7 +223,8 @@ impl Parameter {
                 let why = |one: Accelerator| {
                     let (name, most) = (name(one), Thousands(most(one)));
                     format!(
-                        "accelerator {name}: only for scenes with at most {most} primitives; see `raykata compare`"
+                        "accelerator {name}: only for scenes with at most {most} primitives; see `raykata \
+                         compare`"
                     )
                 };
                 let left_out = dear.into_iter().map(why).collect();
@@ -253,8 +256,8 @@ impl Parameter {
     }
 }
 
-/// The samplers that spread their samples. Gaussian samples reach into neighbouring pixels, so they converge to a softer
-/// picture.
+/// The samplers that spread their samples. Gaussian samples reach into neighbouring pixels, so they converge
+/// to a softer picture.
 const SAMPLERS: [(Sampler, &str); 4] = [
     (Sampler::Random, "random"),
     (Sampler::Jittered, "jittered"),

@@ -8,8 +8,8 @@ use raykata::scene::{Node, Scene, SceneMesh, Split};
 use raykata::shape::Shape;
 use std::sync::Arc;
 
-/// The number of squares along both sides of a landscape; each square has two triangles. The number of triangles is exact if
-/// it has a suitable pair of factors, and approximate otherwise.
+/// The number of squares along both sides of a landscape; each square has two triangles. The number of
+/// triangles is exact if it has a suitable pair of factors, and approximate otherwise.
 pub fn sides(triangles: u64) -> (u32, u32) {
     let squares = (triangles / 2).max(1);
     let root = (squares as f64).sqrt();
@@ -20,7 +20,8 @@ pub fn sides(triangles: u64) -> (u32, u32) {
     }
 }
 
-/// A landscape with this many squares, seen from above one of its edges: it fills the lower two thirds of the picture.
+/// A landscape with this many squares, seen from above one of its edges: it fills the lower two thirds of the
+/// picture.
 pub fn scene(screen: (u32, u32), sides: (u32, u32)) -> Result<Scene> {
     let eye = vec3(0.0, 0.55, 1.25);
     let aspect = screen.0 as f32 / screen.1 as f32;

@@ -16,9 +16,9 @@ use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// The longest time for a small picture. One that takes longer is left out, because in all rounds together it would take
-/// minutes. Settings that are known to be slow are left out by their number of primitives (`ladder`); this limit is for
-/// code that is slower than expected.
+/// The longest time for a small picture. One that takes longer is left out, because in all rounds together it
+/// would take minutes. Settings that are known to be slow are left out by their number of primitives
+/// (`ladder`); this limit is for code that is slower than expected.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The kit that is measured, and how.
@@ -155,8 +155,8 @@ impl Bench<'_> {
         Ok(kit_error::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
     }
 
-    /// Measures one setting: errors, one time, and counts if `count` is set, which takes longer. `None` if it takes too
-    /// long.
+    /// Measures one setting: errors, one time, and counts if `count` is set, which takes longer. `None` if it
+    /// takes too long.
     pub fn point(
         &self,
         scene: &Scene,
@@ -185,7 +185,8 @@ impl Bench<'_> {
         }))
     }
 
-    /// Measures all ladders: each setting once with counts, then all in turn, with other random numbers in each round.
+    /// Measures all ladders: each setting once with counts, then all in turn, with other random numbers in
+    /// each round.
     pub fn measure(&self, scene: &Scene, ladders: Vec<Ladder>, right: &Reference) -> Result<Measured> {
         let n_levels: usize = ladders.iter().map(|ladder| ladder.levels.len()).sum();
         let bar = bar_of_steps(n_levels * (1 + self.rounds as usize));
@@ -227,7 +228,8 @@ impl Bench<'_> {
             bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
             for point in &mut measured.points {
                 let seed = self.seed + u64::from(round);
-                // A frame is `None` only if the program is being stopped; then this round is incomplete and not counted.
+                // A frame is `None` only if the program is being stopped; then this round is incomplete and
+                // not counted.
                 let Some(frame) = self.frame(&point.setting.apply(scene), seed, false)? else { break };
                 point.times.push(frame.render_seconds);
                 if round > 0 {
@@ -256,8 +258,9 @@ impl Bench<'_> {
 /// The factor above which two errors count as equal, because they differ by rounding only.
 const DIFFERENT: f64 = 0.999;
 
-/// The Pareto front, from the fastest to the most accurate point: no other point is both faster and more accurate. Settings
-/// that let rays through closed surfaces are left out, because the error of a picture hardly shows a leak.
+/// The Pareto front, from the fastest to the most accurate point: no other point is both faster and more
+/// accurate. Settings that let rays through closed surfaces are left out, because the error of a picture
+/// hardly shows a leak.
 pub fn pareto_front(points: &[Point]) -> Vec<usize> {
     let leaks = |point: &Point| point.hits.map(|hits| hits.leaks);
     let fewest = points.iter().filter_map(leaks).min();

@@ -1,9 +1,10 @@
 //! `raykata cost`: measures how much each parameter of a scene lowers the error and how much time it costs.
 //!
-//! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) · `reference` (the
-//! converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure` (counts, times) · `slope` (how
-//! fast the error falls) · `advice` and `greedy` (the best settings for a time or an error) · `table`, `page`, `plot`,
-//! `files` (the report) · `headline` and `landscape` (brute force against a hierarchy)
+//! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) ·
+//! `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
+//! (counts, times) · `slope` (how fast the error falls) · `advice` and `greedy` (the best settings for a time
+//! or an error) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
+//! against a hierarchy)
 
 mod advice;
 mod called;
@@ -101,8 +102,8 @@ pub struct Summary {
     pub leaks_per_million: f64,
 }
 
-/// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report has a section
-/// about ray/triangle tests; `program` is the command that starts this program.
+/// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report
+/// has a section about ray/triangle tests; `program` is the command that starts this program.
 pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
     let began = Instant::now();
     let root = root()?;
@@ -191,7 +192,8 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     Ok(!report.partial)
 }
 
-/// The ladders of all parameters to measure, and the parameters that change nothing. It is an error to request one of those.
+/// The ladders of all parameters to measure, and the parameters that change nothing. It is an error to
+/// request one of those.
 fn ladders(
     kit: &dyn Kit,
     bench: &Bench<'_>,
@@ -218,7 +220,9 @@ fn ladders(
         match parameter.ladders(&called) {
             Ok(these) if turned.is_empty() || turned.contains(&parameter) => ladders.extend(these),
             Ok(_) => {}
-            Err(why) if turned.contains(&parameter) => bail!("{} changes nothing here: {why}", parameter.name()),
+            Err(why) if turned.contains(&parameter) => {
+                bail!("{} changes nothing here: {why}", parameter.name())
+            }
             Err(why) => not_offered.push((parameter, why)),
         }
     }
@@ -297,7 +301,9 @@ fn stopped_by_ctrl_c() -> Result<Arc<AtomicBool>> {
         if pressed.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping: the report of what has been measured follows; press Ctrl-C again to end at once");
+        eprintln!(
+            "\nstopping: the report of what has been measured follows; press Ctrl-C again to end at once"
+        );
     })
     .context("no handler for Ctrl-C can be installed")?;
     Ok(stop)

@@ -9,15 +9,15 @@ use std::path::PathBuf;
 /// `raykata cost`.
 pub static SPEC: Spec = Spec {
     name: "raykata cost",
-    about: "Measure error and time for the values of each quality parameter, and propose the best settings for a time or an \
-            error.",
+    about: "Measure error and time for the values of each quality parameter, and propose the best settings \
+            for a time or an error.",
     arguments: &[Argument::optional("SCENE", "The scene, a TOML file; not with `--headline`.")],
     options: &[
         &[
             Opt::flag(
                 "--headline",
-                "Instead of a scene: compare brute force with the hierarchy on landscapes of more and more triangles, on \
-                 3840 × 2160 pixels.",
+                "Instead of a scene: compare brute force with the hierarchy on landscapes of more and more \
+                 triangles, on 3840 × 2160 pixels.",
             ),
             Opt::value("--most", "N", "Triangles of the largest landscape [default: 12000000]."),
             Opt::value(
@@ -30,8 +30,8 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--budget",
                 "TIME",
-                "Propose the settings with the smallest error within this time, such as 60s or 1500ms, at the scene's own \
-                 size.",
+                "Propose the settings with the smallest error within this time, such as 60s or 1500ms, at \
+                 the scene's own size.",
             ),
             Opt::value(
                 "--error",
@@ -41,13 +41,14 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--reference",
                 "N",
-                "Samples per pixel of the reference; a larger number makes its own error smaller [default: 1024].",
+                "Samples per pixel of the reference; a larger number makes its own error smaller [default: \
+                 1024].",
             ),
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is rendered, all in turn and with other random numbers; medians and means count \
-                 [default: 5].",
+                "How often each picture is rendered, all in turn and with other random numbers; medians and \
+                 means count [default: 5].",
             ),
             Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::value(
@@ -81,7 +82,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         let (scene, headline) = (given.argument(0).map(PathBuf::from), given.has("--headline"));
         match (&scene, headline) {

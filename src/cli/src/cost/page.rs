@@ -25,8 +25,9 @@ fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
     let about = format!(
-        "{} × {} pixels by {}, {} rounds with other random numbers each, all pictures in turn. Errors are root mean squares in linear \
-         light against a reference of {} samples per pixel, whose own error is {:.1e}. Times are medians. Made by {} in {:.0} s.",
+        "{} × {} pixels by {}, {} rounds with other random numbers each, all pictures in turn. Errors are \
+         root mean squares in linear light against a reference of {} samples per pixel, whose own error is \
+         {:.1e}. Times are medians. Made by {} in {:.0} s.",
         report.width,
         report.height,
         report.kit,
@@ -48,8 +49,8 @@ fn page(report: &Report<'_>) -> Result<String> {
         body += &around("figure", "class=\"plot\"", &plot);
     }
     if !report.pareto_front.is_empty() {
-        let words = "The broad yellow line is the Pareto front: no measured setting is both faster and more accurate. \
-                     Settings that leak are left out of it.";
+        let words = "The broad yellow line is the Pareto front: no measured setting is both faster and more \
+                     accurate. Settings that leak are left out of it.";
         body += &around("p", "class=\"about\"", words);
     }
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
@@ -69,7 +70,8 @@ fn page(report: &Report<'_>) -> Result<String> {
     }
     left_out += &element(
         "li",
-        "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens and its own time.",
+        "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
+         and its own time.",
     );
     body += &around("ul", "", &left_out);
     Ok(format!(
@@ -129,7 +131,11 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
         let theory = expected_slope(report, name)
             .map_or(String::new(), |theory| format!(" (in theory {theory} where pictures have edges)"));
         let slope = element("b", format!("{:.2} ± {:.2}", slope.mean, slope.half_interval));
-        text += &around("p", "", &format!("The error is proportional to the number of samples to the power {slope}{theory}"));
+        text += &around(
+            "p",
+            "",
+            &format!("The error is proportional to the number of samples to the power {slope}{theory}"),
+        );
     }
     let mut columns = vec!["", "RMSE"];
     columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
@@ -215,8 +221,8 @@ fn numerics(report: &Report<'_>) -> String {
             element("td", format!("{:.0}", one.leaks_per_million)),
         ]);
     }
-    let words = "Ray/triangle tests on hard inputs, judged exactly: wrong verdicts, and rays that leave a closed mesh \
-                 from inside.";
+    let words = "Ray/triangle tests on hard inputs, judged exactly: wrong verdicts, and rays that leave a \
+                 closed mesh from inside.";
     let mut text = element("h2", "What precision costs") + &around("p", "class=\"about\"", words);
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
     if let Some(warning) = about_kit_times(report) {

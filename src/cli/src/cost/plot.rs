@@ -30,7 +30,8 @@ const RIGHT: f64 = 690.0;
 const TOP: f64 = 56.0;
 const BOTTOM: f64 = 500.0;
 
-/// Tol's bright and muted colours, which colour-blind readers can distinguish; in this order they also differ in grey.
+/// Tol's bright and muted colours, which colour-blind readers can distinguish; in this order they also differ
+/// in grey.
 const COLORS: [&str; 8] =
     ["#332288", "#ee6677", "#228833", "#997700", "#66ccee", "#aa3377", "#44aa99", "#555555"];
 

@@ -1,7 +1,8 @@
 //! The reference: the same scene with so many samples that its own error is small. It is kept between runs.
 //!
-//! It consists of batches with different seeds. Even and odd batches are summed separately; half of the difference between
-//! the two means estimates the error of the reference. Each batch is kept, so a stopped run continues where it was.
+//! It consists of batches with different seeds. Even and odd batches are summed separately; half of the
+//! difference between the two means estimates the error of the reference. Each batch is kept, so a stopped
+//! run continues where it was.
 
 use super::ladder::LEAST_DEPTH;
 use super::measure::Bench;
@@ -35,8 +36,8 @@ struct Sums {
     halves: [Vec<DVec3>; 2],
 }
 
-/// The first bytes of a reference file. The number of batches follows, then the sums of the even batches and of the odd
-/// ones, as little-endian numbers of 8 bytes.
+/// The first bytes of a reference file. The number of batches follows, then the sums of the even batches and
+/// of the odd ones, as little-endian numbers of 8 bytes.
 const KEPT: &[u8; 8] = b"raykata1";
 
 /// The scene with the most accurate value of every setting that changes the picture.
@@ -55,8 +56,9 @@ pub fn converged(scene: &Scene) -> Scene {
     scene
 }
 
-/// Renders the reference of `scene`, or continues the one in `cache`, until it has `samples` samples per pixel. `code`
-/// names the code that renders. `None` if the program is being stopped; the finished batches are kept.
+/// Renders the reference of `scene`, or continues the one in `cache`, until it has `samples` samples per
+/// pixel. `code` names the code that renders. `None` if the program is being stopped; the finished batches
+/// are kept.
 pub fn reference(
     bench: &Bench<'_>,
     scene: &Scene,

@@ -39,8 +39,8 @@ fn line(xs: &[f64], ys: &[f64]) -> Option<f64> {
     (below > 0.0).then(|| above / below)
 }
 
-/// The 97.5 % quantile of Student's t for this many degrees of freedom, from tables. Above 30 degrees it is that of 30,
-/// which is too large by less than 5 %.
+/// The 97.5 % quantile of Student's t for this many degrees of freedom, from tables. Above 30 degrees it is
+/// that of 30, which is too large by less than 5 %.
 fn quantile_of_t(freedom: usize) -> f64 {
     const TABLE: [f64; 12] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179];
@@ -52,9 +52,9 @@ fn quantile_of_t(freedom: usize) -> f64 {
     }
 }
 
-/// The theoretical exponent of a sampler for pictures with edges, where the error is a power of the number of samples.
-/// Random: the central limit theorem. Jittered: an edge crosses √n of n cells, and only those are uncertain (Mitchell 1996).
-/// Low-discrepancy points are as good on edges, and better on smooth areas.
+/// The theoretical exponent of a sampler for pictures with edges, where the error is a power of the number of
+/// samples. Random: the central limit theorem. Jittered: an edge crosses √n of n cells, and only those are
+/// uncertain (Mitchell 1996). Low-discrepancy points are as good on edges, and better on smooth areas.
 pub fn theory(sampler: &str) -> Option<f64> {
     match sampler {
         "random" => Some(-0.5),

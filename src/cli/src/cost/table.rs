@@ -54,7 +54,9 @@ pub fn print(report: &Report<'_>) {
             println!("    {waste}");
         }
     }
-    println!("  • Pareto front: no other setting is both faster and more accurate; settings that leak are left out");
+    println!(
+        "  • Pareto front: no other setting is both faster and more accurate; settings that leak are left out"
+    );
     if let Some(hits) = about_hits(report) {
         println!("  wrong hits and leaks: {hits}");
     }
@@ -77,8 +79,9 @@ pub fn print(report: &Report<'_>) {
 pub fn about_hits(report: &Report<'_>) -> Option<String> {
     let rays = report.measured.points.iter().find_map(|point| point.hits)?.rays;
     Some(format!(
-        "of {} rays from the camera, through the picture and at visible edges and corners, against exact arithmetic; a \
-         leak passes through a closed surface; the other wrong hits report a neighbouring primitive because of rounding",
+        "of {} rays from the camera, through the picture and at visible edges and corners, against exact \
+         arithmetic; a leak passes through a closed surface; the other wrong hits report a neighbouring \
+         primitive because of rounding",
         Thousands(rays)
     ))
 }
@@ -100,7 +103,10 @@ fn slope(report: &Report<'_>, series: &Series) -> String {
         return String::new();
     };
     let theory = expected_slope(report, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
-    format!(": the error is proportional to samples to the power {:.2} ± {:.2}{theory}", slope.mean, slope.half_interval)
+    format!(
+        ": the error is proportional to samples to the power {:.2} ± {:.2}{theory}",
+        slope.mean, slope.half_interval
+    )
 }
 
 /// The relative difference below which errors count as the same.
@@ -188,7 +194,8 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     match advice.goal {
         Goal::Seconds(budget) if advice.verified_seconds.is_some_and(|seconds| seconds > budget) => {
             lines.push(
-                "that is longer than requested, because times vary by some percent from one picture to the next"
+                "that is longer than requested, because times vary by some percent from one picture to the \
+                 next"
                     .into(),
             );
         }

@@ -1,5 +1,5 @@
-//! `raykata explain`: the effects that a scene needs and the parts that need them, the cost of each effect, and the effects
-//! that are left out.
+//! `raykata explain`: the effects that a scene needs and the parts that need them, the cost of each effect,
+//! and the effects that are left out.
 
 mod subsets;
 mod why;
@@ -49,7 +49,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             scene: given.required(0)?.into(),
@@ -180,8 +180,9 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
         format!("{whole:.3} s ± {spread:.3}")
     );
     println!(
-        "  Each line is what the picture saves without that effect. The lines need not add up, because a mirror shows\n  \
-         shadows. Times are medians of {rounds} {} with their median deviation, all pictures in turn.\n",
+        "  Each line is what the picture saves without that effect. The lines need not add up, because a \
+         mirror shows\n  shadows. Times are medians of {rounds} {} with their median deviation, all pictures \
+         in turn.\n",
         if rounds == 1 { "round" } else { "rounds" }
     );
     Ok(())
@@ -216,13 +217,14 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
         ("through surfaces", most.transmission, counted.transmission),
     ];
     for (what, most, counted) in lines {
-        let most = if most == u64::MAX { "too many to count".to_owned() } else { Thousands(most).to_string() };
+        let most =
+            if most == u64::MAX { "too many to count".to_owned() } else { Thousands(most).to_string() };
         println!("  {what:<16}  {most:>18}  {:>13}", Thousands(counted).to_string());
     }
     let seen = counted.primary + counted.reflection + counted.transmission;
     println!(
-        "  {} of {} rays other than shadow rays hit a surface. Shadow rays start only there, and only to lights in \
-         front of it.",
+        "  {} of {} rays other than shadow rays hit a surface. Shadow rays start only there, and only to \
+         lights in front of it.",
         Thousands(counted.hits),
         Thousands(seen)
     );

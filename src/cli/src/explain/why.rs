@@ -69,9 +69,7 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
         Effect::AreaLights if scene.lights.iter().any(area) && scene.quality.light_samples == 0 => {
             "light_samples is 0: area lights shine from their centre".into()
         }
-        Effect::AreaLights if scene.lights.iter().any(area) => {
-            "no area light reaches a surface".into()
-        }
+        Effect::AreaLights if scene.lights.iter().any(area) => "no area light reaches a surface".into(),
         Effect::AreaLights => "there is no area light".into(),
         Effect::Mirrors => has(&|m| m.mirror != Vec3::ZERO || m.fresnel != Fresnel::None, unused)
             .unwrap_or_else(|| "no material is a mirror".into()),

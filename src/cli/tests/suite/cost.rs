@@ -53,7 +53,10 @@ fn two_runs_have_the_same_errors_and_counts() {
     let (_, other) = run("other", &[&knobs[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
-    assert!(told.contains("glossy samples: not offered, because no rough surface reflects or transmits light"), "{told}");
+    assert!(
+        told.contains("glossy samples: not offered, because no rough surface reflects or transmits light"),
+        "{told}"
+    );
     assert!(told.contains("(the scene's)"), "{told}");
 
     let points = one.0["points"].as_array().unwrap();
@@ -86,8 +89,9 @@ fn a_proposal_is_tried_out() {
         serde_json::from_slice(&fs::read(folder.path().join("out/stage5-cost/cost.json")).unwrap()).unwrap();
     let advice = &json["advice"];
     assert!(advice["expected_error"].as_f64().unwrap() <= 0.03, "{advice}");
-    // Other random numbers give another error. In 16 × 12 pixels it comes from about a dozen pixels on edges, so the root mean
-    // square varies by a fifth; twice that is not reached by chance with a fixed pair of seeds.
+    // Other random numbers give another error. In 16 × 12 pixels it comes from about a dozen pixels on edges,
+    // so the root mean square varies by a fifth; twice that is not reached by chance with a fixed pair of
+    // seeds.
     assert!(advice["verified_error"].as_f64().unwrap() <= 0.03 * 1.5, "{advice}");
     assert!(said(&output).contains("rendered, with other random numbers"), "{}", said(&output));
 }
@@ -96,7 +100,8 @@ fn a_proposal_is_tried_out() {
 fn hits_are_judged_exactly() {
     let folder = tempfile::tempdir().unwrap();
     let judged = |method: &str| {
-        let arguments = ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
+        let arguments =
+            ["scenes/stage2.toml", "--parameter", "split", "--triangles", method, "--out", method];
         let output = cost(folder.path(), &[&arguments[..], &["--reference", "128"], &QUICK].concat());
         assert!(output.status.success(), "{}", said(&output));
         let json = fs::read(folder.path().join(method).join("cost.json")).unwrap();
@@ -143,7 +148,16 @@ fn what_is_stopped_leaves_a_report() {
     let scenes = raykata_cli::kits::root().unwrap().join("scenes");
     let mut command = Command::new(env!("CARGO_BIN_EXE_raykata"));
     command.current_dir(folder.path()).arg("cost").arg(scenes.join("stage1.toml"));
-    command.args(["--size", "16x12", "--rounds", "1000", "--reference", "128", "--parameter", "samples,sampler"]);
+    command.args([
+        "--size",
+        "16x12",
+        "--rounds",
+        "1000",
+        "--reference",
+        "128",
+        "--parameter",
+        "samples,sampler",
+    ]);
     let mut child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().unwrap();
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map(Result::unwrap);
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");
