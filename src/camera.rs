@@ -105,11 +105,11 @@ impl Camera {
         if !(0.0 < aspect && aspect.is_finite()) {
             return Err(CameraError::Aspect(aspect));
         }
-        // Double precision here costs nothing and keeps the axes at right angles for any scale of the inputs.
+        // Normalise in double precision, which keeps the axes at right angles for any scale of the inputs.
         let unit = |v: glam::DVec3| v.try_normalize();
         let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
         let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;
-        // The cross product of unit vectors is the sine between them: below 1e-6 rounding decides the picture.
+        // The length of the cross product of unit vectors is the sine of their angle: below 1e-6 it is mostly rounding error.
         let right = Some(towards.cross(up)).filter(|r| r.length() > 1e-6).ok_or(CameraError::UpParallel)?;
         let right = right.normalize();
         Ok(Camera {
@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_slanted_up_does_not_narrow_the_picture() {
-        // K2: `right = towards × up` is only of unit length when up is at a right angle.
+        // K2: `right = towards × up` has unit length only if `up` is perpendicular to `towards`.
         let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::new(0.8, 0.6, 0.0), 60.0, 1.0).expect("a camera");
         assert!((camera.right.length() - 1.0).abs() < 1e-6);
         assert!((camera.up - Vec3::Y).length() < 1e-6);

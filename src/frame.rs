@@ -97,7 +97,7 @@ impl CameraSample {
         let samples = settings.samples_per_pixel.max(1);
         let FrameSettings { sampler, seed, lens, motion, on_the_way, .. } = *settings;
         let spread = sampler.spreads(samples);
-        // Without anything to draw the address is not worked out: 5 % of a plain frame.
+        // Skip the address if no number is needed, which saves 5 % of a plain frame.
         let points = if spread || lens || motion || on_the_way {
             let pixel = u64::from(row) * u64::from(settings.width) + u64::from(column);
             Points::new(sampler, seed, pixel, sample, samples)
@@ -147,7 +147,7 @@ pub fn render<T: Tally>(
         if watch.cancelled() || broken.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        // Caught where it happens: a panic that crosses threads forgets its file and line.
+        // Catch the panic in its own thread, because a panic that crosses threads loses its file and line.
         let tile = kit_error::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
             .map_err(|error| (error, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
@@ -163,7 +163,7 @@ pub fn render<T: Tally>(
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-        // Where threads cannot be had, as in a sandbox, this one does the same work.
+        // Where no thread can be started, as in a sandbox, this thread does all the work.
         match pool {
             Ok(pool) => pool.install(|| corners.into_par_iter().map(tile).collect()),
             Err(_) => corners.into_iter().map(tile).collect(),
@@ -188,7 +188,7 @@ pub fn render<T: Tally>(
     Some((film, counts))
 }
 
-/// Why a tile has no pixels, and the function of the student that was running.
+/// The reason why a tile has no pixels, and the student function that was running.
 type Broken = (KitError, Option<Function>);
 
 struct Tile {

@@ -133,7 +133,7 @@ fn walk<P>(
         each(node, &place, depth);
         levels = levels.max(depth + 1);
         if depth < most {
-            // The last one that waits is the first to be gone to.
+            // Push the children in reverse order, because the last entry is visited first.
             let children = below(node, &place).into_iter().rev();
             waiting.extend(children.map(|(child, place)| (child, place, depth + 1)));
         }

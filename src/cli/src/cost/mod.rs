@@ -135,7 +135,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         println!("{}: not offered, because {why}", parameter.name());
     }
     println!(
-        "the reference: {} samples a pixel, {} × {} pixels",
+        "the reference: {} samples per pixel, {} × {} pixels",
         options.reference, small.film.width, small.film.height
     );
     let code = fingerprint(&source)?;
