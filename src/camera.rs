@@ -50,16 +50,16 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CameraError {
     /// The view direction is zero, for example because position and target are the same.
-    #[error("the camera looks nowhere: its direction has no length")]
+    #[error("the view direction of the camera has no length")]
     NoDirection,
     /// The up direction is zero, or parallel to the view direction.
-    #[error("`up` runs along the view direction, so the picture could be turned any way")]
+    #[error("`up` is parallel to the view direction, so the orientation of the picture is undefined")]
     UpParallel,
     /// The vertical field of view, in degrees, is not above 0 and below 180, or is NaN.
-    #[error("the vertical field of view must lie between 0 and 180 degrees, and is {0}")]
+    #[error("the vertical field of view must lie between 0 and 180 degrees, but is {0}")]
     FieldOfView(f32),
     /// The aspect ratio is not above 0, or is infinite or NaN.
-    #[error("the aspect ratio must be above zero, and is {0}")]
+    #[error("the aspect ratio must be above zero, but is {0}")]
     Aspect(f32),
     /// A coordinate of the position or of a direction is NaN or infinite.
     #[error("a coordinate of the camera is not a finite number")]
@@ -109,7 +109,8 @@ impl Camera {
         let unit = |v: glam::DVec3| v.try_normalize();
         let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
         let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;
-        // The length of the cross product of unit vectors is the sine of their angle: below 1e-6 it is mostly rounding error.
+        // The length of the cross product of unit vectors is the sine of their angle: below 1e-6
+        // the rounding of the inputs dominates.
         let right = Some(towards.cross(up)).filter(|r| r.length() > 1e-6).ok_or(CameraError::UpParallel)?;
         let right = right.normalize();
         Ok(Camera {

@@ -88,8 +88,9 @@ impl Points {
         self.index.wrapping_mul(parts).wrapping_add(part)
     }
 
-    /// A point of an Owen-scrambled Sobol sequence. The position in the pixel, the lens and the time use five dimensions of
-    /// one sequence, so that they are spread evenly together; each other purpose has a sequence of its own.
+    /// A point of an Owen-scrambled Sobol sequence. The position in the pixel, the lens and the time use five
+    /// dimensions of one sequence, so that they are spread evenly together; each other purpose has a sequence
+    /// of its own.
     fn sobol(&self, purpose: Purpose, index: u32) -> Vec2 {
         let (set, first, seed) = match purpose {
             Purpose::Pixel => (0, 0, self.key),

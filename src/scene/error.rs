@@ -14,7 +14,7 @@ pub struct LoadError {
     /// Line and column, both counted from 1 and the column in characters; `None` if the error concerns the
     /// whole file.
     pub place: Option<(usize, usize)>,
-    /// The byte range of the file that is wrong, for tools that mark it; empty if there is no place.
+    /// The byte range of the file that is wrong, for tools that mark it; empty if there is not a finite number.
     pub span: Range<usize>,
     /// What is wrong, in lower case and without a full stop.
     pub message: String,

@@ -39,7 +39,7 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     match pixels <= MAX_PIXELS {
         true => Ok(film),
         false => Err(table
-            .error(format!("the picture has {pixels} pixels, and the most is {MAX_PIXELS}"))
+            .error(format!("the picture has {pixels} pixels; the maximum is {MAX_PIXELS}"))
             .help("make `width` or `height` smaller")),
     }
 }
@@ -56,7 +56,7 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
         // In double precision, the difference of two points neither overflows nor vanishes unless they are equal.
         _ => {
             (aim.vector()?.as_dvec3() - position.as_dvec3()).try_normalize().map(|d| d.as_vec3()).ok_or_else(
-                || aim.error("`look_at` and `position` are the same point, so the camera looks nowhere"),
+                || aim.error("`look_at` and `position` are the same point, so the camera has no direction"),
             )?
         }
     };

@@ -26,7 +26,7 @@ pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<P
             }
             let message = format!("there is no material library {}", quote(name.text));
             Err(LoadError::at(file, text, name.span, message).help(format!(
-                "it was looked for at {}: put it there, or remove the `mtllib` line",
+                "looked for {}: put the library there, or remove the `mtllib` line",
                 path.display()
             )))
         })
@@ -157,7 +157,7 @@ impl Reader<'_> {
         for word in &values[..count] {
             if !word.text.parse().is_ok_and(f32::is_finite) {
                 return Err(self
-                    .trouble(word.span.clone(), format!("{} is no number", quote(word.text)))
+                    .trouble(word.span.clone(), format!("{} is not a number", quote(word.text)))
                     .help("replace it by a number, with a decimal point and not a comma"));
             }
         }

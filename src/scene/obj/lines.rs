@@ -138,8 +138,8 @@ impl<'a> Reader<'a> {
             return Ok(number);
         }
         let message = match number {
-            Ok(_) => format!("{} is no place", quote(word.text)),
-            Err(_) => format!("{} is no number", quote(word.text)),
+            Ok(_) => format!("{} is not a finite number", quote(word.text)),
+            Err(_) => format!("{} is not a number", quote(word.text)),
         };
         Err(self.trouble(word.span.clone(), message).help(if word.text.contains(',') {
             "write a decimal point, not a comma, and blanks between numbers"
@@ -175,9 +175,10 @@ impl<'a> Reader<'a> {
             ("normal", "normals", self.lines.normals),
         ];
         let malformed = || {
-            self.trouble(corner.span.clone(), format!("{} is no corner of a face", quote(corner.text))).help(
-                "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
-            )
+            self.trouble(corner.span.clone(), format!("{} is not a corner of a face", quote(corner.text)))
+                .help(
+                    "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
+                )
         };
         let parts: Vec<&str> = corner.text.split('/').collect();
         if parts.len() > tables.len() || parts[0].is_empty() {
@@ -236,7 +237,10 @@ impl<'a> Reader<'a> {
     fn check_keyword(&self, keyword: &Word) -> Result<(), LoadError> {
         match nearest(keyword.text, LONG_KEYWORDS) {
             Some(meant) if meant != keyword.text && !keyword.text.starts_with('#') => Err(self
-                .trouble(keyword.span.clone(), format!("{} is no keyword of OBJ files", quote(keyword.text)))
+                .trouble(
+                    keyword.span.clone(),
+                    format!("{} is not a keyword of OBJ files", quote(keyword.text)),
+                )
                 .help(format!("did you mean `{meant}`?"))),
             _ => Ok(()),
         }

@@ -156,7 +156,7 @@ impl Draft<'_> {
         }
         let Some((_, encoding)) = ENCODINGS.iter().find(|(known, _)| *known == name.text) else {
             return Err(self
-                .trouble(name.span.clone(), format!("{} is no format of PLY files", quote(name.text)))
+                .trouble(name.span.clone(), format!("{} is not a format of PLY files", quote(name.text)))
                 .help(did_you_mean(
                     nearest(name.text, ENCODINGS.map(|(known, _)| known)),
                     "the formats are ascii, binary_little_endian and binary_big_endian",
@@ -166,7 +166,7 @@ impl Draft<'_> {
             let message = format!("version {} of the format is unknown", quote(version.text));
             return Err(self
                 .trouble(version.span.clone(), message)
-                .help("there is only version 1.0: write `1.0` if the file keeps to it"));
+                .help("the only version is 1.0: write `1.0` if the file follows it"));
         }
         self.encoding = Some(*encoding);
         Ok(())
@@ -176,7 +176,7 @@ impl Draft<'_> {
     fn element(&mut self, words: &[Word]) -> Result<(), LoadError> {
         let [_, name, count] = words else { return Err(self.malformed(words, "element vertex 8")) };
         let Ok(number) = count.text.parse() else {
-            let message = format!("{} is no number of elements", quote(count.text));
+            let message = format!("{} is not a number of elements", quote(count.text));
             return Err(self
                 .trouble(count.span.clone(), message)
                 .help(format!("write how many there are, as in `element {} 8`", name.text)));
@@ -226,7 +226,7 @@ impl Draft<'_> {
 
     fn scalar(&self, word: &Word) -> Result<Scalar, LoadError> {
         Scalar::named(word.text).ok_or_else(|| {
-            self.trouble(word.span.clone(), format!("{} is no type of PLY files", quote(word.text)))
+            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quote(word.text)))
                 .help(did_you_mean(nearest(word.text, Scalar::NAMES.map(|(name, _)| name)), TYPES))
         })
     }
@@ -241,10 +241,10 @@ impl Draft<'_> {
         // A number here is the first of the data.
         if keyword.text.parse::<f64>().is_ok() {
             return self
-                .trouble(keyword.span.clone(), "numbers before the header has ended")
+                .trouble(keyword.span.clone(), "numbers before the end of the header")
                 .help(END_HEADER);
         }
-        let message = format!("{} is no keyword of PLY headers", quote(keyword.text));
+        let message = format!("{} is not a keyword of PLY headers", quote(keyword.text));
         // `end header` is one word that lost its underscore, so the line is compared as well.
         let meant = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS));
         self.trouble(keyword.span.clone(), message).help(did_you_mean(
@@ -260,7 +260,7 @@ impl Draft<'_> {
 
     fn not_a_ply(&self, first: Range<usize>) -> LoadError {
         if self.bytes.trim_ascii().is_empty() {
-            return LoadError::new(self.file, "the file is empty").help("export or fetch it again");
+            return LoadError::new(self.file, "the file is empty").help("export or download it again");
         }
         let first = first.start..first.end.min(first.start + 40);
         self.trouble(first, "this is not a PLY file: its first line is not `ply`")

@@ -19,7 +19,7 @@ pub(crate) struct Word<'a> {
 pub(crate) fn read_bytes(file: &Path) -> Result<Vec<u8>, LoadError> {
     std::fs::read(file).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => LoadError::new(file, "there is no such file")
-            .help("check the spelling; names count from the directory in which the command was started"),
+            .help("check the spelling; paths are relative to the directory in which the command was started"),
         _ => LoadError::new(file, format!("the file cannot be read: {error}"))
             .help("check that it is a file and that you may read it"),
     })
@@ -106,7 +106,10 @@ pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
         (b"OFF", "it looks like an OFF file: export the mesh as PLY or OBJ"),
         (b"glTF", "it looks like a glTF file: export the mesh as PLY or OBJ"),
         (b"{", "it looks like JSON, perhaps a glTF file: export the mesh as PLY or OBJ"),
-        (b"<", "it looks like a web page, perhaps an error page saved by a download: fetch the file again"),
+        (
+            b"<",
+            "it looks like a web page, perhaps an error page saved by a download: download the file again",
+        ),
         (b"version https://git-lfs", "it is only a pointer to the real file: run `git lfs pull`"),
         (b"\x1f\x8b", "it is compressed: unpack it with `gunzip` first"),
         (b"PK", "it is a zip archive: unpack it first"),

@@ -98,7 +98,7 @@ fn files_that_cannot_be_used_say_why() {
     let (_, message, help) = trouble(folder.parse("meshes.bunny.file = 'bunny.stl'"));
     assert_eq!(
         (message.as_str(), help.as_str()),
-        ("'bunny.stl' is no mesh that can be read", "meshes are `.ply` or `.obj` files")
+        ("'bunny.stl' is not a mesh that can be read", "meshes are `.ply` or `.obj` files")
     );
     let (_, message, _) = trouble(folder.parse("meshes.bunny.file = \"\\u0000\""));
     assert!(message.starts_with("cannot read `\\u{0}`: "), "{message}");
@@ -162,13 +162,13 @@ fn an_obj_material_brings_its_image() {
 #[test]
 fn mesh_materials_that_cannot_be_used_say_what_to_do() {
     let folder = Folder::new("mtl");
-    let remedy = "define `[materials.red]`, or write `materials = false` to have the whole mesh in the material of \
-        its node";
+    let remedy = "define `[materials.red]`, or write `materials = false` to give the whole mesh the material \
+        of its node";
     folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
     let text = "[meshes.o]\nfile = 'm.obj'\n";
     let (place, message, help) = trouble(folder.parse(text));
     assert_eq!((place, help.as_str()), (Some((2, 1)), remedy));
-    assert_eq!(message, "mesh `o` uses material `red`, and nothing defines it");
+    assert_eq!(message, "mesh `o` uses material `red`, which is not defined");
 
     folder.write("m.obj", OBJ);
     folder.write("m.mtl", "newmtl red\nd 1.5\n");
