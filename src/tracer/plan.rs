@@ -39,7 +39,7 @@ impl Plan {
     pub fn new<F: StudentFunctions>(job: &RenderJob, written: &Written<F>) -> Plan {
         let scene = &job.scene;
         let mut notes = Vec::new();
-        // Without stage 7 the picture is the same and costs more.
+        // Without stage 7, assume that the scene needs every effect: the picture is the same and costs more.
         let effects =
             if written.has(Function::effects) { F::effects(scene) } else { Effects::everything(scene) };
         let mut plan = Plan {
@@ -130,7 +130,7 @@ impl Plan {
         let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;
         self.note_if(
             scene.materials.iter().any(wanted),
-            "mirrors and glass send no ray on: stage 5 is not written yet",
+            "mirrors and glass spawn no secondary rays: stage 5 is not written yet",
         );
         for material in &mut self.effects.materials {
             (material.mirror, material.transmission, material.glossy) = (false, false, false);
@@ -146,7 +146,8 @@ impl Plan {
         );
         self.note_if(
             quality.sampler == Sampler::Gaussian && !self.weights,
-            "all samples of a pixel count alike: `filter_pixel` and `gaussian_weight` of stage 6 are not written yet",
+            "all samples of a pixel have the same weight: `filter_pixel` and `gaussian_weight` of stage 6 \
+             are not written yet",
         );
         let jittered = written.has(Function::jittered);
         if !(jittered && written.has_all(&[Function::sample_disk, Function::lens_ray])) {
@@ -159,7 +160,7 @@ impl Plan {
             let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
             self.note_if(
                 scene.lights.iter().any(area) && quality.light_samples > 0,
-                "area lights shine from their middle: stage 6 is not written yet",
+                "area lights shine from their centre: stage 6 is not written yet",
             );
             for light in &mut self.effects.lights {
                 (light.samples, light.area) = (light.samples.min(1), false);
@@ -167,7 +168,7 @@ impl Plan {
         }
         if !(jittered && written.has(Function::sample_phong_lobe)) {
             let glossy = self.effects.materials.iter().any(|m| m.glossy && (m.mirror || m.transmission));
-            self.note_if(glossy, "rough mirrors and glass are sharp: stage 6 is not written yet");
+            self.note_if(glossy, "glossy reflection and refraction are sharp: stage 6 is not written yet");
             for material in &mut self.effects.materials {
                 material.glossy = false;
             }
@@ -177,7 +178,7 @@ impl Plan {
         if !written.has_all(&motion) {
             self.note_if(
                 scene.shown().iter().any(|shown| shown.moves),
-                "what moves stands still: stage 6 is not written yet",
+                "moving shapes stand still: stage 6 is not written yet",
             );
             self.effects.motion = false;
         }
@@ -204,7 +205,7 @@ impl Plan {
         );
         self.note_if(
             self.world.subdivide.is_none() && scene.meshes.iter().any(|mesh| mesh.subdivisions > 0),
-            "meshes are as coarse as their files: `loop_subdivide` of stage 8 is not written yet",
+            "meshes are not subdivided: `loop_subdivide` of stage 8 is not written yet",
         );
         self.note_if(
             self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
@@ -271,7 +272,7 @@ fn choose_accelerator<F: StudentFunctions>(
                 return Some(wanted);
             }
             let name = wanted.name();
-            notes.push(format!("a hierarchy stands in for `{name}`: stage {stage} is not written yet"));
+            notes.push(format!("a hierarchy replaces `{name}`: stage {stage} is not written yet"));
             return Some(Accelerator::Bvh);
         }
         notes.push("every ray tests every primitive: stage 3 is not written yet".into());

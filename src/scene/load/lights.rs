@@ -60,7 +60,7 @@ fn rectangle(value: Value) -> Result<AreaShape, LoadError> {
     let (u, v) = (edges[0].vector()?, edges[1].vector()?);
     // Exact for edges of like size: the products of two `f32` fit into an `f64`.
     if u.as_dvec3().cross(v.as_dvec3()).length_squared() == 0.0 {
-        return Err(edges_value.error("the edges are parallel, so the light has no area"));
+        return Err(edges_value.error("the edges are parallel or zero, so the light has no area"));
     }
     Ok(AreaShape::Rectangle { corner, edges: (u, v) })
 }

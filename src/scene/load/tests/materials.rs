@@ -87,7 +87,7 @@ fn lights_have_limits() {
     light("point = {}", "3:9: `point` lacks `position`\nhelp: add it, for example `position = [0, 5, 0]`");
     light(
         "area = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] } }",
-        "3:52: the edges are parallel, so the light has no area",
+        "3:52: the edges are parallel or zero, so the light has no area",
     );
     light(
         "area = { sphere = { center = [0, 0, 0], radius = 0 } }",
