@@ -11,7 +11,7 @@ impl<'a> Value<'a> {
     /// The value as a whole number; fails if it is not an integer in the closed `range`.
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32, LoadError> {
         let DeValue::Integer(integer) = self.item() else { return Err(self.wrong("a whole number")) };
-        // A number that does not even fit into 128 bits is out of any range.
+        // A number that does not fit into 128 bits is outside of any range.
         let wide = i128::from_str_radix(integer.as_str(), integer.radix()).unwrap_or(i128::MAX);
         u32::try_from(wide)
             .ok()

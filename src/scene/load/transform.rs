@@ -28,7 +28,7 @@ fn steps(value: Value) -> Result<DAffine3, LoadError> {
     let stored = single(all);
     let sound = stored.is_finite()
         && stored.inverse().is_finite()
-        // Rounding to single precision must not turn the inside out.
+        // Rounding to single precision must not change the sign of the determinant.
         && stored.matrix3.determinant() as f64 * all.matrix3.determinant() > 0.0;
     match sound {
         true => Ok(all),

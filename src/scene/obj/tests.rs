@@ -1,4 +1,4 @@
-//! Facts about OBJ files.
+//! Tests of the OBJ reader.
 
 mod libraries;
 
@@ -207,7 +207,7 @@ fn a_file_without_faces_shows_nothing() {
     check("usemtl\nf 1 2 3", "5:1: `usemtl` without a name\nhelp: name a material, as in `usemtl red`");
 }
 
-/// Whatever the bytes are, the answer is a mesh that is sound or an error.
+/// For any bytes, the result is a valid mesh or an error.
 #[test]
 fn no_bytes_make_the_reader_panic() {
     let text = format!(
@@ -216,7 +216,7 @@ fn no_bytes_make_the_reader_panic() {
     for original in [&text[10..], &text] {
         crate::scene::ply::text::mutations(original.as_bytes(), |bytes| {
             if let Ok(file) = parsed(bytes) {
-                file.mesh.validate().expect("a mesh that is accepted is sound");
+                file.mesh.validate().expect("an accepted mesh is valid");
             }
         });
     }

@@ -81,7 +81,7 @@ impl<'a> Body<'a> {
     /// Skips all elements of a kind that is not needed; fails at the end of the file.
     pub fn skip_element(&mut self, element: &Element) -> Result<(), LoadError> {
         if element.properties.is_empty() {
-            return Ok(()); // and do not count to four billion for it
+            return Ok(()); // without a loop over up to four billion elements
         }
         for number in 0..element.count {
             for property in &element.properties {

@@ -108,10 +108,10 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn new(bytes: &'a [u8]) -> Self {
-        // Some editors of text open every file with a byte order mark.
+        // Some text editors begin every file with a byte order mark.
         let at = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        // The first line tells how lines end: "\n" and "\r\n" both end in a newline, since blanks at the end of
-        // a line do not count; the earliest PLY files have "\r" alone.
+        // Find out from the first line how lines end: "\n" and "\r\n" both end in a newline, because blanks
+        // at the end of a line are ignored; the earliest PLY files have "\r" alone.
         let end = bytes.iter().position(|byte| b"\r\n".contains(byte));
         let newline = match end.map(|end| &bytes[end..]) {
             Some([b'\r', next, ..]) if *next != b'\n' => b'\r',
@@ -238,14 +238,14 @@ impl Draft<'_> {
     }
 
     fn unknown_keyword(&self, keyword: &Word, line: &str) -> LoadError {
-        // A number here is the first of the data.
+        // A number in the header is probably the first number of the data.
         if keyword.text.parse::<f64>().is_ok() {
             return self
                 .trouble(keyword.span.clone(), "numbers before the end of the header")
                 .help(END_HEADER);
         }
         let message = format!("{} is not a keyword of PLY headers", quote(keyword.text));
-        // `end header` is one word that lost its underscore, so the line is compared as well.
+        // Compare the whole line as well, because `end header` is `end_header` without its underscore.
         let meant = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS));
         self.trouble(keyword.span.clone(), message).help(did_you_mean(
             meant,

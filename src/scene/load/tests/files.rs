@@ -1,4 +1,4 @@
-//! Textures and meshes: whatever needs a second file.
+//! Textures and meshes, which need a second file.
 
 use super::CAMERA;
 use crate::material::{Material, Wrap};
@@ -8,7 +8,7 @@ use crate::scene::load::parse;
 use glam::Vec3;
 use std::path::PathBuf;
 
-/// A folder that goes away with its value.
+/// A folder that is removed when the value is dropped.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -54,7 +54,8 @@ fn an_image_is_decoded_to_linear_light() {
         .expect("a scene");
     let texture = &scene.textures[0];
     assert_eq!((texture.width, texture.height, texture.wrap), (2, 1, Wrap::Mirror));
-    // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the line: 10/255/12.92.
+    // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the linear part:
+    // 10/255/12.92.
     assert!((texture.pixels[0] - Vec3::new(0.0, 1.0, 0.502_886)).abs().max_element() < 1e-6);
     assert!((texture.pixels[1].x - 0.003_035_27).abs() < 1e-8);
     assert_eq!(scene.materials[1].texture, Some(0));

@@ -1,4 +1,4 @@
-//! Materials and lights, and the examples of the reference.
+//! Materials and lights, and the examples in `format.md`.
 
 use super::{check_refused_with, scene_with};
 use crate::material::{AreaShape, Emitter, Falloff, Light, Material};

@@ -124,12 +124,12 @@ fn polygons_are_flat_and_convex_and_go_around_once() {
         "[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]",
         &format!("56: the polygon is not convex at corner 3\n{convex}"),
     );
-    // A star of five points turns the same way at each of them, and goes around twice.
+    // A five-pointed star turns the same way at each corner, and goes around twice.
     polygon(
         "[0, 10, 0], [6, -8, 0], [-10, 3, 0], [10, 3, 0], [-6, -8, 0]",
         &format!("58: the polygon is not convex at corner 3\n{convex}"),
     );
-    // Written with five digits and far away, a slanted hexagon is not exactly flat; a straight corner is no fault.
+    // With five digits and far from the origin, a slanted hexagon is not exactly flat; a straight corner is allowed.
     let far = "[1e4, 1e4, 1e4], [10001.3, 1e4, 10000.7], [10002.6, 1e4, 10001.4], [1e4, 10001.1, 1e4]";
     one_node(&format!("shape = {{ polygon = {{ corners = [{far}] }} }}"));
 }
@@ -184,7 +184,7 @@ fn transforms_can_be_undone() {
         "{ scale = 2, translate = [1, 0, 0] }",
         "27: entry 1 of `transform` has both `scale` and `translate`\nhelp: delete one of the two",
     );
-    // Small, large and uneven scales are fine.
+    // Small, large and uneven scales are accepted.
     one_node("transform = [{ scale = 1e-9 }]");
     let turn = "{ rotate = { axis = [1, 2, 3], degrees = 40 } }";
     one_node(&format!("transform = [{turn}, {{ scale = [1e-3, 1, 1e3] }}, {turn}]"));
@@ -249,14 +249,14 @@ fn loops_and_endless_graphs_are_refused() {
         (0..length).map(node).collect::<String>() + &format!("[[nodes]]\nname = 'n{length}'\n")
     };
     scene_with(&chain(63, &|i| format!("'n{}'", i + 1)));
-    // The chain is added up from its far end, so its third node is the first with 65 levels.
+    // Levels are counted from the end of the chain, so its third node is the first with 65 levels.
     let deep = chain(66, &|i| format!("'n{}'", i + 1));
     check_refused_with(&deep, "s.toml:10:13: nodes are nested more than 64 deep");
     let around = chain(50_000, &|i| format!("'n{}'", (i + 1) % 50_000));
     let looped = "n0 -> n1 -> n2 -> n3 -> n4 -> n5 -> n6 -> n7 -> … -> n49999 -> n0";
     check_refused_with(&around, &format!("s.toml:150001:13: the nodes form a loop: {looped}"));
 
-    // Each level holds the next one twice, so that 25 of them stand in 2^25 places.
+    // Each level contains the next one twice, so that 25 levels have 2^25 instances.
     let mut doubled = String::new();
     for level in 0..25 {
         for side in ["l", "r"] {

@@ -1,4 +1,4 @@
-//! `film`, `camera`, `environment`, `quality`.
+//! Tests of `film`, `camera`, `environment` and `quality`.
 
 use super::{check_refused, check_refused_with, scene, scene_with};
 use crate::camera::{Lens, Shutter};
@@ -127,7 +127,7 @@ fn a_camera_stands_somewhere_and_looks_somewhere() {
         "s.toml:4:6: `up` is parallel to the view direction, so the orientation of the picture is undefined\n\
          help: write, for example, `up = [0, 1, 0]`",
     );
-    // Far apart, the difference of the points overflows single precision; close by, it is all that counts.
+    // The difference of far points overflows single precision; a tiny difference still gives a direction.
     scene("camera = { position = [-3e38, 0, 0], look_at = [3e38, 0, 0] }");
     scene("camera = { position = [1e-45, 0, 0], look_at = [0, 0, 0] }");
 }

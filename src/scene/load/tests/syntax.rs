@@ -1,4 +1,4 @@
-//! Text that is not quite TOML, or TOML that is not quite a scene.
+//! Text that is invalid TOML, or TOML that is not a scene.
 
 use super::{CAMERA, check_refused, check_refused_with, scene, scene_with};
 use crate::scene::load::load;
@@ -9,7 +9,7 @@ fn windows_writes_scenes_too() {
     let unix = format!("{CAMERA}[environment]\nambient = 1\n");
     let windows = format!("\u{feff}{}", unix.replace('\n', "\r\n"));
     assert_eq!(scene(&windows), scene(&unix));
-    // A byte order mark is no column.
+    // A byte order mark does not count as a column.
     check_refused("\u{feff}abmient = 1", &scene_error("abmient = 1"));
 }
 

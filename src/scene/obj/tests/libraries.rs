@@ -1,4 +1,4 @@
-//! Facts about material libraries.
+//! Tests of the reader of material libraries.
 
 use super::super::library::parse;
 use super::super::{ObjMaterial, read};
@@ -17,7 +17,7 @@ fn check(line: &str, expected: &str) {
     assert_eq!(error.to_string(), format!("models/a.mtl:2:{expected}"));
 }
 
-/// A directory that goes away with its files.
+/// A directory that is removed when the value is dropped.
 struct Directory(PathBuf);
 
 impl Directory {

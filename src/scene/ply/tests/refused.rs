@@ -1,4 +1,4 @@
-//! What the reader refuses, and with which words.
+//! Tests of refused PLY files and of their messages.
 
 use super::{PLAIN, error, parsed, plain_with};
 
@@ -240,7 +240,7 @@ fn a_file_that_is_no_ply_is_recognised() {
     assert!(missing.starts_with("no/such/file.ply: there is no such file\nhelp: "), "{missing}");
 }
 
-/// Counts are promises: a short file that promises four billion vertices is refused before memory is set aside.
+/// A short file that announces four billion vertices is refused before memory is reserved.
 #[test]
 fn a_count_is_not_believed() {
     check(
