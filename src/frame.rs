@@ -265,7 +265,7 @@ mod tests {
             },
             mean,
         );
-        frame.expect("nobody cancels")
+        frame.expect("not cancelled")
     }
 
     #[test]

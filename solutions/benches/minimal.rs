@@ -42,7 +42,7 @@ fn main() -> Result<()> {
 
 fn compare(scene: &Scene, lights: usize) -> Result<()> {
     let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
-    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("nobody cancels");
+    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("not cancelled");
     let caster = Caster::new(scene);
 
     let (mut picture, mut rays) = (Vec::new(), 0);

@@ -47,9 +47,9 @@ impl fmt::Display for KitError {
             KitError::Panicked { message, place } => write!(f, "your code panicked at {place}\n  {message}"),
             KitError::Crashed { how } => write!(f, "your code ended its process: {how}"),
             KitError::TimedOut { seconds } => {
-                write!(f, "no answer after {seconds} s: a loop or a recursion that never ends?")
+                write!(f, "no answer after {seconds} s: is there an infinite loop or recursion?")
             }
-            KitError::Malformed { what } => write!(f, "the answer does not fit the question: {what}"),
+            KitError::Malformed { what } => write!(f, "the answer does not fit the request: {what}"),
         }
     }
 }

@@ -21,7 +21,7 @@ fn job(scene: &Scene, threads: usize) -> RenderJob {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("not cancelled")
 }
 
 /// A scene with every distributed effect, over a floor with tiles.
@@ -95,7 +95,7 @@ fn every_search_finds_what_moves_and_threads_change_nothing() {
         assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
         for threads in [2, 5] {
             let other =
-                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("nobody cancels");
+                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("not cancelled");
             assert_eq!(
                 (&other.film, other.counts),
                 (&found.film, found.counts),

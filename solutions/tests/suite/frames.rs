@@ -16,7 +16,7 @@ fn scene(text: &str) -> Scene {
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };
-    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
 fn render(scene: &Scene) -> Rendering {

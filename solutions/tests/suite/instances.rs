@@ -24,7 +24,7 @@ fn file(name: &str, width: u32, height: u32) -> Scene {
 
 fn render(scene: &Scene) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count: true };
-    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
 fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
@@ -59,7 +59,7 @@ fn any_number_of_threads_asks_the_same_questions() {
             let mut scene = scene.clone();
             scene.quality.accelerator = accelerator;
             let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             (frame.film, frame.counts)
         };
         assert_eq!(with(1), with(3), "{accelerator:?}");
@@ -129,7 +129,7 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
             let scene = lone(shape, &steps, size);
             let frame = render(&scene);
             let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels").film;
+            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film;
             let light = Vec3::new(1.0, 1.1, 0.9).normalize();
             let mut lit = 0;
             for (pixel, normal) in frame.film.pixels.iter().zip(&normals.pixels) {

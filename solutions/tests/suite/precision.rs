@@ -19,7 +19,7 @@ fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true };
-    let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame
 }

@@ -100,7 +100,7 @@ fn numbers_that_break_formulas_break_no_picture() {
             scene.quality.accelerator = accelerator;
             let job =
                 RenderJob { scene: scene.clone(), view: View::Shaded, seed: n, threads: 1, count: true };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
         }

@@ -81,7 +81,7 @@ struct Frame {
 
 fn frame(set: Set) -> Frame {
     let job = RenderJob { scene: only(set), view: View::Shaded, seed: 3, threads: 1, count: true };
-    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
     let trees = pixels.map(|(x, y)| solutions::Kit.door().trace(&job, x, y)).collect();

@@ -33,7 +33,7 @@ fn each_way_to_die_is_told_and_the_next_call_is_answered() {
     assert!(how_it_crashed(ask(&door, -2.0)).contains("exit status: 0"));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     how_it_crashed(ask(&door, -3.0));
-    assert_eq!(how_it_crashed(ask(&door, -4.0)), "the stack overflowed: a recursion that never ends?");
+    assert_eq!(how_it_crashed(ask(&door, -4.0)), "the stack overflowed: is there an infinite recursion?");
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
 }
 
@@ -109,8 +109,8 @@ fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
         }
     }
     let seen = Seen(AtomicU64::new(0));
-    let piped = door().render(&job, &seen).expect("nobody cancels");
-    let linked = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let piped = door().render(&job, &seen).expect("not cancelled");
+    let linked = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     assert_eq!((piped.film, piped.counts, piped.notes), (linked.film, linked.counts, linked.notes));
     assert_eq!(seen.0.load(Ordering::Relaxed), 1000);
 }

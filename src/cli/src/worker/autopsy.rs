@@ -33,7 +33,7 @@ pub(super) fn cause_of_death(
 ) -> KitError {
     let crashed = |how: &str| KitError::Crashed { how: how.into() };
     if stderr.contains("has overflowed its stack") {
-        return crashed("the stack overflowed: a recursion that never ends?");
+        return crashed("the stack overflowed: is there an infinite recursion?");
     }
     let Some(status) = status else { return crashed("for an unknown reason") };
     match launcher.and_then(|launcher| launcher.death(status, stderr)) {
