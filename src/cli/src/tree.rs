@@ -123,15 +123,15 @@ fn label(ray: &TracedRay) -> String {
         RayKind::Primary => "primary",
         RayKind::Reflection => "reflection",
         RayKind::Transmission => "transmission",
-        RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "hidden" } else { "lit" }),
+        RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "occluded" } else { "lit" }),
     };
     let weight = match ray.weight {
         w if w.x == w.y && w.y == w.z => format!("{:.3}", w.x),
         w => format!("({:.3} {:.3} {:.3})", w.x, w.y, w.z),
     };
     let hit = match &ray.hit {
-        Some((t, material)) => format!("meets {material} at t = {t:.3}"),
-        None => "meets nothing".into(),
+        Some((t, material)) => format!("hits {material} at t = {t:.3}"),
+        None => "hits nothing".into(),
     };
     format!("{kind}, depth {}, weight {weight}, {hit}", ray.depth)
 }

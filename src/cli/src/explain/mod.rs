@@ -213,8 +213,8 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
     let lines = [
         ("from the camera", most.primary, counted.primary),
         ("to lights", most.shadow, counted.shadow),
-        ("off mirrors", most.reflection, counted.reflection),
-        ("through surfaces", most.transmission, counted.transmission),
+        ("reflected", most.reflection, counted.reflection),
+        ("refracted", most.transmission, counted.transmission),
     ];
     for (what, most, counted) in lines {
         let most =
