@@ -155,6 +155,7 @@ pub fn render<T: Tally>(
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
         Ok(Some(tile))
     };
+    // Render all tiles, on a pool of threads unless one thread is enough.
     let corners: Vec<(u32, u32)> = (0..height)
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
@@ -170,11 +171,13 @@ pub fn render<T: Tally>(
         }
     };
 
+    // Pass a panic of a tile on, with the student function that was running.
     let tiles: Vec<Option<Tile>> =
         tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(error, function)| {
             note_unwound(function);
             kit_error::unwind(error)
         });
+    // Copy the tiles into the film, and add up their counts.
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
     for tile in tiles {
@@ -209,6 +212,7 @@ fn render_tile<T: Tally>(
     let bottom = settings.height.min(y + TILE);
     let mut tally = T::default();
     let mut samples = Vec::new();
+    // Compute the radiance of one sample, and count its random numbers.
     let mut sample_pixel = |column, row, sample| {
         let sample = CameraSample::draw(settings, column, row, sample);
         for _ in 0..sample.random_numbers() {
@@ -216,6 +220,7 @@ fn render_tile<T: Tally>(
         }
         radiance(&sample, &mut tally)
     };
+    // Filter the samples of one pixel.
     let mut render_pixel = |(column, row)| {
         if settings.samples_per_pixel == 1 {
             return filter(&[sample_pixel(column, row, 0)]);

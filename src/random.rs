@@ -74,6 +74,7 @@ impl Points {
         let alone = |u| Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u };
         match self.sampler {
             Sampler::Center | Sampler::Random => alone(random_pair(key(), index)),
+            // Stratified sampling: give each sample a cell of its own, in random order.
             Sampler::Jittered | Sampler::Gaussian => {
                 let grid = grid_of(self.count.saturating_mul(parts));
                 let (cells, key) = (grid.x * grid.y, key());
@@ -125,8 +126,8 @@ pub fn grid_of(samples: u32) -> UVec2 {
     uvec2(columns, samples.div_ceil(columns))
 }
 
-/// Two random numbers, `0 <= u < 1` each: all 32 bits over 2³² would round up to 1.0 for 128 of the values
-/// (hard case D1); 24 bits fit exactly.
+/// Two random numbers, `0 <= u < 1` each, of 24 bits, which an `f32` holds exactly. With 32 bits, 128 of the
+/// values would round up to 1.0 (hard case D1).
 fn random_pair(key: u64, index: u32) -> Vec2 {
     let bits = mix(key.wrapping_add(mix(u64::from(index))));
     let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
