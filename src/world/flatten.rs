@@ -228,8 +228,8 @@ impl Flattener<'_> {
         }
     }
 
-    /// Adds a mesh. A mesh with several places is kept once, if it can be placed; otherwise its triangles are
-    /// copied.
+    /// Adds an instance of a mesh. A mesh with several instances is shared, if it can be placed; otherwise its
+    /// triangles are copied.
     fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
         if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
             let shared_mesh = ready.shared_mesh.unwrap_or_else(|| self.shared_mesh(ready));
@@ -258,7 +258,7 @@ impl Flattener<'_> {
         }
     }
 
-    /// Keeps the triangles of a mesh in its own space; returns the index of the shared mesh.
+    /// Adds a shared mesh with the triangles of a mesh in its own space, and returns its index.
     fn shared_mesh(&mut self, ready: &Ready) -> u32 {
         let here = Way::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
