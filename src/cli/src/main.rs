@@ -94,8 +94,8 @@ You write in exercises/src. `cargo test --test stage1` grades stage 1,
 `raykata hint CHECK` gives hints for a check, `raykata render
 scenes/stage1.toml` renders a picture.
 
-Exit codes: 0 for success; 1 if checks failed, files differ or a scene cannot be
-read; 2 if the command line was not understood.
+Exit codes: 0 for success; 1 if checks failed, files differ or a scene cannot
+be read; 2 if the command line was not understood.
 
 Usage: raykata [COMMAND]
 
