@@ -144,7 +144,10 @@ fn no_text_makes_the_reader_panic() {
         }
     }
     // If all mistakes ended in the TOML parser, the test would not reach the reader.
-    assert!(syntax < 15_000 && sound > 200, "{syntax} of 20000 mutants are invalid TOML, {sound} are valid scenes");
+    assert!(
+        syntax < 15_000 && sound > 200,
+        "{syntax} of 20000 mutants are invalid TOML, {sound} are valid scenes"
+    );
 }
 
 #[test]
