@@ -96,6 +96,7 @@ impl Camera {
         vertical_fov: f32,
         aspect: f32,
     ) -> Result<Camera, CameraError> {
+        // Reject invalid arguments.
         if !(position.is_finite() && direction.is_finite() && up.is_finite()) {
             return Err(CameraError::NotFinite);
         }
@@ -109,8 +110,8 @@ impl Camera {
         let unit = |v: glam::DVec3| v.try_normalize();
         let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
         let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;
-        // The length of the cross product of unit vectors is the sine of their angle: below 1e-6
-        // the rounding of the inputs dominates.
+        // Reject an `up` along the view: the length of the cross product of unit vectors is the sine of their angle,
+        // and below 1e-6 the rounding of the inputs dominates.
         let right = Some(towards.cross(up)).filter(|r| r.length() > 1e-6).ok_or(CameraError::UpParallel)?;
         let right = right.normalize();
         Ok(Camera {

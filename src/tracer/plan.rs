@@ -42,6 +42,7 @@ impl Plan {
         // Without stage 7, assume that the scene needs every effect: the picture is the same and costs more.
         let effects =
             if written.has(Function::effects) { F::effects(scene) } else { Effects::everything(scene) };
+        // Choose what replaces functions that are not written.
         let mut plan = Plan {
             accelerator: choose_accelerator(&scene.quality, written, &mut notes),
             tests: choose_tests(&scene.quality, written, &mut notes),
@@ -54,6 +55,7 @@ impl Plan {
             effects,
             notes,
         };
+        // Leave out effects and shapes whose functions are not written, and note that.
         plan.leave_out_shapes(scene, written);
         plan.leave_out_normals(scene, written);
         plan.leave_out_mirrors(scene, written);
@@ -233,7 +235,7 @@ fn choose_view<F: StudentFunctions>(wanted: View, written: &Written<F>, notes: &
     wanted
 }
 
-/// The tests that the scene asks for, as far as they are written.
+/// The tests that the scene requests, as far as they are written.
 fn choose_tests<F: StudentFunctions>(
     quality: &Quality,
     written: &Written<F>,
@@ -247,6 +249,7 @@ fn choose_tests<F: StudentFunctions>(
     if quality.precision == Precision::Single {
         return single;
     }
+    // Double precision needs both tests; without one, fall back to single precision.
     let triangles = written.has(Function::triangle_in_double);
     let missing = match (triangles, written.has(Function::sphere_in_double)) {
         (true, true) => return ShapeTests::InDouble,
@@ -258,12 +261,13 @@ fn choose_tests<F: StudentFunctions>(
     single
 }
 
-/// The structure that the scene asks for, as far as it is written.
+/// The structure that the scene requests, or the best one whose functions are written.
 fn choose_accelerator<F: StudentFunctions>(
     quality: &Quality,
     written: &Written<F>,
     notes: &mut Vec<String>,
 ) -> Option<Accelerator> {
+    // Use the structure of the scene, or else a hierarchy.
     let wanted = quality.accelerator;
     if wanted != Accelerator::BruteForce {
         if written.has_all(HIERARCHY) {
@@ -277,6 +281,7 @@ fn choose_accelerator<F: StudentFunctions>(
         }
         notes.push("every ray tests every primitive: stage 3 is not written yet".into());
     }
+    // Without stage 3, test every primitive; without stage 2, paint the shapes in their order.
     if written.has(Function::brute_force) {
         return Some(Accelerator::BruteForce);
     }
