@@ -157,16 +157,18 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
             bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
     }
-    let here = std::env::current_exe().context("this program cannot find itself")?;
+    // Find the target folder and the profile of this program.
+    let here = std::env::current_exe().context("the path of this program is unknown")?;
     let folder = here.parent().context("this program is in no folder")?;
     let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
+    // Let cargo build the programs there.
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
     for program in programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
-            // Without the name of the package: the solutions depend on themselves in their tests, and cargo would take
-            // `solutions/frames` for a feature of that dependency.
+            // Pass the feature without the name of the package: the solutions depend on themselves in their
+            // tests, and cargo would read `solutions/frames` as a feature of that dependency.
             cargo.args(["--features", feature]);
         }
     }
@@ -180,6 +182,7 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
         cargo.env("CARGO_TERM_COLOR", "always");
     }
+    // Show its output as soon as something is compiled.
     let started = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     let mut running = started.context("cargo, which builds the exercises, cannot be started")?;
     let mut shown = Shown { what, held_back: Vec::new(), building: false };

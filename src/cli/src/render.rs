@@ -91,9 +91,11 @@ pub fn run(options: &Options) -> Result<()> {
     let format = format_of(&out)?;
     make_folder_of(&out)?;
 
+    // Build the kit.
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = source.fresh();
+    // Render the picture.
     let view = if options.normals { View::Normals } else { View::Shaded };
     let job = RenderJob {
         scene,
@@ -106,6 +108,7 @@ pub fn run(options: &Options) -> Result<()> {
     let rendering = kit_error::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
     bar.finish();
 
+    // Write the file, and print what the picture cost.
     let write = match format {
         Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
         Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),

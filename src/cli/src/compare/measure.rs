@@ -55,6 +55,7 @@ pub struct Measured {
 impl Bench<'_> {
     /// Renders every picture once with counts, then all of them in turn without counts.
     pub fn measure(&self, scene: &Scene, rows: &[Row]) -> Result<Vec<Measured>> {
+        // Render each picture once with counts, as large as is affordable.
         let bar = bar_of_steps(rows.len() * (1 + self.rounds as usize));
         let mut measured: Vec<Measured> = Vec::new();
         let mut references = BTreeMap::new();
@@ -68,6 +69,7 @@ impl Bench<'_> {
             }
             bar.inc(1);
         }
+        // Time all pictures in turn.
         let mut times = vec![(Vec::new(), Vec::new()); measured.len()];
         for _ in 0..self.rounds {
             for (one, (builds, renders)) in measured.iter().zip(&mut times) {
@@ -79,6 +81,7 @@ impl Bench<'_> {
             }
         }
         bar.finish_and_clear();
+        // Take medians and quartiles.
         for (one, (builds, renders)) in measured.iter_mut().zip(times) {
             one.build_seconds = quartiles(builds)[1];
             let [low, median, high] = quartiles(renders);
@@ -97,6 +100,7 @@ impl Bench<'_> {
         references: &mut BTreeMap<u32, Film>,
     ) -> Result<Measured> {
         let frame = self.frame(scene, row, slice, true)?;
+        // Compare the picture with that of the hierarchy at the same size, bit by bit.
         let reference = match references.entry(slice) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => {
@@ -147,6 +151,7 @@ impl Bench<'_> {
                 &[tiny][..]
             }
         };
+        // Render smaller pictures first, and extrapolate their numbers of tests.
         for &slice in tried {
             let frame = self.frame(scene, row, slice, true)?;
             let Counts { node_visits, box_tests, primitive_tests, .. } = frame.counts;

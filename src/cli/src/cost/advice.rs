@@ -88,8 +88,10 @@ pub fn advise(
     goal: Goal,
     full: f64,
 ) -> Result<Option<Advice>> {
+    // Choose the parameters whose best value does not depend on the others.
     let mut tried = Tried { bench, scene, right, known: Vec::new() };
     let (start, passed_over) = with_what_is_best(measured, &Setting::of(scene));
+    // Search the values of the other parameters.
     let turned_by_steps: Vec<&Series> = measured
         .series
         .iter()
@@ -102,10 +104,12 @@ pub fn advise(
     if !search.go_up()? {
         return Ok(None);
     }
+    // Spend the rest of the budget, and measure one more step of each parameter.
     search.spend_the_rest()?;
     let left = search.one_step_more()?;
     let values = [search.values(), names_of_chosen(measured, &search.now.setting)].concat();
     let (now, steps) = (search.now, search.steps);
+    // Compare with the scene's own settings.
     let Some(own) = tried.point(&Setting::of(scene))? else { return Ok(None) };
     Ok(Some(Advice {
         goal,

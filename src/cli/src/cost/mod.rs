@@ -105,6 +105,7 @@ pub struct Summary {
 /// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report
 /// has a section about ray/triangle tests; `program` is the command that starts this program.
 pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
+    // Build the kit and prepare the measurement.
     let began = Instant::now();
     let root = root()?;
     let which = options.kit.or_reference(&root);
@@ -119,10 +120,12 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         stop: &stop,
     };
 
+    // Without a scene, measure the headline example.
     let Some(file) = &options.scene else {
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         return headline::run(&bench, options.most, &out);
     };
+    // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file)?;
     let as_written = full.quality;
     options.parameters.apply(&mut full);
@@ -130,10 +133,12 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
+    // Choose the values to measure.
     let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
     for (parameter, why) in &not_offered {
         println!("{}: not offered, because {why}", parameter.name());
     }
+    // Render the reference, or continue it.
     println!(
         "the reference: {} samples per pixel, {} × {} pixels",
         options.reference, small.film.width, small.film.height
@@ -146,8 +151,10 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     };
     println!("its own error: {:.1e}\n", right.own_error);
 
+    // Measure errors, counts and times, and judge the hits.
     let mut measured = bench.measure(&small, ladders, &right)?;
     hits::judge(&root, &bench, &small, &mut measured)?;
+    // Search the best settings for the goal.
     let goal = options.budget.map(Goal::Seconds).or(options.error.map(Goal::Error));
     let advice = match goal {
         Some(goal) if !bench.stopped() => advised(&bench, &small, &full, &measured, &right, goal)?,
@@ -157,11 +164,13 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         let size = options.parameters.names_a_size().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &advice, size), ..advice }
     });
+    // Measure the ray/triangle tests, if that is possible here.
     let about_tests = measured.series.iter().any(|series| series.parameter == Parameter::Intersection);
     let numerics = match numerics {
         Some(numerics) if about_tests && !bench.stopped() => numerics(kit),
         _ => Vec::new(),
     };
+    // Print and write the report.
     let report = Report {
         scene: name,
         command: command(program),

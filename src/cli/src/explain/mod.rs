@@ -134,6 +134,7 @@ fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
 
 /// Renders the scene with all effects and without each effect, in turn, and prints the differences.
 fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
+    // Render the scene with all effects and without each of them, in turn.
     let called = explained.called_for();
     let scenes: Vec<Scene> = std::iter::once(explained.scene.clone())
         .chain(called.iter().map(|effect| effect.removed_from(explained.scene)))
@@ -151,6 +152,7 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     }
     bar.finish_and_clear();
 
+    // Print what the picture saves without each effect.
     let with = &seconds[0];
     println!(
         "{:<16}  {:>13}  {:>15}  {:>13}  {:>16}",
