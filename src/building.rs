@@ -48,14 +48,14 @@ pub fn watched<T>(watch: &dyn Watch, total: u64, build: impl FnOnce() -> T) -> T
                 thread::park_timeout(PAUSE);
             }
         });
-        // Where no thread can be had, nobody is told. A build that panics ends the teller all the same.
+        // Without a thread there are no reports. If the build panics, `Ended` still ends the reporting thread.
         let _ended = Ended { built: &built, teller: teller.ok().map(|teller| teller.thread().clone()) };
         PLACED.set(Some(counter.clone()));
         build()
     })
 }
 
-/// Ends the telling when it is dropped.
+/// Ends the reports when it is dropped.
 struct Ended<'a> {
     built: &'a AtomicBool,
     teller: Option<thread::Thread>,
@@ -116,7 +116,7 @@ mod tests {
             heard.wait_for(150_000);
         });
         leaf_of(10);
-        assert!(PLACED.with_borrow(Option::is_none), "nobody counts any more");
+        assert!(PLACED.with_borrow(Option::is_none), "counting has ended");
         assert!(heard.0.into_inner().unwrap().iter().all(|(_, of)| *of == total));
     }
 

@@ -81,7 +81,7 @@ impl Bvh {
     /// A hierarchy without nodes, which can take at most the `2 n - 1` nodes that a binary tree over
     /// `n_primitives` primitives can have.
     pub fn for_primitives(n_primitives: usize) -> Self {
-        // A binary tree whose leaves hold something has at most one inner node fewer than leaves.
+        // A binary tree with no empty leaf has one inner node fewer than leaves.
         let most_nodes = (2 * n_primitives).saturating_sub(1);
         Bvh { nodes: Vec::new(), order: Vec::with_capacity(n_primitives), most_nodes }
     }

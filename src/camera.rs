@@ -50,16 +50,16 @@ pub struct Camera {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CameraError {
     /// The view direction is zero, for example because position and target are the same.
-    #[error("the camera looks nowhere: its direction has no length")]
+    #[error("the view direction of the camera has no length")]
     NoDirection,
     /// The up direction is zero, or parallel to the view direction.
-    #[error("`up` runs along the view direction, so the picture could be turned any way")]
+    #[error("`up` is parallel to the view direction, so the orientation of the picture is undefined")]
     UpParallel,
     /// The vertical field of view, in degrees, is not above 0 and below 180, or is NaN.
-    #[error("the vertical field of view must lie between 0 and 180 degrees, and is {0}")]
+    #[error("the vertical field of view must lie between 0 and 180 degrees, but is {0}")]
     FieldOfView(f32),
     /// The aspect ratio is not above 0, or is infinite or NaN.
-    #[error("the aspect ratio must be above zero, and is {0}")]
+    #[error("the aspect ratio must be above zero, but is {0}")]
     Aspect(f32),
     /// A coordinate of the position or of a direction is NaN or infinite.
     #[error("a coordinate of the camera is not a finite number")]
@@ -96,6 +96,7 @@ impl Camera {
         vertical_fov: f32,
         aspect: f32,
     ) -> Result<Camera, CameraError> {
+        // Reject invalid arguments.
         if !(position.is_finite() && direction.is_finite() && up.is_finite()) {
             return Err(CameraError::NotFinite);
         }
@@ -105,11 +106,12 @@ impl Camera {
         if !(0.0 < aspect && aspect.is_finite()) {
             return Err(CameraError::Aspect(aspect));
         }
-        // Double precision here costs nothing and keeps the axes at right angles for any scale of the inputs.
+        // Normalise in double precision, which keeps the axes at right angles for any scale of the inputs.
         let unit = |v: glam::DVec3| v.try_normalize();
         let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
         let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;
-        // The cross product of unit vectors is the sine between them: below 1e-6 rounding decides the picture.
+        // Reject an `up` along the view: the length of the cross product of unit vectors is the sine of their angle,
+        // and below 1e-6 the rounding of the inputs dominates.
         let right = Some(towards.cross(up)).filter(|r| r.length() > 1e-6).ok_or(CameraError::UpParallel)?;
         let right = right.normalize();
         Ok(Camera {
@@ -162,7 +164,7 @@ mod tests {
 
     #[test]
     fn a_slanted_up_does_not_narrow_the_picture() {
-        // K2: `right = towards × up` is only of unit length when up is at a right angle.
+        // K2: `right = towards × up` has unit length only if `up` is perpendicular to `towards`.
         let camera = Camera::new(Vec3::ZERO, Vec3::X, Vec3::new(0.8, 0.6, 0.0), 60.0, 1.0).expect("a camera");
         assert!((camera.right.length() - 1.0).abs() < 1e-6);
         assert!((camera.up - Vec3::Y).length() < 1e-6);

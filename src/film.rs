@@ -161,7 +161,7 @@ pub fn write_atomically(
     });
     let placed = written.and_then(|()| fs::rename(&beside, file));
     if placed.is_err() {
-        // The part is of no use to anyone; if it cannot be removed either, the first error says why.
+        // Remove the incomplete file. If that fails as well, return the first error.
         let _ = fs::remove_file(&beside);
     }
     placed

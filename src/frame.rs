@@ -97,7 +97,7 @@ impl CameraSample {
         let samples = settings.samples_per_pixel.max(1);
         let FrameSettings { sampler, seed, lens, motion, on_the_way, .. } = *settings;
         let spread = sampler.spreads(samples);
-        // Without anything to draw the address is not worked out: 5 % of a plain frame.
+        // Skip the address if no number is needed, which saves 5 % of a plain frame.
         let points = if spread || lens || motion || on_the_way {
             let pixel = u64::from(row) * u64::from(settings.width) + u64::from(column);
             Points::new(sampler, seed, pixel, sample, samples)
@@ -147,7 +147,7 @@ pub fn render<T: Tally>(
         if watch.cancelled() || broken.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        // Caught where it happens: a panic that crosses threads forgets its file and line.
+        // Catch the panic in its own thread, because a panic that crosses threads loses its file and line.
         let tile = kit_error::catch(|| render_tile::<T>(settings, corner, &radiance, &filter))
             .map_err(|error| (error, take_unwound()))
             .inspect_err(|_| broken.store(true, Ordering::Relaxed))?;
@@ -155,6 +155,7 @@ pub fn render<T: Tally>(
         watch.progress(done.fetch_add(pixels, Ordering::Relaxed) + pixels, total);
         Ok(Some(tile))
     };
+    // Render all tiles, on a pool of threads unless one thread is enough.
     let corners: Vec<(u32, u32)> = (0..height)
         .step_by(TILE as usize)
         .flat_map(|y| (0..width).step_by(TILE as usize).map(move |x| (x, y)))
@@ -163,18 +164,20 @@ pub fn render<T: Tally>(
         corners.into_iter().map(tile).collect()
     } else {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-        // Where threads cannot be had, as in a sandbox, this one does the same work.
+        // Where no thread can be started, as in a sandbox, this thread does all the work.
         match pool {
             Ok(pool) => pool.install(|| corners.into_par_iter().map(tile).collect()),
             Err(_) => corners.into_iter().map(tile).collect(),
         }
     };
 
+    // Pass a panic of a tile on, with the student function that was running.
     let tiles: Vec<Option<Tile>> =
         tiles.into_iter().collect::<Result<_, _>>().unwrap_or_else(|(error, function)| {
             note_unwound(function);
             kit_error::unwind(error)
         });
+    // Copy the tiles into the film, and add up their counts.
     let mut film = Film::new(width, height);
     let mut counts = Counts::default();
     for tile in tiles {
@@ -188,7 +191,7 @@ pub fn render<T: Tally>(
     Some((film, counts))
 }
 
-/// Why a tile has no pixels, and the function of the student that was running.
+/// The reason why a tile has no pixels, and the student function that was running.
 type Broken = (KitError, Option<Function>);
 
 struct Tile {
@@ -209,6 +212,7 @@ fn render_tile<T: Tally>(
     let bottom = settings.height.min(y + TILE);
     let mut tally = T::default();
     let mut samples = Vec::new();
+    // Compute the radiance of one sample, and count its random numbers.
     let mut sample_pixel = |column, row, sample| {
         let sample = CameraSample::draw(settings, column, row, sample);
         for _ in 0..sample.random_numbers() {
@@ -216,6 +220,7 @@ fn render_tile<T: Tally>(
         }
         radiance(&sample, &mut tally)
     };
+    // Filter the samples of one pixel.
     let mut render_pixel = |(column, row)| {
         if settings.samples_per_pixel == 1 {
             return filter(&[sample_pixel(column, row, 0)]);
@@ -265,7 +270,7 @@ mod tests {
             },
             mean,
         );
-        frame.expect("nobody cancels")
+        frame.expect("not cancelled")
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Graph {
     /// If a child's index is out of range.
     pub fn depth(&self) -> usize {
         let mut levels = vec![1; self.nodes.len()];
-        // Children have higher numbers than their parents.
+        // Children have larger indices than their parents, so go through the nodes backwards.
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let below = node.children.iter().map(|&child| levels[child as usize]).max();
             levels[index] = 1 + below.unwrap_or(0);

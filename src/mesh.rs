@@ -59,7 +59,7 @@ impl Mesh {
             ));
         }
         if let Some(vertex) = self.positions.iter().position(|p| !p.is_finite()) {
-            return Err(format!("vertex {vertex} is at {}, which is no place", self.positions[vertex]));
+            return Err(format!("vertex {vertex} is at {}, which is not finite", self.positions[vertex]));
         }
         if let Some(face) = self.triangles.iter().position(|t| t.iter().any(|&v| v as usize >= vertices)) {
             return Err(format!(

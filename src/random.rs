@@ -74,6 +74,7 @@ impl Points {
         let alone = |u| Stratum { cell: UVec2::ZERO, grid: UVec2::ONE, u };
         match self.sampler {
             Sampler::Center | Sampler::Random => alone(random_pair(key(), index)),
+            // Stratified sampling: give each sample a cell of its own, in random order.
             Sampler::Jittered | Sampler::Gaussian => {
                 let grid = grid_of(self.count.saturating_mul(parts));
                 let (cells, key) = (grid.x * grid.y, key());
@@ -88,8 +89,9 @@ impl Points {
         self.index.wrapping_mul(parts).wrapping_add(part)
     }
 
-    /// An Owen-scrambled Sobol sequence. Place and lens are four dimensions of one sequence and time is the fifth, so
-    /// that they are spread evenly together; everything else has a sequence of its own.
+    /// A point of an Owen-scrambled Sobol sequence. The position in the pixel, the lens and the time use five
+    /// dimensions of one sequence, so that they are spread evenly together; each other purpose has a sequence
+    /// of its own.
     fn sobol(&self, purpose: Purpose, index: u32) -> Vec2 {
         let (set, first, seed) = match purpose {
             Purpose::Pixel => (0, 0, self.key),
@@ -97,7 +99,7 @@ impl Points {
             Purpose::Time => (1, 0, self.key),
             other => (0, 0, mix(self.key ^ mix(address(other)))),
         };
-        // The sequence has 2¹⁶ points; after that another one begins.
+        // The sequence has 2¹⁶ points; use another sequence after that.
         let seed = seed ^ mix(u64::from(index >> 16));
         let point = sobol_burley::sample_4d(index & 0xffff, set, seed as u32);
         Vec2::new(point[first], point[first + 1])
@@ -118,14 +120,14 @@ fn address(purpose: Purpose) -> u64 {
 /// The columns and rows of a grid with at least `samples` cells that is as close to a square as possible.
 /// `samples` counts as at least 1 and at most 2³⁰.
 pub fn grid_of(samples: u32) -> UVec2 {
-    // 2^15 cells a side and more could not be numbered in 32 bits.
+    // With 2^15 cells per side and more, the cells could not be numbered in 32 bits.
     let samples = samples.clamp(1, 1 << 30);
     let columns = f64::from(samples).sqrt().ceil() as u32;
     uvec2(columns, samples.div_ceil(columns))
 }
 
-/// Two random numbers, `0 <= u < 1` each: all 32 bits over 2³² would round up to 1.0 for 128 of the values
-/// (hard case D1); 24 bits fit exactly.
+/// Two random numbers, `0 <= u < 1` each, of 24 bits, which an `f32` holds exactly. With 32 bits, 128 of the
+/// values would round up to 1.0 (hard case D1).
 fn random_pair(key: u64, index: u32) -> Vec2 {
     let bits = mix(key.wrapping_add(mix(u64::from(index))));
     let unit = |bits: u32| (bits >> 8) as f32 * (1.0 / 16_777_216.0);
@@ -133,7 +135,7 @@ fn random_pair(key: u64, index: u32) -> Vec2 {
 }
 
 /// The finalizer of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): every
-/// bit of the input sways every bit of the output.
+/// bit of the input affects every bit of the output.
 fn mix(key: u64) -> u64 {
     let key = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
     let key = (key ^ (key >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -145,13 +147,13 @@ fn mix(key: u64) -> u64 {
 /// and a random bit says for each pair whether its two members are exchanged (Hoang, Morris and Rogaway, "An
 /// enciphering scheme based on a card shuffle", 2012).
 fn permute(mut index: u32, length: u32, seed: u64) -> u32 {
-    /// Enough that all orders of a few cells come up equally often.
+    /// Enough rounds that all orders of a few cells are equally frequent.
     const ROUNDS: u64 = 12;
     let length = u64::from(length);
     for round in 0..ROUNDS {
         let key = mix(seed ^ round);
         let partner = ((key % length + length - u64::from(index)) % length) as u32;
-        // Both of a pair ask for the same coin.
+        // Both members of a pair use the same random bit.
         if mix(key ^ u64::from(index.max(partner))) & 1 == 1 {
             index = partner;
         }

@@ -146,7 +146,7 @@ impl Shape {
             Shape::Cone(c) => around([c.base, c.apex], [disk_reach(c.apex - c.base, c.radius), Vec3::ZERO]),
             Shape::Disk(d) => around([d.center], [disk_reach(d.normal, d.radius)]),
             Shape::Polygon(p) => bounds_of_points(&p.corners),
-            // Each point of the surface is a mean of the net.
+            // Each point of the surface is a weighted mean of the control points.
             Shape::Bezier { patch, .. } => bounds_of_points(patch.rows.as_flattened()),
             Shape::Mesh(index) => meshes[*index].mesh.bounds(),
         })

@@ -81,7 +81,7 @@ pub fn receive_up_to<T: DeserializeOwned>(pipe: &mut impl Read, longest: usize) 
     if length > longest {
         return Err(io::Error::other(format!("a message of {length} bytes")));
     }
-    // Grows with what arrives: a length alone is no reason to allocate.
+    // Let the buffer grow with the bytes that arrive, because the announced length may be wrong.
     let mut bytes = Vec::new();
     pipe.take(length as u64).read_to_end(&mut bytes)?;
     if bytes.len() < length {
@@ -108,7 +108,7 @@ pub fn serve_with(answer: &Answering<'_>) {
         let deep = std::thread::Builder::new().name("exercise".into()).stack_size(STACK_BYTES);
         match deep.spawn_scoped(scope, work) {
             Ok(thread) => thread.join().unwrap_or(Ok(())),
-            // In a sandbox there are no threads, and whoever made it has given this one a deep stack.
+            // A sandbox allows no threads; its launcher has given this thread a deep stack.
             Err(_) => work(),
         }
     });
@@ -146,7 +146,7 @@ struct Relay<'a>(&'a (dyn Fn(&Reply) -> io::Result<()> + Sync));
 
 impl Watch for Relay<'_> {
     fn progress(&self, done: u64, total: u64) {
-        // If nobody listens any more, the next answer will find out.
+        // Ignore a closed pipe here, because sending the answer will report it.
         let _ = (self.0)(&Reply::Progress { done, total });
     }
 

@@ -1,10 +1,11 @@
-//! What the full renderer costs on a scene that calls for none of its effects: `cargo bench -p solutions --bench minimal`.
+//! Measures the cost of the full renderer on a scene that needs no effects: `cargo bench -p solutions --bench
+//! minimal`.
 //!
-//! Beside it runs a ray caster that can do nothing else than this scene: triangles of one colour, point lights, one sample
-//! in the centre of each pixel. Both use the same hierarchy, the same ray/triangle test and the same offset of shadow
-//! rays, and trace the same rays; what differs is that the one has looked first whether there are mirrors, lenses and
-//! so on, and the other has never heard of them. They render by turns, on one thread; printed are the medians, and the
-//! median of the ratios.
+//! It is compared with a minimal ray caster that supports only this scene: triangles of one colour, point
+//! lights, one sample in the centre of each pixel. Both use the same hierarchy, the same ray/triangle test
+//! and the same ray offset, and trace the same rays. The difference is that the full renderer has to find out
+//! that the scene has no mirrors, lenses and so on. They render in turn on one thread; the output is the
+//! medians of the times and the median of their ratios.
 
 use anyhow::{Result, ensure};
 use glam::Vec3;
@@ -31,7 +32,7 @@ fn main() -> Result<()> {
     );
     for lights in [3, 1, 0] {
         let mut scene = scene.clone();
-        // Without a light there is still one that shines, through everything.
+        // Zero lights with shadow means one light that casts no shadow.
         scene.lights.truncate(lights.max(1));
         scene.lights[0].shadows = lights > 0;
         compare(&scene, lights)?;
@@ -41,7 +42,7 @@ fn main() -> Result<()> {
 
 fn compare(scene: &Scene, lights: usize) -> Result<()> {
     let job = |count| RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count };
-    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("nobody cancels");
+    let full = |count| solutions::Kit.door().render(&job(count), &Unwatched).expect("not cancelled");
     let caster = Caster::new(scene);
 
     let (mut picture, mut rays) = (Vec::new(), 0);
@@ -50,7 +51,7 @@ fn compare(scene: &Scene, lights: usize) -> Result<()> {
     ensure!(counted.counts.rays() == rays, "the renderer traces {} rays, {rays} do", counted.counts.rays());
     let off =
         counted.film.pixels.iter().zip(&picture).filter(|(a, b)| (**a - **b).abs().max_element() > 1e-5);
-    // Shadow rays start a rounding apart, so a few pixels at the rims of shadows may differ.
+    // Shadow rays start at points that differ by a rounding error, so a few pixels at edges of shadows may differ.
     ensure!(off.count() * 10_000 <= picture.len(), "the pictures differ");
 
     let (mut minimal, mut fully, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
@@ -73,12 +74,12 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// All there is to the scene.
+/// The minimal ray caster with its scene.
 struct Caster<'a> {
     scene: &'a Scene,
     triangles: Vec<Triangle>,
     bvh: Bvh,
-    /// Where they are, how they shine, and whether they cast shadows.
+    /// The position and the radiance of each light, and whether it casts shadows.
     lights: Vec<(Vec3, Vec3, bool)>,
     ambient: Vec3,
     diffuse: Vec3,
@@ -154,7 +155,7 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// Answers the questions of a search with one ray.
+/// A probe for one ray.
 struct Triangles<'a> {
     bvh: &'a Bvh,
     triangles: &'a [Triangle],
@@ -179,7 +180,7 @@ impl Probe for Triangles<'_> {
     }
 }
 
-/// Where the ray meets the triangle, and which side it sees.
+/// The point where the ray hits the triangle, with its normals on the viewer's side.
 fn surface(ray: &Ray, triangle: &Triangle) -> Surface {
     let Triangle { a, b, c } = *triangle;
     let hit = stage2_triangles::triangle_choice(ray, triangle).expect("it was hit");

@@ -177,7 +177,7 @@ impl dyn Kit + '_ {
 impl<T: Transport> Frames for Door<T> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
         match self.0.call(Request::Render(Box::new(job.clone())), watch) {
-            // The other side says how large its picture is; what is done with it relies on that.
+            // Check the size of the picture, because it comes from another process.
             Answer::Render(Some(rendering)) if !job.fits(&rendering.film) => {
                 kit_error::wrong_answer(&rendering.film)
             }

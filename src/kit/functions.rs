@@ -26,7 +26,7 @@ impl Running {
 impl Drop for Running {
     #[cold]
     fn drop(&mut self) {
-        // Guards are dropped from the inside out, and the innermost function is the one that gave up.
+        // Guards are dropped from the inside out, so the first one belongs to the function that panicked.
         UNWOUND.with(|unwound| unwound.set(unwound.get().or(Some(self.0))));
     }
 }
@@ -161,7 +161,7 @@ macro_rules! student_kit {
         }
 
         impl $crate::kit::StudentKit for Kit {
-            // Not generic, so that everything behind the door is compiled here and not in whatever uses it.
+            // This function is not generic, so all code behind it is compiled in this crate and not in its users.
             fn door(self) -> ::std::sync::Arc<dyn $crate::kit::Kit + Send + Sync> {
                 ::std::sync::Arc::new($crate::kit::Linked(self))
             }

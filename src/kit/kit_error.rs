@@ -47,16 +47,16 @@ impl fmt::Display for KitError {
             KitError::Panicked { message, place } => write!(f, "your code panicked at {place}\n  {message}"),
             KitError::Crashed { how } => write!(f, "your code ended its process: {how}"),
             KitError::TimedOut { seconds } => {
-                write!(f, "no answer after {seconds} s: a loop or a recursion that never ends?")
+                write!(f, "no answer after {seconds} s: is there an infinite loop or recursion?")
             }
-            KitError::Malformed { what } => write!(f, "the answer does not fit the question: {what}"),
+            KitError::Malformed { what } => write!(f, "the answer does not fit the request: {what}"),
         }
     }
 }
 
 impl std::error::Error for KitError {}
 
-/// Unwinds with a error, which [`catch`] returns: what a transport does if there is no answer.
+/// Unwinds with `error`, which [`catch`] returns. A transport calls this if there is no answer.
 ///
 /// # Panics
 ///
@@ -69,7 +69,7 @@ pub fn unwind(error: KitError) -> ! {
 /// long.
 pub(super) fn wrong_answer(answer: &dyn fmt::Debug) -> ! {
     let mut beginning = Beginning { words: String::new(), room: 200 };
-    // It fails when there is no more room.
+    // Formatting fails when `Beginning` is full, so ignore its result.
     let _ = fmt::write(&mut beginning, format_args!("{answer:?}"));
     unwind(KitError::Malformed { what: beginning.words })
 }
@@ -90,7 +90,7 @@ impl fmt::Write for Beginning {
 }
 
 thread_local! {
-    /// `None`: panics of this thread are none of our business. `Some`: the last one, for [`catch`].
+    /// `None` if panics of this thread are not caught; otherwise the last panic, for [`catch`].
     static CAUGHT: RefCell<Option<Option<(String, String)>>> = const { RefCell::new(None) };
 }
 
@@ -140,7 +140,7 @@ fn words_of(payload: &(dyn std::any::Any + Send)) -> String {
     match (payload.downcast_ref::<String>(), payload.downcast_ref::<&str>()) {
         (Some(words), _) => words.clone(),
         (None, Some(words)) => (*words).to_owned(),
-        (None, None) => "a panic without words".to_owned(),
+        (None, None) => "a panic without a message".to_owned(),
     }
 }
 

@@ -165,7 +165,7 @@ impl Cells for CellsProbe<'_> {
     fn visit(&mut self, node: u32) {
         assert!(
             self.answer.visits.len() < MOST_VISITS,
-            "the search goes on for ever: does every step get ahead?"
+            "the search goes on for ever: does every step advance?"
         );
         self.answer.visits.push(node);
     }
@@ -202,7 +202,7 @@ impl<'a> PacketProbe<'a> {
             |one: &Ray| (one.origin, one.direction, one.t_min) == (ray.origin, ray.direction, ray.t_min);
         match self.query.rays.iter().position(same) {
             Some(index) => &self.query.tables[index],
-            None => panic!("a ray that is not of the packet: only t_max may change"),
+            None => panic!("a ray that is not in the packet: only t_max may change"),
         }
     }
 }

@@ -25,7 +25,7 @@ pub trait Cells {
     ///
     /// # Panics
     ///
-    /// May panic if a search makes so many visits that it must be in an endless loop.
+    /// May panic if a search makes so many visits that it must be in an infinite loop.
     fn visit(&mut self, node: u32);
 
     /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
@@ -114,7 +114,7 @@ pub fn corners(bounds: &Aabb) -> Vec<Vec3> {
 fn check_depth(depth: usize, most: usize) {
     assert!(
         depth <= most,
-        "a node at depth {depth} of a tree that may be {most} deep: does every division divide?"
+        "a node at depth {depth} of a tree with at most depth {most}: does the recursion end?"
     );
 }
 
@@ -133,7 +133,7 @@ fn walk<P>(
         each(node, &place, depth);
         levels = levels.max(depth + 1);
         if depth < most {
-            // The last one that waits is the first to be gone to.
+            // Push the children in reverse order, because the last entry is visited first.
             let children = below(node, &place).into_iter().rev();
             waiting.extend(children.map(|(child, place)| (child, place, depth + 1)));
         }

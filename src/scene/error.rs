@@ -14,7 +14,7 @@ pub struct LoadError {
     /// Line and column, both counted from 1 and the column in characters; `None` if the error concerns the
     /// whole file.
     pub place: Option<(usize, usize)>,
-    /// The byte range of the file that is wrong, for tools that mark it; empty if there is no place.
+    /// The byte range of the file that is wrong, for tools that mark it; empty if there is not a finite number.
     pub span: Range<usize>,
     /// What is wrong, in lower case and without a full stop.
     pub message: String,
@@ -37,7 +37,7 @@ impl LoadError {
         let before = text.get(..span.start).unwrap_or(text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = before.matches('\n').count() + 1;
-        // A byte order mark takes room in the file and none on the screen.
+        // A byte order mark does not count as a column.
         let column = before[line_start..].trim_start_matches('\u{feff}').chars().count() + 1;
         LoadError { place: Some((line, column)), span, ..LoadError::new(file, message) }
     }

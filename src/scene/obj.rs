@@ -104,7 +104,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
     for library in &lines.libraries {
         for path in library::find(file, &text, library)? {
             for material in library::read(&path)? {
-                // The last material with a name is the one that is meant, as if all libraries were one file.
+                // Of materials with the same name the last one counts, as if all libraries were one file.
                 materials.retain(|earlier| earlier.name != material.name);
                 materials.push(material);
             }
@@ -119,8 +119,8 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
 /// Reads one mesh for each run of faces with the same material.
 fn load(file: &Path, lines: &lines::Lines) -> Result<Vec<tobj::Mesh>, LoadError> {
     let options = tobj::LoadOptions { single_index: true, triangulate: true, ..Default::default() };
-    // `tobj` forgets names that no library defines, but a scene may define them as well. So it is told that each
-    // name is a material; their numbers are all that we ask back.
+    // `tobj` drops names that no library defines, but a scene may define them. So pass each name to it as a material;
+    // only the numbers of the materials are used.
     let numbers = || lines.material_names.iter().enumerate().map(|(number, name)| (name.clone(), number));
     let all_materials = |_: &Path| Ok((Vec::new(), numbers().collect()));
     match tobj::load_obj_buf(&mut lines.clean.as_bytes(), &options, all_materials) {

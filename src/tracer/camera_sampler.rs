@@ -79,7 +79,7 @@ impl<F: StudentFunctions> CameraSampler<F> {
         let Some(shutter) = &self.camera.shutter else { return 0.0 };
         let Some(stratum) = &sample.time else { return shutter.open };
         let (slot, slots) = match (self.sampler, &sample.pixel) {
-            // The cells of all pixels together are one large grid, which the table covers.
+            // Number the cells of all pixels as one large grid, over which the table repeats.
             (Sampler::Jittered | Sampler::Gaussian, Some(Stratum { cell, grid, .. })) => {
                 let cell = uvec2(sample.column, sample.row) * *grid + *cell;
                 (F::temporal_slot(cell.x, cell.y), 16)

@@ -68,7 +68,7 @@ impl SurfaceInteraction {
                     Geometry::Solid(index) => {
                         on_solid::<F>(looks.tests, ray, hit, &world.solids[index as usize])
                     }
-                    // A search answers for an instance with what it has hit inside.
+                    // A hit of an instance names a primitive of its shared mesh, never the instance itself.
                     Geometry::Instance(_) => unreachable!("an instance is not a surface"),
                 };
                 (point, primitive.material)
@@ -116,7 +116,7 @@ fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32)
 }
 
 fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
-    // Pulled back onto the sphere: five roundings of the way from the centre, one of the sum.
+    // Project the hit onto the sphere, with five roundings of the offset from the centre and one of the sum.
     let normal = F::sphere_normal(sphere.center, ray.at(t));
     let point = sphere.center + sphere.radius * normal;
     let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
@@ -134,12 +134,12 @@ fn on_triangle<F: StudentFunctions>(
 ) -> Point {
     let weights = barycentric::<F>(looks.tests, ray, triangle, detail);
     let Triangle { a, b, c } = *triangle;
-    // A weighted sum of the corners lies in the triangle to seven roundings of its terms, however far the ray came
-    // from.
+    // Compute the point from the corners: its error is seven roundings of the terms, however long the ray is.
     let terms = [weights.x * a, weights.y * b, weights.z * c];
     let point = terms[0] + terms[1] + terms[2];
     let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Z);
+    // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
     let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
         let at = |index: usize| F::interpolate(weights, world.normals[index]);
         match primitive.end.get() {
@@ -173,7 +173,7 @@ fn test_again<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, triangle: &Tria
     hit.map_or((1.0 / 3.0, 1.0 / 3.0), |hit| (hit.beta, hit.gamma))
 }
 
-/// The hit moved onto the plane: what is left is the rounding of the point and of its distance to the plane.
+/// The hit projected onto the plane: its error is the rounding of the point and of its distance to the plane.
 fn on_plane(ray: &Ray, t: f32, plane: &Plane) -> Point {
     let rough = ray.at(t);
     let normal = plane.normal.normalize();
@@ -192,8 +192,8 @@ fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid:
     }
     let normal = normal_of_solid::<F>(tests, ray, hit, solid).unwrap_or(-own.direction.normalize_or(Vec3::Z));
     let point = own.at(hit.t);
-    // The rounding of t moves the point along the ray, and the sum and the product are rounded as well; twice that for
-    // tests that are not in double.
+    // Bound the error: the rounding of `t` moves the point along the ray, and product and sum are rounded as
+    // well. Twice that is enough for tests in single precision.
     let error = 4.0 * HALF_STEP * (hit.t * own.direction).abs() + 2.0 * HALF_STEP * point.abs();
     to_world::<F>(Point { point, error, normal, smooth: None }, placement)
 }
@@ -215,13 +215,13 @@ fn normal_of_solid<F: StudentFunctions>(
 fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
     let (up, down) = (placement.to_world.as_daffine3(), placement.to_object.as_daffine3());
     let point = up.transform_point3(own.point.as_dvec3()).as_vec3();
-    // How far from the point a ray would start that is carried back: what both transforms and the rounding of the
-    // point add up to, measured and not estimated.
+    // Measure the error of both transforms and of the rounded point: transform the point back and compare.
     let back = down.transform_point3(point.as_dvec3());
     let residue = (back - own.point.as_dvec3()).abs();
-    // A ray that goes on from here is carried back and rounded, too.
+    // Add the rounding of a secondary ray, which is transformed back into the space of the object.
     let rounded = f64::from(HALF_STEP) * back.abs();
     let in_object = own.error.as_dvec3() + residue + 2.0 * rounded;
+    // Transform the error bound to the world, with absolute values.
     let in_world = [up.matrix3.x_axis, up.matrix3.y_axis, up.matrix3.z_axis]
         .into_iter()
         .zip(in_object.to_array())

@@ -29,7 +29,8 @@ impl<F: StudentFunctions> Intersector<F> {
     /// Builds the acceleration structures of `plan` over `world` and over each of its shared meshes.
     pub fn new(mut world: World, plan: &Plan, quality: &Quality) -> Self {
         let graph = world.graph.take();
-        // Shared meshes first: an instance is as large as its mesh. A list of primitives needs no boxes.
+        // Bound the shared meshes first, because the box of an instance follows from that of its mesh. Brute
+        // force needs no boxes.
         let bounded = !matches!(plan.accelerator, None | Some(Accelerator::BruteForce));
         let bounds = |primitives: &[Primitive], mesh_bounds: &[Aabb]| -> Vec<Aabb> {
             let primitives = primitives.iter().filter(|_| bounded);
@@ -40,6 +41,7 @@ impl<F: StudentFunctions> Intersector<F> {
         let around = |boxes: &Vec<Aabb>| boxes.iter().fold(Aabb::EMPTY, |all, one| F::union(&all, one));
         let around: Vec<Aabb> = of_meshes.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
+        // Build one structure over the scene and one over each shared mesh.
         let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
             Structure::build::<F>(bounds, graph, |index| hull(&primitives[index]), plan.accelerator, quality)
         };
@@ -61,12 +63,13 @@ impl<F: StudentFunctions> Intersector<F> {
     /// last primitive that the ray hits, or else the last infinite plane.
     #[inline(always)]
     pub fn closest_hit<T: Tally>(&self, ray: &Ray, tally: &mut T, last: &mut Option<u32>) -> Option<Hit> {
-        // Most scenes have no infinite plane, and then the ray need not be copied: 3 % of a plain frame.
+        // Test the infinite planes. Without any, do not copy the ray, which saves 3 % of a plain frame.
         let (shorter, plane) = match self.scene.world.planes.as_slice() {
             [] => (None, None),
             _ => self.closest_plane(ray, tally),
         };
         let ray = shorter.as_ref().unwrap_or(ray);
+        // Search the primitives in front of the closest plane, with the cache if there is one.
         let (structure, savings) = (&self.scene.structure, self.scene.savings);
         let mut notes = Notes::for_closest_hit();
         let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut notes);
@@ -92,10 +95,12 @@ impl<F: StudentFunctions> Intersector<F> {
             let mut last = None;
             return rays.iter().map(|ray| self.closest_hit(ray, tally, &mut last)).collect();
         };
+        // Shorten each ray to its closest plane.
         let shortened: Vec<(Option<Ray>, Option<Hit>)> =
             rays.iter().map(|ray| self.closest_plane(ray, tally)).collect();
         let rays: Vec<Ray> =
             rays.iter().zip(&shortened).map(|(ray, (shorter, _))| shorter.unwrap_or(*ray)).collect();
+        // Search the hierarchy with all rays at once.
         let mut notes = Notes::for_closest_hit();
         let mut probe = PacketProbe(SceneProbe::<F, T>::new(&self.scene, first, tally, &mut notes));
         let found = F::packet_search(bvh, &mut probe, &rays);
@@ -108,7 +113,7 @@ impl<F: StudentFunctions> Intersector<F> {
         self.accelerator == Some(Accelerator::PacketBvh)
     }
 
-    /// Whether `ray` hits anything for `t_min < t < t_max`, which is what a shadow ray asks.
+    /// Whether `ray` hits anything for `t_min < t < t_max` (occlusion of a shadow ray).
     #[inline(always)]
     pub fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
         let in_plane = self.scene.world.planes.iter().any(|plane| {
@@ -130,7 +135,7 @@ impl<F: StudentFunctions> Intersector<F> {
             let plane = plane_at::<F>(plane, ray.time).0;
             if let Some(t) = F::plane(&ray, plane.point, plane.normal) {
                 closest = Some(Hit { t, target: Target::Plane(index), detail: Detail::None });
-                // Without a search later shapes cover earlier ones, near or far.
+                // Shorten the ray, except without a search: then later shapes cover earlier ones.
                 if self.accelerator.is_some() {
                     ray.t_max = t;
                 }

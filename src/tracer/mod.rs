@@ -86,17 +86,19 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 }
 
-/// Calls `work` with the functions that are written. Where it reaches a `todo!` all the same, it starts again
-/// without that function; returns a note for each of those.
+/// Calls `work` with the functions that are written. If `work` reaches a `todo!` anyway, calls it again without
+/// that function. Returns the result and a note for each such function.
 fn with_what_is_written<F: StudentFunctions, R>(work: impl Fn(&Written<F>) -> R) -> (R, Vec<String>) {
     let mut written = Written::all();
     let mut notes = Vec::new();
     loop {
+        // Run the work, and return if no student function panics.
         take_unwound();
         let error = match kit_error::catch(|| work(&written)) {
             Ok(result) => return (result, notes),
             Err(error) => error,
         };
+        // Leave out an unfinished function, and pass any other panic on.
         match (&error, take_unwound()) {
             (KitError::NotWritten { task, place }, Some(function)) if written.leave_out(function) => {
                 notes.push(format!("{function} is left out, because it is not finished: {place}: {task}"));
@@ -111,9 +113,11 @@ fn render<F: StudentFunctions>(
     written: &Written<F>,
     watch: &dyn Watch,
 ) -> Option<Rendering> {
+    // Build the acceleration structures.
     let started = Instant::now();
     let frame = Frame::new(job, written, watch);
     let build_seconds = started.elapsed().as_secs_f64();
+    // Render the pixels, with or without counts.
     let started = Instant::now();
     let (film, counts) =
         if job.count { pixels::<F, Counts>(&frame, watch)? } else { pixels::<F, Uncounted>(&frame, watch)? };
@@ -130,9 +134,11 @@ fn render<F: StudentFunctions>(
     })
 }
 
+/// Renders all pixels of a frame; `None` if `watch` cancelled it.
 fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch) -> Option<(Film, Counts)> {
     let (settings, packets) = (frame.settings(), frame.intersector.takes_batches());
     let radiance = |sample: &CameraSample, scratch: &mut Scratch<T>| {
+        // Find the closest hit of the camera ray.
         scratch.note(Event::Primary);
         let before = (frame.job.view == View::Work).then(|| scratch.counts());
         let ray = frame.camera.ray(sample);
@@ -142,6 +148,7 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
         } else {
             frame.closest_hit(&ray, scratch)
         };
+        // Compute what the pixel shows: normals, light or work.
         let path = Path::from_camera(ray, sample.points);
         let mut color = match frame.plan.view {
             View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
@@ -164,9 +171,11 @@ fn work(before: &Counts, after: &Counts) -> Vec3 {
 }
 
 fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: u32) -> Vec<TracedRay> {
+    // Make the camera ray of the first sample.
     let frame = Frame::new(job, written, &Unwatched);
     let sample = CameraSample::draw(&frame.settings(), x, y, 0);
     let path = Path::from_camera(frame.camera.ray(&sample), sample.points);
+    // Follow it as a frame does, and record all rays.
     let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
     let mut scratch = Scratch::<Uncounted>::default();
     let hit = frame.closest_hit(&path.ray, &mut scratch);
@@ -182,13 +191,16 @@ fn first_hits<F: StudentFunctions>(
     written: &Written<F>,
     rays: &[Ray],
 ) -> Vec<Option<PrimitiveHit>> {
+    // Build the structure of the scene's quality over the plain world.
     let plan = Plan::new(job, written);
     let intersector = Intersector::<F>::new(World::plain(&job.scene), &plan, &job.scene.quality);
     let n_primitives = intersector.scene.world.primitives.len() as u32;
+    // Number the planes after the primitives.
     let primitive_of = |hit: Hit| match hit.target {
         Target::Plane(index) => PrimitiveHit { t: hit.t, primitive: n_primitives + index },
         Target::Primitive(primitive) | Target::Instance(primitive, _) => PrimitiveHit { t: hit.t, primitive },
     };
+    // Search in packets, as for camera rays.
     let hits = rays.chunks(PACKET).flat_map(|rays| intersector.closest_hits(rays, &mut Uncounted));
     hits.map(|hit| hit.map(primitive_of)).collect()
 }

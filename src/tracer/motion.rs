@@ -25,7 +25,7 @@ fn moved<F: StudentFunctions>(start: &Geometry, end: &Geometry, time: f32) -> Ge
         (Geometry::Triangle(start), Geometry::Triangle(end)) => {
             Geometry::Triangle(triangle_at::<F>(start, end, time))
         }
-        _ => *start, // A primitive keeps its kind, and solids stand still.
+        _ => *start, // a primitive does not change its kind, and solids do not move
     }
 }
 

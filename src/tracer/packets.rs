@@ -35,16 +35,19 @@ impl Packets {
         intersector: &Intersector<F>,
         tally: &mut T,
     ) -> Option<Hit> {
+        // Return the hit if another sample of the block has traced this ray.
         let place = (sample.column, sample.row, sample.sample);
         if let Some(hit) = self.hits.remove(&place) {
             return hit;
         }
+        // Make the camera rays of all pixels of the block that lie on the film.
         let (left, top) = (sample.column - sample.column % BLOCK.0, sample.row - sample.row % BLOCK.1);
         let (right, bottom) = (settings.width.min(left + BLOCK.0), settings.height.min(top + BLOCK.1));
         let pixels = (top..bottom).flat_map(|row| (left..right).map(move |column| (column, row)));
         let samples: Vec<CameraSample> =
             pixels.map(|(column, row)| CameraSample::draw(settings, column, row, sample.sample)).collect();
         let rays: Vec<Ray> = samples.iter().map(|sample| camera.ray(sample)).collect();
+        // Trace them as one packet, and store their hits.
         let hits = intersector.closest_hits(&rays, tally);
         self.hits.extend(samples.iter().zip(hits).map(|(s, hit)| ((s.column, s.row, s.sample), hit)));
         self.hits.remove(&place).flatten()

@@ -78,14 +78,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
     ) -> Vec3 {
         let mut color = Vec3::ZERO;
         loop {
-            // Add the light from where the path ends, and find the rays that go on from there.
+            // Add the light from the end of the path, and queue its secondary rays.
             if let Some(hit) = hit {
                 color += path.weight * self.light_from(&path, &hit, scratch, record);
             } else {
                 record.miss(&path);
                 color += path.weight * self.job.scene.background;
             }
-            // Follow the ray that was added last.
+            // Continue with the ray that was queued last.
             let Some(next) = scratch.waiting.pop() else { return color };
             path = next;
             hit = self.closest_hit(&path.ray, scratch);
@@ -108,14 +108,17 @@ impl<F: StudentFunctions> Frame<'_, F> {
         scratch: &mut Scratch<T>,
         record: &mut impl Record,
     ) -> Vec3 {
+        // Compute the surface interaction and its material.
         scratch.note(Event::Hit);
         let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
         let number = record.hit(path, hit.t, at.material);
         let material = self.material(&path.ray, hit, &at, &mut scratch.tally);
+        // Shade the point with direct light, tracing shadow rays.
         self.sample_lights(path, &at, scratch);
         let color = self.shade(path, &at, &material, scratch, |ray, blocked| {
             record.shadow(path, number, ray, blocked);
         });
+        // Queue the secondary rays.
         self.scatter(path, number, &at, &material, scratch);
         color
     }
@@ -135,6 +138,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             Some(texture) if self.plan.effects.materials[at.material].texture => &world.textures[texture],
             _ => return Cow::Borrowed(material),
         };
+        // Look up the colour of the image at the hit.
         tally.note(Event::TextureRead);
         let uv = texture_coordinates::<F>(world, self.looks.tests, ray, hit, at.surface.point);
         let color = F::texture_color(image, uv);
@@ -151,6 +155,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         for &index in &effects.materials[at.material].lights {
             let (light, takes) = (&self.intersector.scene.world.lights[index], effects.lights[index]);
             match area_of(light) {
+                // Sample random points of an area light.
                 Some(shape) if takes.area => {
                     for part in 0..takes.samples {
                         scratch.note(Event::RandomNumber);
@@ -160,6 +165,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                         scratch.lights.push(sample_area_light::<F>(light, &at.surface, &path.points, parts));
                     }
                 }
+                // Sample the centre of any other light.
                 _ if takes.samples > 0 => scratch.lights.push(light.sample_center(at.surface.point)),
                 _ => {}
             }
@@ -208,6 +214,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         if !(takes.mirror || takes.transmission) {
             return;
         }
+        // Let the student's `scatter` choose the ideal secondary rays and their weights.
         let direction = path.ray.direction.normalize();
         let normal = at.surface.shading_normal;
         let (weight, depth) = (path.weight, path.depth);
@@ -218,6 +225,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
                 Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
             };
+            // Spread each ideal ray over the glossy lobe, and queue the rays.
             for part in 0..parts {
                 scratch.note(event);
                 let child = if takes.glossy {

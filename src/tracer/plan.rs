@@ -39,9 +39,10 @@ impl Plan {
     pub fn new<F: StudentFunctions>(job: &RenderJob, written: &Written<F>) -> Plan {
         let scene = &job.scene;
         let mut notes = Vec::new();
-        // Without stage 7 the picture is the same and costs more.
+        // Without stage 7, assume that the scene needs every effect: the picture is the same and costs more.
         let effects =
             if written.has(Function::effects) { F::effects(scene) } else { Effects::everything(scene) };
+        // Choose what replaces functions that are not written.
         let mut plan = Plan {
             accelerator: choose_accelerator(&scene.quality, written, &mut notes),
             tests: choose_tests(&scene.quality, written, &mut notes),
@@ -54,6 +55,7 @@ impl Plan {
             effects,
             notes,
         };
+        // Leave out effects and shapes whose functions are not written, and note that.
         plan.leave_out_shapes(scene, written);
         plan.leave_out_normals(scene, written);
         plan.leave_out_mirrors(scene, written);
@@ -130,7 +132,7 @@ impl Plan {
         let wanted = |m: &Material| m.mirror != Vec3::ZERO || m.transmission != Vec3::ZERO;
         self.note_if(
             scene.materials.iter().any(wanted),
-            "mirrors and glass send no ray on: stage 5 is not written yet",
+            "mirrors and glass spawn no secondary rays: stage 5 is not written yet",
         );
         for material in &mut self.effects.materials {
             (material.mirror, material.transmission, material.glossy) = (false, false, false);
@@ -146,7 +148,8 @@ impl Plan {
         );
         self.note_if(
             quality.sampler == Sampler::Gaussian && !self.weights,
-            "all samples of a pixel count alike: `filter_pixel` and `gaussian_weight` of stage 6 are not written yet",
+            "all samples of a pixel have the same weight: `filter_pixel` and `gaussian_weight` of stage 6 \
+             are not written yet",
         );
         let jittered = written.has(Function::jittered);
         if !(jittered && written.has_all(&[Function::sample_disk, Function::lens_ray])) {
@@ -159,7 +162,7 @@ impl Plan {
             let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
             self.note_if(
                 scene.lights.iter().any(area) && quality.light_samples > 0,
-                "area lights shine from their middle: stage 6 is not written yet",
+                "area lights shine from their centre: stage 6 is not written yet",
             );
             for light in &mut self.effects.lights {
                 (light.samples, light.area) = (light.samples.min(1), false);
@@ -167,7 +170,7 @@ impl Plan {
         }
         if !(jittered && written.has(Function::sample_phong_lobe)) {
             let glossy = self.effects.materials.iter().any(|m| m.glossy && (m.mirror || m.transmission));
-            self.note_if(glossy, "rough mirrors and glass are sharp: stage 6 is not written yet");
+            self.note_if(glossy, "glossy reflection and refraction are sharp: stage 6 is not written yet");
             for material in &mut self.effects.materials {
                 material.glossy = false;
             }
@@ -177,7 +180,7 @@ impl Plan {
         if !written.has_all(&motion) {
             self.note_if(
                 scene.shown().iter().any(|shown| shown.moves),
-                "what moves stands still: stage 6 is not written yet",
+                "moving shapes stand still: stage 6 is not written yet",
             );
             self.effects.motion = false;
         }
@@ -204,7 +207,7 @@ impl Plan {
         );
         self.note_if(
             self.world.subdivide.is_none() && scene.meshes.iter().any(|mesh| mesh.subdivisions > 0),
-            "meshes are as coarse as their files: `loop_subdivide` of stage 8 is not written yet",
+            "meshes are not subdivided: `loop_subdivide` of stage 8 is not written yet",
         );
         self.note_if(
             self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
@@ -232,7 +235,7 @@ fn choose_view<F: StudentFunctions>(wanted: View, written: &Written<F>, notes: &
     wanted
 }
 
-/// The tests that the scene asks for, as far as they are written.
+/// The tests that the scene requests, as far as they are written.
 fn choose_tests<F: StudentFunctions>(
     quality: &Quality,
     written: &Written<F>,
@@ -246,6 +249,7 @@ fn choose_tests<F: StudentFunctions>(
     if quality.precision == Precision::Single {
         return single;
     }
+    // Double precision needs both tests; without one, fall back to single precision.
     let triangles = written.has(Function::triangle_in_double);
     let missing = match (triangles, written.has(Function::sphere_in_double)) {
         (true, true) => return ShapeTests::InDouble,
@@ -257,12 +261,13 @@ fn choose_tests<F: StudentFunctions>(
     single
 }
 
-/// The structure that the scene asks for, as far as it is written.
+/// The structure that the scene requests, or the best one whose functions are written.
 fn choose_accelerator<F: StudentFunctions>(
     quality: &Quality,
     written: &Written<F>,
     notes: &mut Vec<String>,
 ) -> Option<Accelerator> {
+    // Use the structure of the scene, or else a hierarchy.
     let wanted = quality.accelerator;
     if wanted != Accelerator::BruteForce {
         if written.has_all(HIERARCHY) {
@@ -271,11 +276,12 @@ fn choose_accelerator<F: StudentFunctions>(
                 return Some(wanted);
             }
             let name = wanted.name();
-            notes.push(format!("a hierarchy stands in for `{name}`: stage {stage} is not written yet"));
+            notes.push(format!("a hierarchy replaces `{name}`: stage {stage} is not written yet"));
             return Some(Accelerator::Bvh);
         }
         notes.push("every ray tests every primitive: stage 3 is not written yet".into());
     }
+    // Without stage 3, test every primitive; without stage 2, paint the shapes in their order.
     if written.has(Function::brute_force) {
         return Some(Accelerator::BruteForce);
     }

@@ -134,6 +134,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         let mesh = instance.shared_mesh as usize;
         let (structure, primitives) =
             (&self.scene.mesh_structures[mesh], &self.world.shared_meshes[mesh].primitives);
+        // Search the shared mesh with a probe and notes of its own.
         let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
         let mut probe =
             SceneProbe::<F, T>::over(self.scene, structure, primitives, &ray, self.tally, &mut notes);
@@ -142,6 +143,7 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             return hit.then_some(ray.t_min.next_up());
         }
         let hit = structure.closest_hit::<F, _>(&mut probe, &ray, self.scene.savings)?;
+        // Keep the inner hit if it is the closest so far; of two at the same `t` the smaller index wins.
         if self.notes.instance.is_none_or(|(best, ..)| (hit.t, index) < (best.t, best.primitive)) {
             let at = PrimitiveHit { t: hit.t, primitive: index };
             self.notes.instance = Some((at, hit.primitive, notes.detail(hit.primitive)));
@@ -167,7 +169,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             return Hit { t, target: Target::Primitive(primitive), detail: self.notes.detail(primitive) };
         };
         if self.notes.instance.is_none_or(|(best, ..)| best.primitive != primitive) {
-            // A search may prefer another hit than the closest; then that instance is asked again.
+            // Test this instance again if the notes are about another one: a search may return a hit that is not the
+            // closest.
             self.notes.instance = None;
             let _ = self.test(primitive, ray);
         }
@@ -232,7 +235,7 @@ pub struct PacketProbe<'a, F, T>(pub SceneProbe<'a, F, T>);
 impl<F: StudentFunctions, T: Tally> PacketProbe<'_, F, T> {
     /// The complete hit for `found`, the result of the search for `ray`, one ray of the packet.
     pub fn hit_of(&mut self, found: PrimitiveHit, ray: &Ray) -> Hit {
-        // The notes are about whichever ray came last.
+        // Test the primitive again, because the notes are about the last ray of the packet.
         *self.0.notes = Notes::for_closest_hit();
         self.0.hit_of(found, ray)
     }

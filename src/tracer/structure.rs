@@ -282,7 +282,7 @@ fn around(bounds: &[Aabb]) -> Aabb {
 /// A bounding box for each node of a graph, around its primitives and all nodes below.
 fn boxes<F: StudentFunctions>(graph: &Graph, bounds: &[Aabb]) -> Vec<Aabb> {
     let mut boxes = vec![Aabb::EMPTY; graph.nodes.len()];
-    // Children have higher numbers than their parents.
+    // Children have larger indices than their parents, so go through the nodes backwards.
     for (index, node) in graph.nodes.iter().enumerate().rev() {
         let own = node.primitives.iter().map(|&primitive| bounds[primitive as usize]);
         let below = node.children.iter().map(|&child| boxes[child as usize]);

@@ -69,7 +69,7 @@ impl Light {
 /// The distance along the unit vector `direction` to the sphere: to its near side from outside, to its far
 /// side from inside. A direction that just misses the sphere by a rounding error counts as touching it.
 fn distance_to_sphere(sphere: &Sphere, direction: Vec3, point: Vec3) -> f32 {
-    // In double precision: 24 bits do not hold the square of a small radius beside that of a long way.
+    // Use double precision, because 24 bits cannot hold the square of a small radius beside that of a long distance.
     let (to_center, direction) = (sphere.center.as_dvec3() - point.as_dvec3(), direction.as_dvec3());
     let radius = f64::from(sphere.radius);
     let middle = to_center.dot(direction);

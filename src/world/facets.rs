@@ -45,13 +45,13 @@ pub(super) fn polygon(corners: &[Vec3]) -> Vec<Facet> {
 
 /// A box as twelve triangles, with the whole image on each face.
 pub(super) fn cuboid(cuboid: &Cuboid) -> Vec<Facet> {
-    // Corner number i takes x from bit 0, y from bit 1 and z from bit 2; each face runs anticlockwise from outside.
+    // Bits 0, 1 and 2 of a corner's number select `max` along x, y and z; faces run anticlockwise, seen from outside.
     let corner = |i: usize| {
         let pick =
             |bit: usize, axis: usize| if i >> bit & 1 == 1 { cuboid.max[axis] } else { cuboid.min[axis] };
         Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
     };
-    // Each begins with the lower left corner of its image.
+    // Each face begins with the lower left corner of its image.
     let faces = [[1, 0, 2, 3], [4, 5, 7, 6], [0, 1, 5, 4], [6, 7, 3, 2], [0, 4, 6, 2], [5, 1, 3, 7]];
     let image = [vec2(0.0, 0.0), vec2(1.0, 0.0), vec2(1.0, 1.0), vec2(0.0, 1.0)];
     let half = |face: [usize; 4], [i, j, k]: [usize; 3]| Facet {
@@ -103,7 +103,7 @@ pub(super) fn cone(cone: &Cone) -> Vec<Facet> {
     let height = axis.length();
     let mut facets = cap(cone.base, -axis, cone.radius);
     for side in circle(axis).windows(2) {
-        // The side leans outwards by radius over height.
+        // The slope of the side is radius over height.
         let normal = |out: Vec3| (height * out + cone.radius * axis / height).normalize();
         let corners = [cone.base + cone.radius * side[0], cone.base + cone.radius * side[1], cone.apex];
         let normals = [normal(side[0]), normal(side[1]), normal(0.5 * (side[0] + side[1]))];
@@ -119,9 +119,9 @@ pub(super) fn sphere(sphere: &Sphere) -> Vec<Facet> {
     let directions: Vec<Vec<Vec3>> = (0..=rings)
         .map(|ring| {
             let (sin, cos) = (TAU / 2.0 * ring as f32 / rings as f32).sin_cos();
-            // The poles are one point each, so that no crack opens there.
+            // Make each pole a single point, so that there is no gap.
             let sin = if ring % rings == 0 { 0.0 } else { sin };
-            // From -z by -x, +z and +x: as an image wraps around, seen from outside.
+            // Go around from -z over -x, +z and +x, as an image wraps around, seen from outside.
             let meridian = |i: usize| {
                 let (sin, cos) = (TAU * (i % AROUND) as f32 / AROUND as f32).sin_cos();
                 Vec3::new(-sin, 0.0, -cos)

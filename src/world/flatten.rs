@@ -24,7 +24,7 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
         scene,
         effects,
         functions,
-        // What does not move while the shutter is open stands where it is when it opens.
+        // Without motion blur, nodes stand where they are when the shutter opens.
         still_at: scene.camera.shutter.map_or(0.0, |shutter| shutter.open),
         path: Vec::new(),
         world: World {
@@ -32,7 +32,7 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
             lights: scene.lights.clone(),
             textures: scene.textures.clone(),
             notes: what_is_not_simulated(scene),
-            // The root of the graph holds the roots of the scene, which may be several.
+            // The graph has one root, above all roots of the scene.
             graph: searched.then(|| Graph { nodes: vec![GraphNode::default()] }),
             ..World::default()
         },
@@ -126,7 +126,7 @@ impl Flattener<'_> {
                 self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
             }
             Shape::Mesh(_) | Shape::Bezier { .. } => {
-                // None for a patch without the exercise that gives its points.
+                // `None` for a Bézier patch if `bezier_point` is not written.
                 if let Some(ready) = ready {
                     self.mesh(ready, way, material);
                 }
@@ -179,7 +179,8 @@ impl Flattener<'_> {
         let ends = way.end.map(|end| (at(&end), at(&blend(&way.start, &end, 0.5))));
         let (start, end) = match (start, ends) {
             (Some(start), None) => (start, None),
-            // A turning sphere would shrink on its way, since matrices are blended entry by entry.
+            // Keep a moving sphere only if its radius changes linearly: rotations shrink it, because matrices
+            // are blended entry by entry.
             (Some(start), Some((Some(end), Some(half))))
                 if (2.0 * half.radius - start.radius - end.radius).abs() <= 1e-5 * half.radius =>
             {
@@ -206,7 +207,7 @@ impl Flattener<'_> {
         let corners = |to_world: &Affine3A| {
             let a = to_world.transform_point3(plane.point);
             let [b, c] = [u, v].map(|axis| a + to_world.transform_vector3(axis));
-            // A mirroring transform would turn the plane inside out.
+            // Exchange two corners if the transform is a reflection, which would flip the plane.
             let mirrored = to_world.matrix3.determinant() < 0.0;
             if mirrored { Triangle { a, b: c, c: b } } else { Triangle { a, b, c } }
         };
@@ -227,8 +228,8 @@ impl Flattener<'_> {
         }
     }
 
-    /// Adds a mesh. A mesh with several places is kept once, if it can be placed; otherwise its triangles are
-    /// copied.
+    /// Adds an instance of a mesh. A mesh with several instances is shared, if it can be placed; otherwise its
+    /// triangles are copied.
     fn mesh(&mut self, ready: &mut Ready, way: &Way, material: u32) {
         if let Some(placement) = self.placement(way).filter(|_| ready.shared) {
             let shared_mesh = ready.shared_mesh.unwrap_or_else(|| self.shared_mesh(ready));
@@ -249,15 +250,15 @@ impl Flattener<'_> {
     /// Notes that a mesh is left out, because its copies would exceed [`MOST_PRIMITIVES`].
     fn leave_out_copies(&mut self) {
         let note = format!(
-            "meshes are left out: copied for each of their places they come to more than {MOST_PRIMITIVES} triangles, \
-             and only stage 8 keeps one for all"
+            "meshes are left out: copied for each instance they have more than {MOST_PRIMITIVES} triangles, \
+             and only stage 8 shares one mesh"
         );
         if !self.world.notes.contains(&note) {
             self.world.notes.push(note);
         }
     }
 
-    /// Keeps the triangles of a mesh in its own space; returns the index of the shared mesh.
+    /// Adds a shared mesh with the triangles of a mesh in its own space, and returns its index.
     fn shared_mesh(&mut self, ready: &Ready) -> u32 {
         let here = Way::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
@@ -271,7 +272,7 @@ impl Flattener<'_> {
 
     fn triangle(&mut self, facet: &Facet, way: &Way, material: u32) -> Primitive {
         let reads_image = self.reads_image(material);
-        // A mirror would turn the inside out: corners in the other order turn it back.
+        // Exchange two corners if the transform is a reflection, which would turn the inside out.
         let mirrored = way.start.matrix3.determinant() < 0.0;
         let facet = &if mirrored { facet.turned() } else { *facet };
         let world = &mut self.world;
@@ -279,6 +280,7 @@ impl Flattener<'_> {
             let [a, b, c] = facet.corners.map(|corner| to_world.transform_point3(corner));
             Geometry::Triangle(Triangle { a, b, c })
         };
+        // Transform the vertex normals, for time 1 as well if the triangle moves.
         let mut normals = Slot::NONE;
         if let Some(own) = facet.normals {
             let carried = |to_world: &Affine3A| {

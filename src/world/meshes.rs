@@ -1,5 +1,5 @@
 //! Meshes before they are placed: subdivided, with their normals, and Bézier patches made of triangles. The
-//! number of places of each mesh is counted here as well.
+//! number of instances of each mesh is counted here as well.
 
 use super::WorldFunctions;
 use super::facets::Facet;
@@ -113,7 +113,7 @@ fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> 
     }
 }
 
-/// The number of places of each node and of each mesh in the scene.
+/// The number of instances of each node and of each mesh in the scene.
 struct Places {
     of_nodes: Vec<u64>,
     of_meshes: Vec<u64>,
@@ -121,6 +121,7 @@ struct Places {
 
 impl Places {
     fn count(scene: &Scene) -> Places {
+        // Go down from the roots: a child has an instance for each instance of each of its parents.
         let mut of_nodes = vec![0u64; scene.nodes.len()];
         for index in parents_first(scene) {
             if scene.roots.contains(&index) {
@@ -130,6 +131,7 @@ impl Places {
                 of_nodes[child] += of_nodes[index];
             }
         }
+        // Add up the instances of the nodes that show each mesh.
         let mut of_meshes = vec![0; scene.meshes.len()];
         for (node, places) in scene.nodes.iter().zip(&of_nodes) {
             if let Some(Shape::Mesh(mesh)) = node.shape {

@@ -58,7 +58,7 @@ impl SolidShape {
             SolidShape::Polygon(polygon) => Shape::Polygon(polygon),
         };
         let bounds = shape.bounds(&[]).unwrap_or(Aabb::EMPTY);
-        // A radius times a root, added to a coordinate: three roundings, and one to spare.
+        // Enlarge by four roundings: three for a radius times a root plus a coordinate, and one in reserve.
         let room = 2.0 * f32::EPSILON * bounds.min.abs().max(bounds.max.abs());
         Aabb::new(bounds.min - room, bounds.max + room)
     }

@@ -7,7 +7,7 @@ use glam::{Affine3A, Mat3A, Vec3};
 /// viewer who looks along -z.
 pub(super) fn plane_axes(normal: Vec3) -> (Vec3, Vec3) {
     let normal = normal.normalize();
-    // Any axis far from the normal will do; x for floors and ceilings, y for walls.
+    // Start from an axis far from the normal: x for floors and ceilings, y for walls.
     let u = if normal.y.abs() > 0.5 { Vec3::X } else { Vec3::Y.cross(normal).normalize() };
     let u = (u - u.dot(normal) * normal).normalize();
     (u, normal.cross(u))
@@ -24,7 +24,7 @@ pub(super) fn normal_matrix(to_world: &Affine3A) -> Mat3A {
 pub(super) fn uniform_scale(to_world: &Affine3A) -> Option<f32> {
     let gram = to_world.matrix3.transpose() * to_world.matrix3;
     let squared = gram.x_axis.x;
-    // Each entry of the product sums three rounded products: 1e-5 leaves room for rotations and for nothing visible.
+    // Each entry is a sum of three rounded products: 1e-5 accepts rounded rotations and excludes visible stretching.
     let alike = (gram - Mat3A::from_diagonal(Vec3::splat(squared))).to_cols_array();
     alike.iter().all(|entry| entry.abs() <= 1e-5 * squared).then(|| squared.sqrt())
 }

@@ -1,8 +1,9 @@
-//! How well the statistical checks of stage 6 judge: each runs with many seeds on the reference, which it may reject once
-//! in 10 million tests, and on wrong distributions, each of which it must reject with 99 % of the seeds.
+//! Calibrates the statistical checks of stage 6. Each check runs with many seeds on the reference, which it
+//! may reject once in 10 million tests, and on wrong distributions, each of which it must reject with 99 % of
+//! the seeds.
 //!
-//! 20 seeds by default, 1,000 with `CI_LONG=1`. The table: `CI_LONG=1 cargo test -p solutions --test suite --
-//! calibration --nocapture`.
+//! It uses 20 seeds by default and 1,000 with `CI_LONG=1`. To print the table: `CI_LONG=1 cargo test -p
+//! solutions --test suite -- calibration --nocapture`.
 
 use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
@@ -12,12 +13,12 @@ use raykata::kit::{Answer, Door, Kit, PhongLobeQuery, Request, SphereSampleQuery
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
-/// How many seeds are tried.
+/// The number of seeds.
 fn seeds() -> u64 {
     if std::env::var_os("CI_LONG").is_some() { 1000 } else { 20 }
 }
 
-/// The percentage of seeds with which a wrong distribution must be caught.
+/// The percentage of seeds with which a wrong distribution must be rejected.
 const CAUGHT: u64 = 99;
 
 /// The statistical checks, and how many chi-square and t-tests each makes.
@@ -35,7 +36,7 @@ const STATISTICAL: [(&str, u32); 11] = [
     ("times_are_even", 1),
 ];
 
-/// The reference, but for one answer.
+/// The reference, except for the answers of one function.
 struct Twisted(fn(&Request) -> Option<Answer>);
 
 impl Transport for Twisted {
@@ -59,7 +60,7 @@ fn rejections(check: &'static Check, kit: &(dyn Kit + Sync)) -> usize {
     })
 }
 
-/// The most that all tests together may cost right submissions: for one in 100,000 anything at all.
+/// The highest probability that any test rejects a correct submission: one in 100,000.
 const UNFAIR: f64 = 1e-5;
 
 #[test]
@@ -75,11 +76,11 @@ fn the_reference_is_rejected_as_rarely_as_stated() {
     }
     let expected = tests as f64 * FALSE_ALARMS;
     println!("{alarms} false alarms in {tests} tests; stated: {expected:.1}");
-    // Poisson: above its mean by four standard deviations once in some thousand times.
+    // A Poisson number exceeds its mean by four standard deviations once in some thousand times.
     assert!((alarms as f64) <= expected + 4.0 * expected.sqrt(), "{alarms} false alarms, stated {expected}");
 }
 
-/// A unit vector at this angle to `axis`, turned around it by `turn` of a circle.
+/// A unit vector at the angle with cosine `cosine` to `axis`, turned around it by the fraction `turn` of a circle.
 fn around(axis: Vec3, cosine: f32, turn: f32) -> Vec3 {
     let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
     let (x, y) = axis.any_orthonormal_pair();
@@ -130,7 +131,7 @@ fn sphere(request: &Request, cosine: fn(sin_rim: f32, u: f32) -> f32) -> Option<
     })))
 }
 
-/// Directions off a rough mirror from its roughness and a random number.
+/// Directions of glossy reflection from the roughness and a random number.
 fn lobe(request: &Request, cosine: fn(roughness: f32, u: f32) -> f32) -> Option<Answer> {
     let Request::SamplePhongLobe(queries) = request else { return None };
     Some(Answer::SamplePhongLobe(each(queries, |PhongLobeQuery { ideal, roughness, u, .. }| {
@@ -153,7 +154,7 @@ fn times(request: &Request, place: fn(f32) -> f32) -> Option<Answer> {
     })))
 }
 
-/// What is wrong, the check that has to see it, and the answers.
+/// The mistake, the check that must reject it, and the wrong answers.
 type Wrong = (&'static str, &'static str, fn(&Request) -> Option<Answer>);
 
 const WRONG: &[Wrong] = &[

@@ -1,5 +1,6 @@
-//! Whole frames of the reference with many rays where one was: what has no extent changes nothing, what is sharp stays
-//! sharp, half a light makes half a shadow, and whatever moves is found by every search on any number of threads.
+//! Whole frames of the reference with distributed rays: an extent of 0 changes nothing, the focal plane is
+//! sharp, half a visible light gives half the light, and every search finds moving shapes on any number of
+//! threads.
 
 use glam::Vec3;
 use raykata::frame::Unwatched;
@@ -20,10 +21,10 @@ fn job(scene: &Scene, threads: usize) -> RenderJob {
 }
 
 fn render(scene: &Scene) -> Rendering {
-    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job(scene, 1), &Unwatched).expect("not cancelled")
 }
 
-/// Everything that is spread over something, over a floor with tiles.
+/// A scene with every distributed effect, over a floor with tiles.
 fn full(samples: u32) -> Scene {
     scene(&format!(
         r#"
@@ -94,7 +95,7 @@ fn every_search_finds_what_moves_and_threads_change_nothing() {
         assert!(found.film.not_a_number() == 0 && found.counts.random_numbers > 0);
         for threads in [2, 5] {
             let other =
-                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("nobody cancels");
+                solutions::Kit.door().render(&job(&scene, threads), &Unwatched).expect("not cancelled");
             assert_eq!(
                 (&other.film, other.counts),
                 (&found.film, found.counts),
@@ -126,7 +127,7 @@ fn what_has_no_extent_changes_no_bit() {
     }
 }
 
-/// All first rays of the frame, with many samples' worth of seeds, and where they go `distance` along the view.
+/// The points at `distance` along the view that the camera rays of a pixel reach, for many seeds.
 fn on_plane(scene: &Scene, x: u32, y: u32, distance: f32) -> Vec<Vec3> {
     let place = |seed| {
         let ray = &solutions::Kit.door().trace(&RenderJob { seed, ..job(scene, 1) }, x, y)[0];
@@ -147,9 +148,10 @@ fn what_lies_on_the_focal_plane_is_sharp_for_every_ray_of_the_lens() {
         let places = on_plane(scene, 3, 27, distance);
         places.iter().map(|place| place.distance(places[0])).fold(0.0, f32::max)
     };
-    // Roundings of coordinates up to 6.
+    // The rounding error of coordinates up to 6.
     assert!(spread(&scene, 6.0) < 4e-6, "{}", spread(&scene, 6.0));
-    // At half the distance circles are half as wide as the opening, twice as far away as wide as it is: about 0.2.
+    // At half the focal distance the circle of confusion is half as wide as the aperture, at twice the
+    // distance as wide: about 0.2.
     assert!(spread(&scene, 3.0) > 0.05 && spread(&scene, 12.0) > 0.1);
     if let Some(lens) = &mut scene.camera.lens {
         lens.aperture = 0.0;
@@ -159,7 +161,8 @@ fn what_lies_on_the_focal_plane_is_sharp_for_every_ray_of_the_lens() {
 
 #[test]
 fn half_a_light_makes_half_a_shadow() {
-    // Each pixel sees a point of the floor straight below. A wall hides one half of the light from the middle column.
+    // Each pixel sees a point of the floor straight below. A wall occludes one half of the light for the
+    // middle column.
     let light = |shape: &str| {
         scene(&format!(
             r#"
@@ -198,7 +201,8 @@ shape = {{ polygon = {{ corners = [[0, 5, -90], [90, 5, -90], [90, 5, 90], [0, 5
             scene.nodes.pop();
             scene.roots.pop();
             let lit = render(&scene).film.pixels[0].x;
-            // One sample is off by 1/2 of what is lit, 4,096 random ones by 1/128: four times that.
+            // The standard deviation of one sample is at most 1/2, that of 4,096 random samples 1/128. Allow
+            // four times that.
             assert!((shadowed / lit - 0.5).abs() < 4.0 / 128.0, "{shape}, {sampler:?}: {shadowed} of {lit}");
         }
     }
@@ -206,7 +210,7 @@ shape = {{ polygon = {{ corners = [[0, 5, -90], [90, 5, -90], [90, 5, 90], [0, 5
 
 #[test]
 fn a_moving_edge_is_blurred_evenly_over_the_time() {
-    // A white wall slides over a black background: how long it covers a pixel is how bright the pixel is.
+    // A white wall slides over a black background: a pixel is as bright as the time for which the wall covers it.
     let mut scene = scene(
         r#"
 [film]
@@ -235,7 +239,8 @@ transform_end = [{ translate = [32, 0, 0] }]
         for (column, pixel) in film.pixels.iter().enumerate() {
             // Pixels are 2 wide (16 of them from -16 to 16); the edge passes this one from start to end of 1/16.
             let expected = 1.0 - (column as f32 + 0.5) / 16.0;
-            // Random: a standard deviation of at most 1/128. Four times that, and the Gaussian looks 1.5 pixels around.
+            // Allow four times the standard deviation of random samples, at most 1/128; the Gaussian filter
+            // reaches 1.5 pixels.
             assert!(
                 (pixel.x - expected).abs() < 4.0 / 128.0,
                 "{sampler:?}, column {column}: {pixel} {expected}"
@@ -249,13 +254,13 @@ fn a_shutter_that_does_not_open_shows_the_moment() {
     let mut moving = full(2);
     moving.camera.shutter = Some(raykata::camera::Shutter { open: 0.5, close: 0.5 });
     let found = render(&moving);
-    // What moves stands still in the middle of its way.
+    // Stop the motion: replace each transform by that of time 0.5.
     moving.nodes.iter_mut().for_each(|node| {
         node.transform = node.transform_at(0.5);
         node.transform_end = None;
     });
     let still = render(&moving);
-    // Matrices blended and points blended differ by roundings, which may move a ray past an edge.
+    // Blended matrices and blended points differ by rounding errors, which may move a ray past an edge.
     let off = found.film.pixels.iter().zip(&still.film.pixels).filter(|(a, b)| (**a - **b).length() > 0.02);
     assert!(off.count() * 100 <= found.film.pixels.len());
 }

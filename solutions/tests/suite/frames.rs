@@ -1,5 +1,5 @@
-//! Whole frames of the reference: whatever finds the hits, on however many threads, the picture is the same; nothing
-//! is traced in vain; and no surface shadows itself at any size.
+//! Whole frames of the reference: the picture is the same for every search and any number of threads, no
+//! unnecessary ray is traced, and there is no shadow acne at any size.
 
 use glam::Vec3;
 use raykata::count::Counts;
@@ -16,7 +16,7 @@ fn scene(text: &str) -> Scene {
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };
-    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
 fn render(scene: &Scene) -> Rendering {
@@ -96,7 +96,7 @@ fn all_three_triangle_tests_make_nearly_the_same_picture() {
         let film = picture(method, &mut scene);
         let off =
             film.pixels.iter().zip(&watertight.pixels).filter(|(p, q)| (**p - **q).length() > 0.02).count();
-        // They may disagree about rays that pass within a rounding of an edge: a few of 3,888.
+        // The tests may disagree about rays that pass an edge within rounding error: a few of 3,888.
         assert!(off <= 8, "{method:?}: {off} pixels differ");
     }
 }
@@ -123,7 +123,7 @@ intensity = 0
 shape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }
 "#,
     );
-    // Every pixel sees the floor. One light shines on it, one is below it, one is switched off.
+    // Every pixel sees the floor. One light shines on it, one is below it, one has intensity 0.
     assert_eq!(rays(&render(&scene).counts), (1200, 1200));
 }
 
@@ -151,7 +151,7 @@ shape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}
 [[nodes]]
 shape = {{ box = {{ min = {low}, max = {high} }} }}
 "#,
-        // The light sits just behind the eye, so nothing that is seen lies in shadow.
+        // The light is just behind the camera, so no visible point lies in shadow.
         eye = at(0.3, 0.5, 6.0),
         light = at(0.3, 0.5, 6.1),
         center = at(0.0, 0.0, 0.0),
@@ -174,7 +174,7 @@ fn no_surface_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
         for offset in [0.0, 30.0 * size] {
             let film = render(&scene(&lit_scene(size, offset))).film;
             assert_eq!(film.not_a_number(), 0);
-            // Light and eye are a little apart: along outlines a pixel or two are seen and not lit.
+            // Light and camera are a little apart, so one or two visible pixels along outlines may lie in shadow.
             let dark = dark_pixels(&film);
             assert!(dark <= 6, "size {size}, offset {offset}: {dark} of 2700 pixels are dark");
         }
@@ -231,7 +231,8 @@ fn glass_that_bends_nothing_is_not_seen() {
     let glass = render(&sphere_of("transmission = 1"));
     let off =
         empty.film.pixels.iter().zip(&glass.film.pixels).filter(|(p, q)| (**p - **q).length() > 1e-3).count();
-    // Where the sphere is entered its surface moves the ray by a rounding, which an outline behind it may notice.
+    // At the surface of the sphere the ray is moved by a rounding error, which may change pixels at outlines
+    // behind it.
     assert!(off <= 3, "{off} of 2700 pixels differ");
     assert_eq!(empty.counts.transmission, 0);
     assert!(glass.counts.transmission > 0 && glass.counts.reflection == 0);
@@ -242,7 +243,8 @@ fn a_mirror_traces_one_ray_for_each_ray_that_meets_it() {
     let mirror = render(&sphere_of("mirror = 0.5"));
     let dull = render(&sphere_of("mirror = 0"));
     assert_eq!(dull.counts.reflection, 0);
-    // The sphere is convex: no mirrored ray meets it again, so there are as many as pixels that show it.
+    // No reflected ray hits the convex sphere again, so there are as many reflected rays as pixels that show
+    // the sphere.
     let shown = mirror.film.pixels.iter().zip(&dull.film.pixels).filter(|(p, q)| p != q).count();
     assert_eq!(mirror.counts.reflection, shown as u64);
 }

@@ -1,5 +1,5 @@
-//! Shapes in spaces of their own, in whole frames: one mesh in many places looks like its copies, no shape shadows itself,
-//! mirrors keep the outside outside, and every accelerator makes the same picture.
+//! Shapes in object spaces of their own, in whole frames: instances look like copies, there is no shadow
+//! acne, transforms that reflect keep the outside outside, and every accelerator makes the same picture.
 
 use glam::Vec3;
 use raykata::count::Counts;
@@ -24,7 +24,7 @@ fn file(name: &str, width: u32, height: u32) -> Scene {
 
 fn render(scene: &Scene) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 0, threads: 1, count: true };
-    solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels")
+    solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
 fn by(scene: &Scene, accelerator: Accelerator) -> Rendering {
@@ -59,14 +59,15 @@ fn any_number_of_threads_asks_the_same_questions() {
             let mut scene = scene.clone();
             scene.quality.accelerator = accelerator;
             let job = RenderJob { scene, view: View::Shaded, seed: 0, threads, count: true };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             (frame.film, frame.counts)
         };
         assert_eq!(with(1), with(3), "{accelerator:?}");
     }
 }
 
-/// The share of pixels that differ by more than a hundredth, which no rounding of a shade does: another surface is seen.
+/// The fraction of pixels that differ by more than a hundredth. Rounding cannot do that: such a pixel shows
+/// another surface.
 fn difference(p: &Film, q: &Film) -> f64 {
     let far = |(p, q): &(&Vec3, &Vec3)| (**p - **q).abs().max_element() > 0.01;
     p.pixels.iter().zip(&q.pixels).filter(far).count() as f64 / p.pixels.len() as f64
@@ -82,11 +83,11 @@ fn instances_look_like_copies_and_take_less() {
     assert_eq!(instances.primitives, 226); // 225 vases and the floor
     assert_eq!(copies.primitives, 225 * 1568 + 1);
     let off = difference(&instances.film, &copies.film);
-    // A ray that is carried is rounded and lands on the other side of an edge: in one of 9,000 pixels. A vase out of its
-    // place would change dozens.
+    // A transformed ray is rounded and may hit the other side of an edge, in one of 9,000 pixels. A misplaced
+    // vase would change dozens of pixels.
     assert!(off < 0.001, "{off}");
     let bytes = |frame: &Rendering| frame.bytes_of_parts + frame.structure.map_or(0, |size| size.bytes);
-    // Of 225 copies one is left, and the places: 196 times less.
+    // One mesh and 225 instances take 196 times less memory than 225 copies.
     assert!(150 * bytes(&instances) < bytes(&copies), "{} {}", bytes(&instances), bytes(&copies));
 }
 
@@ -96,11 +97,11 @@ fn a_hundred_thousand_trees_take_the_memory_of_one_and_their_places() {
     let frame = render(&scene);
     assert_eq!(frame.primitives, 100_001); // the trees and the ground
     let bytes = frame.bytes_of_parts + frame.structure.map_or(0, |size| size.bytes);
-    // A node has 40 bytes, and there are at most two for each place; a tree takes half a megabyte.
+    // A node has 40 bytes, and there are at most two nodes per instance; the shared tree takes half a megabyte.
     assert!(bytes < 9_000_000, "{bytes}");
 }
 
-/// One shape, lit from above the camera, in front of nothing: where it is lit at all it must be lit everywhere.
+/// One shape alone, lit from above the camera: every visible point that faces the light must be lit.
 fn lone(shape: &str, steps: &str, size: f32) -> Scene {
     let at = 4.0 * size;
     scene(&format!(
@@ -128,18 +129,19 @@ fn no_placed_shape_shadows_itself_from_a_thousandth_to_a_hundred_thousand() {
             let scene = lone(shape, &steps, size);
             let frame = render(&scene);
             let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
-            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels").film;
+            let normals = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled").film;
             let light = Vec3::new(1.0, 1.1, 0.9).normalize();
             let mut lit = 0;
             for (pixel, normal) in frame.film.pixels.iter().zip(&normals.pixels) {
                 let facing = (2.0 * *normal - 1.0).dot(light);
-                // Convex shapes: what faces the light is lit. A tenth keeps away from the edge of the shadow.
+                // On a convex shape every point that faces the light is lit. Leave out small cosines, at the
+                // edge of the lit side.
                 if *normal != Vec3::ZERO && facing > 0.1 {
                     assert!(pixel.max_element() > 0.0, "{shape} of size {size} shadows itself");
                     lit += 1;
                 }
             }
-            // The polygon has the fewest, 210 at every size; with none this would say nothing.
+            // The polygon has the fewest lit pixels, 210 at every size; with none the test would prove nothing.
             assert!(lit > 200, "{shape} of size {size}: {lit} pixels");
         }
     }
@@ -158,16 +160,16 @@ fn a_mirrored_glass_vase_is_glass_inside() {
         scene.quality.max_depth = 6;
         scene
     };
-    // A cube is its own mirror image, so both pictures must be the same, copied or placed.
+    // A cube is its own mirror image, so both pictures must be the same, for copies and for instances.
     for copies in [false, true] {
         let [plain, mirrored] = ["", "-"].map(|mirror| {
             let mut scene = glass(mirror);
             scene.quality.copies = copies;
             render(&scene)
         });
-        // A change of sign is exact, so no silhouette moves.
+        // A change of sign is exact, so no outline moves.
         assert_eq!(difference(&plain.film, &mirrored.film), 0.0, "copies {copies}");
-        // Two ways through the glass for each pixel of the cube, 1,124: without them both pictures would be empty alike.
+        // Two refracted rays for each pixel of the cube, 1,124 in all, prove that the pictures are not empty.
         assert!(plain.counts.transmission > 1000, "{}", plain.counts.transmission);
     }
 }

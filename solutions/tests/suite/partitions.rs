@@ -14,7 +14,8 @@ use solutions::{
     stage9_kd_tree, stage9_octree,
 };
 
-/// Rays a scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions -- --nocapture` tries more.
+/// The number of rays per scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions --
+/// --nocapture` tests more.
 fn n_rays() -> u64 {
     std::env::var("RAYS").ok().and_then(|n| n.parse().ok()).unwrap_or(1500)
 }
@@ -44,7 +45,7 @@ impl Things {
     }
 }
 
-/// Tests things, in cells or in boxes of a hierarchy.
+/// Tests rays against things, in cells or in boxes of a hierarchy.
 #[derive(Clone, Copy)]
 struct Asked<'a> {
     things: &'a Things,
@@ -83,7 +84,7 @@ impl Probe for Asked<'_> {
     }
 }
 
-/// A soup of triangles and spheres, `size` large and moved to `at`; some on a lattice, so that much touches and coincides.
+/// A soup of triangles and spheres of size `size` around `at`; some lie on a lattice, so that many touch or coincide.
 fn soup(random: &mut Random, n: usize, size: f32, at: Vec3) -> Things {
     let things = (0..n).map(|i| {
         let snap = |p: Vec3| if i % 3 == 0 { (4.0 * p).round() / 4.0 } else { p };
@@ -95,7 +96,7 @@ fn soup(random: &mut Random, n: usize, size: f32, at: Vec3) -> Things {
         }
     });
     let mut things: Vec<Thing> = things.collect();
-    // A room around it, whose walls are the faces of all boxes, and a tile twice.
+    // Add a room around it, whose walls are the faces of all boxes, and one tile twice.
     for axis in 0..3 {
         for side in [-1.25, 1.25] {
             let corner = |u: f32, v: f32| {
@@ -178,8 +179,8 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     }
     let a_ray = |index: usize| visits[index] as f64 / n_rays() as f64;
     println!(
-        "size {size}, {} primitives, {} rays; visits a ray: grid {:.1}, octree by cells {:.1}, octree {:.1}, kd-tree {:.1}, \
-         plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
+        "size {size}, {} primitives, {} rays; visits per ray: grid {:.1}, octree by cells {:.1}, octree \
+         {:.1}, kd-tree {:.1}, plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
         boxes.len(),
         n_rays(),
         a_ray(0),
@@ -196,11 +197,11 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     );
 }
 
-/// Counts the visits that a search of a kd-tree would save if it knew no rounding: to cells that the ray passes by, or
-/// enters beyond the best hit so far.
+/// Counts the visits that a search of a kd-tree would save without its margin for rounding errors: to cells
+/// that the ray misses, or enters beyond the closest hit so far.
 struct Saved<'a> {
     asked: Asked<'a>,
-    /// Where the ray enters each node, if it does.
+    /// The `t` at which the ray enters each node, if it does.
     entries: Vec<Option<f64>>,
     best: f64,
     saved: u64,
@@ -218,7 +219,7 @@ impl Cells for Saved<'_> {
     }
 }
 
-/// Where the ray enters the cell, without any room for rounding.
+/// The `t` at which the ray enters the cell, without a margin for rounding errors.
 fn entry(ray: &Ray, cell: &Cell) -> Option<f64> {
     let mut part = (f64::from(ray.t_min), f64::from(ray.t_max));
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
@@ -251,8 +252,8 @@ fn room_for_rounding_costs_next_to_no_visits() {
         visits += probe.asked.visits;
         saved += probe.saved;
     }
-    println!("{n} rays; {visits} visits, {saved} for the room");
-    // About one ray in 10,000; so few are counted here that a few more may be chance.
+    println!("{n} rays; {visits} visits, {saved} because of the margin");
+    // The margin costs about one visit per 10,000 rays. The bound is higher, because so few are counted here.
     assert!(2000 * saved <= n, "{saved} of {visits} visits");
 }
 

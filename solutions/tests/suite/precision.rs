@@ -1,4 +1,4 @@
-//! `precision = "double"` in whole frames: the same picture where nothing is hard, and the right one where it is.
+//! `precision = "double"` in whole frames: the same picture in easy scenes, and the correct one in hard scenes.
 
 use glam::{Vec3, vec3};
 use oracle::exact::{Body, verdict};
@@ -19,12 +19,12 @@ fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();
     scene.quality.precision = precision;
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 1, count: true };
-    let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     assert!(frame.notes.is_empty(), "{:?}", frame.notes);
     frame
 }
 
-/// What every ray asks, and what it costs.
+/// The counts of rays and of tests.
 fn work(counts: &Counts) -> [u64; 5] {
     [counts.rays(), counts.hits, counts.node_visits, counts.box_tests, counts.primitive_tests]
 }
@@ -38,7 +38,7 @@ fn more_digits_move_few_pixels_and_hardly_any_count() {
         for method in [TriangleMethod::Watertight, TriangleMethod::Cramer, TriangleMethod::Gram] {
             scene.quality.triangle_method = method;
             let [single, double] = [Precision::Single, Precision::Double].map(|p| in_precision(&scene, p));
-            // Another surface is seen, and not a rounding of the same one: rims, and glass that looks at rims.
+            // Count pixels that show another surface, which happens at outlines, also behind glass.
             let pixels = single.film.pixels.iter().zip(&double.film.pixels);
             let other = pixels.filter(|(p, q)| (**p - **q).abs().max_element() > 0.01).count();
             assert!(other <= 8, "{name}, {method:?}: {other} of 1536 pixels differ");
@@ -49,8 +49,8 @@ fn more_digits_move_few_pixels_and_hardly_any_count() {
     }
 }
 
-/// A wall of two triangles a column, behind which it is light. The edges between columns run through the centres of
-/// pixels from top to bottom.
+/// A wall of two triangles per column in front of a bright background. The edges between columns run through
+/// the centres of pixels from top to bottom.
 fn wall() -> Scene {
     const COLUMNS: u32 = 40;
     let mut text = format!(
@@ -70,7 +70,7 @@ fn wall() -> Scene {
         text += &format!("[[nodes]]\nshape = {{ triangle = {{ a = {a}, b = {b}, c = {c} }} }}\n");
     };
     for (left, right) in (0..).zip(1..COLUMNS as usize) {
-        // What is weighed by γ on the one side of an edge is weighed by 1 - β - γ on the other.
+        // A corner with the barycentric coordinate γ on one side of an edge has 1 - β - γ on the other side.
         triangle([below[left], above[left], below[right]]);
         triangle([above[left], above[right], below[right]]);
     }
@@ -84,7 +84,7 @@ fn light_leaks_through_a_wall_in_single_precision_only() {
         scene.quality.triangle_method = method;
         let leaks = |precision: Precision| {
             let frame = in_precision(&scene, precision);
-            // The wall ends with the outermost columns and at the upper and lower rim.
+            // Leave out the outermost columns and rows, where the wall ends.
             let inner = |index: usize| (1..39).contains(&(index % 40)) && (1..29).contains(&(index / 40));
             let lit = |(index, color): &(usize, &Vec3)| inner(*index) && **color != Vec3::ZERO;
             frame.film.pixels.iter().enumerate().filter(lit).count()

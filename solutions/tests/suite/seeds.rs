@@ -1,6 +1,6 @@
-//! The reference passes every check on inputs that nobody has seen: instructors grade with seeds of their own. More seeds
-//! than these few: `SEEDS=300 cargo test --release -p solutions --test suite seeds`; others, with `FIRST=301` before that; of one
-//! stage, with `STAGE=9`.
+//! The reference passes every check on other inputs, because instructors grade with their own seeds. For more
+//! seeds: `SEEDS=300 cargo test --release -p solutions --test suite seeds`; for other seeds add `FIRST=301`,
+//! for one stage `STAGE=9`.
 
 use all_checks::STAGES;
 use checks::Verdict;
@@ -13,13 +13,13 @@ fn the_reference_passes_every_check_with_other_seeds() {
     let (first, seeds) = (number("FIRST").unwrap_or(1), number("SEEDS").unwrap_or(3));
     let kit: Arc<dyn Kit + Send + Sync> = solutions::Kit.door();
     let mut failed = Vec::new();
-    // Far apart, so that no bit of a seed is always the same.
+    // Spread the seeds, so that no bit is the same in all of them.
     for seed in (first..first + seeds).map(|number| number.wrapping_mul(0x9e37_79b9_7f4a_7c15)) {
         let wanted = |stage: u8| number("STAGE").is_none_or(|only| only == u64::from(stage));
         for check in STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| *checks) {
             let verdict = checks::run(check, &kit, seed);
             if verdict != Verdict::Passed {
-                // At once as well, with --nocapture: many seeds take long.
+                // Print failures at once as well, because many seeds take long.
                 println!("stage {} {} with seed {seed}: {verdict:?}", check.stage, check.name);
                 failed.push(format!("stage {} {} with seed {seed}: {verdict:?}", check.stage, check.name));
             }

@@ -1,5 +1,5 @@
-//! Zeros of both signs, denormal numbers and the largest ones in every place of a scene: each is refused with an error
-//! that says where, or rendered without a NaN.
+//! Zeros of both signs, denormal numbers and the largest numbers everywhere in a scene: each scene is refused
+//! with an error that names the place, or is rendered without NaN.
 
 use oracle::splitmix::Random;
 use raykata::frame::Unwatched;
@@ -7,13 +7,13 @@ use raykata::kit::{RenderJob, StudentKit, View};
 use raykata::scene::{Accelerator, load};
 use std::path::Path;
 
-/// Most numbers are ordinary, so that most scenes can be rendered.
+/// Ordinary numbers, which are the most frequent, so that many scenes can be rendered.
 const ORDINARY: [&str; 6] = ["0.5", "-1.0", "2.0", "0.25", "1.0", "-0.125"];
 const FINITE: [&str; 7] =
     ["0.0", "-0.0", "1e-40", "-1e-40", "3.4028235e38", "-3.4028235e38", "1.1754944e-38"];
 const ENDLESS: [&str; 3] = ["inf", "-inf", "nan"];
 
-/// A scene with every shape and light that there is, and a number for every `#`.
+/// A scene with every shape and light; each `#` is replaced by a number.
 const SCENE: &str = r#"
 [film]
 width = 10
@@ -100,7 +100,7 @@ fn numbers_that_break_formulas_break_no_picture() {
             scene.quality.accelerator = accelerator;
             let job =
                 RenderJob { scene: scene.clone(), view: View::Shaded, seed: n, threads: 1, count: true };
-            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+            let frame = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
             let bad = frame.film.pixels.iter().filter(|pixel| !pixel.is_finite()).count();
             assert_eq!(bad, 0, "{bad} pixels are not finite, {accelerator:?}\n{text}");
         }

@@ -1,4 +1,4 @@
-//! The reference, against the same checks as the student's.
+//! The reference passes the same checks as the exercises.
 
 mod stage1 {
     stage1_checks::tests!(solutions::Kit);

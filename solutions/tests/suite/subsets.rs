@@ -1,5 +1,6 @@
-//! No effect costs anything, or changes anything, where it is not called for: shown for all 2⁹ sets of the nine effects
-//! of `scenes/effects.toml`. `raykata explain scenes/effects.toml --subsets` prints what each set costs.
+//! An effect costs and changes nothing where the scene does not need it: proved for all 2⁹ sets of the nine
+//! effects of `scenes/effects.toml`. `raykata explain scenes/effects.toml --subsets` prints what each set
+//! costs.
 
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -80,14 +81,14 @@ struct Frame {
 
 fn frame(set: Set) -> Frame {
     let job = RenderJob { scene: only(set), view: View::Shaded, seed: 3, threads: 1, count: true };
-    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
     let trees = pixels.map(|(x, y)| solutions::Kit.door().trace(&job, x, y)).collect();
     Frame { film: rendering.film, counts: rendering.counts, trees }
 }
 
-/// The tree without rays of this kind and all that is behind them.
+/// The tree without rays of this kind and all rays below them.
 fn pruned(tree: &[TracedRay], kind: RayKind) -> Vec<TracedRay> {
     let mut kept: Vec<TracedRay> = Vec::new();
     let mut place = Vec::new();
@@ -103,12 +104,12 @@ fn pruned(tree: &[TracedRay], kind: RayKind) -> Vec<TracedRay> {
     kept
 }
 
-/// Whether some ray of the tree met one of these materials.
+/// Whether some ray of the tree hit one of these materials.
 fn meets(tree: &[TracedRay], materials: &[&str]) -> bool {
     tree.iter().any(|ray| ray.hit.as_ref().is_some_and(|(_, name)| materials.contains(&name.as_str())))
 }
 
-/// Whether some ray of the tree, were it endless, would pass where the toy sphere goes.
+/// Whether the line of some ray of the tree passes the region in which the toy sphere moves.
 fn passes_the_toy(tree: &[TracedRay]) -> bool {
     let way = Aabb::new(vec3(0.34, 0.0, 1.34), vec3(1.76, 0.92, 2.31));
     tree.iter().any(|ray| {
@@ -122,7 +123,7 @@ fn each_set_of_effects_is_seen_to_be_what_it_is() {
     for set in Set::all() {
         let effects = &solutions::Kit.door().effects(&[only(set)])[0];
         for effect in EFFECTS {
-            // The one thing that is rough is a mirror.
+            // The only rough material is a mirror.
             let expected = set.has(effect) && (effect != Effect::Glossy || set.has(Effect::Mirrors));
             assert_eq!(
                 effects.calls_for(effect),
@@ -168,7 +169,7 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
             assert_eq!(with.counts.primary, without.counts.primary, "{}", told());
             for (pixel, (tree, old)) in with.trees.iter().zip(&without.trees).enumerate() {
                 let (same_rays, acts) = match effect {
-                    // These add branches to the tree and leave the rest of it as it was.
+                    // These effects add branches to the tree and leave the rest unchanged.
                     Effect::Shadows => (
                         pruned(tree, RayKind::Shadow) == *old,
                         tree.iter().any(|ray| ray.kind == RayKind::Shadow),
@@ -183,9 +184,9 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
                         let both = [tree, old].map(|tree| pruned(tree, RayKind::Shadow));
                         (both[0] == both[1], tree[0].hit.is_some())
                     }
-                    // These change no ray at all,
+                    // These effects change no ray.
                     Effect::Textures => (tree == old, meets(tree, &["floor", "toy"])),
-                    // and these none that stays away.
+                    // These effects change only trees that hit their materials.
                     Effect::Glossy => (tree == old || meets(tree, &["brushed"]), meets(tree, &["brushed"])),
                     Effect::SmoothNormals => (tree == old || meets(tree, &["clay"]), meets(tree, &["clay"])),
                     Effect::Motion => {
@@ -202,7 +203,7 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
     }
 }
 
-/// Rays, hits, random numbers and reads of images are those that the trees call for, and no more.
+/// The counts of rays, hits, random numbers and image reads are exactly those that follow from the trees.
 fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
     let Frame { counts, trees, .. } = frame;
     let rays = |wanted: &dyn Fn(&[TracedRay], &TracedRay) -> bool| {
@@ -221,7 +222,8 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
     let covered = rays(&|_, ray| is_at(ray, &["floor", "toy"]));
     assert_eq!(counts.texture_reads, if set.has(Effect::Textures) { covered } else { 0 });
 
-    // Two numbers a place on the lens, on the light (two places a hit) and in the lobe, one a moment.
+    // Two random numbers per point on the lens, per point on the light (two points per hit) and per glossy
+    // ray, one per time.
     let blurred = rays(&|tree, ray| {
         ray.kind == RayKind::Reflection && ray.parent.is_some_and(|parent| is_at(&tree[parent], &["brushed"]))
     });

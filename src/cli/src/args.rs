@@ -1,5 +1,6 @@
-//! The command line: which commands and options there are, their help, and what was given. Written by hand, because a
-//! general parser of command lines takes longer to build than everything else that this program does.
+//! The command line: the commands and their options, their help, and the values that were given. It is
+//! written by hand, because a general command line parser takes longer to build than the rest of this
+//! program.
 
 use std::ffi::{OsStr, OsString};
 use std::fmt::{self, Display, Write};
@@ -7,7 +8,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Help is written for terminals of this many columns.
+/// The width of the help text, in columns.
 const WIDTH: usize = 80;
 
 /// The column at which the explanation of an option begins.
@@ -20,22 +21,22 @@ pub struct Spec {
     pub name: &'static str,
     /// What it does, in one sentence.
     pub about: &'static str,
-    /// What is given without a name, in this order.
+    /// The arguments without a name, in their order.
     pub arguments: &'static [Argument],
-    /// What is given by name; commands share some of these lists.
+    /// The options; commands share some of these lists.
     pub options: &'static [&'static [Opt]],
 }
 
 /// A value without a name.
 #[derive(Debug)]
 pub struct Argument {
-    /// What the help calls it.
+    /// Its name in the help.
     pub name: &'static str,
     /// Whether the command needs it.
     pub required: bool,
     /// Whether it can be repeated; only the last argument can.
     pub many: bool,
-    /// What it is.
+    /// The explanation in the help.
     pub help: &'static str,
 }
 
@@ -84,7 +85,7 @@ impl Opt {
         Opt { short: Some(short), ..self }
     }
 
-    /// The same with the only values that it can have.
+    /// The same with the list of its possible values.
     pub const fn choices(self, choices: &'static [&'static str]) -> Opt {
         Opt { choices, ..self }
     }
@@ -104,12 +105,12 @@ impl Opt {
     }
 }
 
-/// A command line that was not understood: the program says why and ends with code 2.
+/// A command line that was not understood: the program prints the reason and ends with code 2.
 #[derive(Debug)]
 pub struct Misuse(String);
 
 impl Misuse {
-    /// With these words.
+    /// An error with this message.
     pub fn new(message: impl Into<String>) -> Misuse {
         Misuse(message.into())
     }
@@ -123,12 +124,12 @@ impl Display for Misuse {
 
 impl std::error::Error for Misuse {}
 
-/// What a command line comes to.
+/// The result of reading a command line.
 #[derive(Debug)]
 pub enum Read {
-    /// Somebody wants to know what the command does.
+    /// The help of the command was requested.
     Help(String),
-    /// Values.
+    /// The values that were given.
     Given(Given),
 }
 
@@ -217,7 +218,7 @@ impl Spec {
         usage
     }
 
-    /// All that can be given, with explanations.
+    /// The help: all arguments and options with explanations.
     pub fn help(&self) -> String {
         let mut help = format!("{}\n\n{}\n", wrapped(self.about, 0), self.usage());
         if !self.arguments.is_empty() {
@@ -240,7 +241,7 @@ impl Spec {
     }
 }
 
-/// One line, or more, of a list: what can be given, and what it does.
+/// One entry of the help: a command or option, and what it does.
 pub fn entry(head: &str, words: &str) -> String {
     let head = format!("  {head}");
     let words = wrapped(words, HELP_COLUMN);
@@ -251,7 +252,7 @@ pub fn entry(head: &str, words: &str) -> String {
     }
 }
 
-/// The words in lines that end before column [`WIDTH`]; all but the first begin at `column`.
+/// `words` wrapped to lines that end before column [`WIDTH`]; all lines but the first begin at `column`.
 fn wrapped(words: &str, column: usize) -> String {
     let mut text = String::new();
     let mut at = column;
@@ -308,7 +309,7 @@ impl Given {
         self.values(long).next().map(|value| self.one(long, &value.to_string_lossy(), parse)).transpose()
     }
 
-    /// The values of an option that can be repeated. A comma is part of a value.
+    /// The values of an option that can be repeated. A comma is part of the value.
     pub fn repeated<T, E: Display>(
         &self,
         long: &str,
@@ -347,7 +348,7 @@ impl Given {
         self.parsed(long, |text| whole_number(text, &range))
     }
 
-    /// One of the names that the option can have, by `named`, which lists them with what they mean.
+    /// The value of an option with a fixed list of names; `named` lists each name with its value.
     pub fn choice<T: Copy>(&self, long: &str, named: &[(&str, T)]) -> Result<Option<T>, Misuse> {
         self.parsed(long, |text| chosen(text, named))
     }
@@ -357,17 +358,17 @@ impl Given {
         self.list(long, |text| chosen(text, named))
     }
 
-    /// The argument at this place, counted from 0.
+    /// The argument at this index, counted from 0.
     pub fn argument(&self, place: usize) -> Option<&OsStr> {
         self.arguments.get(place).map(OsString::as_os_str)
     }
 
-    /// All arguments from this place on.
+    /// All arguments from this index on.
     pub fn arguments(&self, place: usize) -> &[OsString] {
         self.arguments.get(place..).unwrap_or_default()
     }
 
-    /// The argument at this place, which must be there.
+    /// The argument at this index; an error if it is missing.
     pub fn required(&self, place: usize) -> Result<&OsStr, Misuse> {
         self.argument(place).ok_or_else(|| {
             let name = self.spec.arguments.get(place).map_or("", |argument| argument.name);
@@ -375,7 +376,7 @@ impl Given {
         })
     }
 
-    /// The argument at this place, as `parse` understands it.
+    /// The argument at this index, as `parse` understands it.
     pub fn parsed_argument<T, E: Display>(
         &self,
         place: usize,
@@ -419,7 +420,7 @@ pub fn whole_number<T: FromStr + PartialOrd + Display>(
     number.ok_or_else(|| format!("a whole number from {} to {} is wanted", range.start(), range.end()))
 }
 
-/// What this name means.
+/// The value of this name.
 pub fn chosen<T: Copy>(text: &str, named: &[(&str, T)]) -> Result<T, String> {
     let found = named.iter().find(|(name, _)| *name == text);
     found.map(|(_, meaning)| *meaning).ok_or_else(|| {

@@ -1,8 +1,8 @@
-//! Small pieces of HTML and of data in text.
+//! Small pieces of HTML, and data as text.
 
 use std::fmt::{Display, Write};
 
-/// Text as HTML shows it.
+/// The text, escaped for HTML.
 pub fn escape(text: impl Display) -> String {
     let mut escaped = String::new();
     for letter in text.to_string().chars() {
@@ -22,7 +22,7 @@ pub fn element(name: &str, text: impl Display) -> String {
     around(name, "", &escape(text))
 }
 
-/// An element with attributes around HTML. Attributes are written as they stand.
+/// An element with attributes around HTML. Attributes are not escaped.
 pub fn around(name: &str, attributes: &str, inner: &str) -> String {
     let space = if attributes.is_empty() { "" } else { " " };
     format!("<{name}{space}{attributes}>{inner}</{name}>")
@@ -43,7 +43,7 @@ pub fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// A line of a table with commas (RFC 4180).
+/// A line of a CSV table (RFC 4180).
 pub fn csv_line(cells: &[String]) -> String {
     let mut line = String::new();
     for (place, cell) in cells.iter().enumerate() {

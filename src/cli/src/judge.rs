@@ -1,5 +1,5 @@
-//! The judge: the program that holds the checks and the exact oracle. It is built when it is needed, so that a picture
-//! waits for neither.
+//! Starts the judge, the program that contains the checks and the exact oracle. It is built when it is
+//! needed, so that a picture does not wait for that.
 
 use crate::kits::{Need, Program, Which, build};
 use anyhow::{Context, Result};
@@ -10,7 +10,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Child, Command, ExitCode, Stdio};
 
-/// Has the judge do something with a kit, such as `check`, and passes on how it ends.
+/// Runs the judge with a command such as `check` on a kit, and returns its exit code.
 pub fn judge<S: AsRef<OsStr>>(root: &Path, what: &str, which: Which, more: &[S]) -> Result<ExitCode> {
     let whose = match which {
         Which::Exercises => "your exercises and their judge",
@@ -25,11 +25,11 @@ pub fn judge<S: AsRef<OsStr>>(root: &Path, what: &str, which: Which, more: &[S])
     Ok(ExitCode::from(code.unwrap_or(1)))
 }
 
-/// A judge that is asked through its standard input and answers through its standard output.
+/// A judge that gets requests through its standard input and answers through its standard output.
 pub struct Judge(Child);
 
 impl Judge {
-    /// Starts it with this word.
+    /// Starts the judge with this command.
     pub fn start(root: &Path, what: &str) -> Result<Judge> {
         let programs = build(root, "the judge of your exercises", &[Program::JUDGE])?;
         let program = programs.first().context("the judge was not built")?;
@@ -37,13 +37,13 @@ impl Judge {
         Ok(Judge(child.with_context(|| format!("{} cannot be started", program.display()))?))
     }
 
-    /// Tells it something.
+    /// Sends a message to the judge.
     pub fn send<T: Serialize>(&mut self, message: &T) -> Result<()> {
         let pipe = self.0.stdin.as_mut().context("the judge has no standard input")?;
-        send(pipe, message).context("the judge does not listen")
+        send(pipe, message).context("the judge accepts no message")
     }
 
-    /// What it says next.
+    /// The next message of the judge.
     pub fn receive<T: DeserializeOwned>(&mut self) -> Result<T> {
         let pipe = self.0.stdout.as_mut().context("the judge has no standard output")?;
         receive(pipe).context("the judge does not answer")

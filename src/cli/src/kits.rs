@@ -1,5 +1,5 @@
-//! Whose code answers: the exercises or the solutions. Both are worker programs, which cargo builds when they are needed
-//! and which are reached through a pipe; this program links neither.
+//! The kits: the exercises and the solutions. Both run in worker programs, which cargo builds when they are
+//! needed and with which this program communicates through a pipe; it links neither.
 
 use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
-/// Whose code to use.
+/// The kit whose code is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
     /// Your code in exercises/.
@@ -23,7 +23,7 @@ impl Which {
     /// The names of both.
     pub const NAMES: [(&str, Which); 2] = [("exercises", Which::Exercises), ("solutions", Which::Solutions)];
 
-    /// The name of the package.
+    /// The name of the kit's package.
     pub fn package(self) -> &'static str {
         match self {
             Which::Exercises => "exercises",
@@ -32,31 +32,31 @@ impl Which {
     }
 }
 
-/// Whose code a command uses, where there is a choice.
+/// The option that selects the kit of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Choice(Option<Which>);
 
 impl Choice {
-    /// As an option.
+    /// The option.
     pub const OPTIONS: &[Opt] = &[Opt::value(
         "--kit",
         "NAME",
-        "Whose code to use [default: solutions where there are any, else exercises; for `check`: exercises].",
+        "The code to use [default: solutions if there are any, else exercises; for `check`: exercises].",
     )
     .choices(&names(&Which::NAMES))];
 
-    /// As it was given.
+    /// Reads the option.
     pub fn read(given: &Given) -> Result<Choice, Misuse> {
         Ok(Choice(given.choice("--kit", &Which::NAMES)?))
     }
 
-    /// The solutions, if nothing else was said and there are any: a student's repository has none.
+    /// The selected kit. By default the solutions, if there are any; a student's repository has none.
     pub fn or_reference(self, root: &Path) -> Which {
         let default = if has_solutions(root) { Which::Solutions } else { Which::Exercises };
         self.0.unwrap_or(default)
     }
 
-    /// The exercises, if nothing else was said.
+    /// The selected kit. By default the exercises.
     pub fn or_exercises(self) -> Which {
         self.0.unwrap_or(Which::Exercises)
     }
@@ -66,17 +66,17 @@ fn has_solutions(root: &Path) -> bool {
     root.join("solutions/Cargo.toml").is_file()
 }
 
-/// What must be added to a command so that it uses the exercises.
+/// The option that must be added to a command so that it uses the exercises; empty if that is the default.
 pub fn with_exercises(root: &Path) -> &'static str {
     if has_solutions(root) { " --kit exercises" } else { "" }
 }
 
-/// What a worker is needed for. Frames take a renderer, which takes a while to build.
+/// The use of a worker. Frames need the renderer, which takes time to build.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// Frames, and all functions that students write.
+    /// Rendering frames and calling student functions.
     Frames,
-    /// The functions that students write.
+    /// Calling student functions only.
     Checks,
 }
 
@@ -90,21 +90,21 @@ impl Need {
     }
 }
 
-/// A source of fresh kits.
+/// Starts kits of one kind.
 pub struct Source {
-    /// Whose code it is.
+    /// Which kit it is.
     pub which: Which,
-    /// The program of the worker.
+    /// The path of the worker program.
     pub program: PathBuf,
 }
 
 impl Source {
-    /// Builds the worker if need be.
+    /// Builds the worker if it is not up to date.
     pub fn prepare(root: &Path, which: Which, need: Need) -> Result<Source> {
         Ok(Source { which, program: build_worker(root, which, need)? })
     }
 
-    /// A kit that no call has touched yet.
+    /// A new kit, with a process of its own.
     pub fn fresh(&self) -> Arc<dyn Kit + Send + Sync> {
         Arc::new(Door(Worker::new(self.program.clone(), CALL_PATIENCE)))
     }
@@ -131,7 +131,7 @@ impl Program {
         Program { package: which.package(), name, feature: need.feature() }
     }
 
-    /// What tells students what their exercises are worth.
+    /// The program that runs the checks.
     pub const JUDGE: Program = Program { package: "judge", name: "judge", feature: None };
 
     fn file(&self) -> String {
@@ -139,7 +139,7 @@ impl Program {
     }
 }
 
-/// Builds the worker of a kit, in the profile of this program, and says where it is.
+/// Builds the worker of a kit in the profile of this program, and returns its path.
 pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
     let what = match which {
         Which::Exercises => "your exercises",
@@ -149,24 +149,26 @@ pub fn build_worker(root: &Path, which: Which, need: Need) -> Result<PathBuf> {
     built.into_iter().next().context("nothing was built")
 }
 
-/// Builds programs of the workspace at `root`, in the profile of this program, and says where they are. When there is
-/// something to build, the output of cargo is shown behind a line that says what is built.
+/// Builds programs of the workspace at `root` in the profile of this program, and returns their paths. If
+/// something has to be built, it prints a line that names `what`, followed by the output of cargo.
 pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBuf>> {
     for program in programs {
         if program.package == Which::Solutions.package() && !has_solutions(root) {
-            bail!("there are no solutions in {}: leave out `--kit solutions`", root.display());
+            bail!("there are no solutions in {}: omit `--kit solutions`", root.display());
         }
     }
-    let here = std::env::current_exe().context("this program cannot find itself")?;
+    // Find the target folder and the profile of this program.
+    let here = std::env::current_exe().context("the path of this program is unknown")?;
     let folder = here.parent().context("this program is in no folder")?;
     let folder = if folder.ends_with("deps") { folder.parent().unwrap_or(folder) } else { folder };
+    // Let cargo build the programs there.
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(root).arg("build");
     for program in programs {
         cargo.args(["--package", program.package, "--bin", program.name]);
         if let Some(feature) = program.feature {
-            // Without the name of the package: the solutions depend on themselves in their tests, and cargo would take
-            // `solutions/frames` for a feature of that dependency.
+            // Pass the feature without the name of the package: the solutions depend on themselves in their
+            // tests, and cargo would read `solutions/frames` as a feature of that dependency.
             cargo.args(["--features", feature]);
         }
     }
@@ -180,6 +182,7 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
         cargo.env("CARGO_TERM_COLOR", "always");
     }
+    // Show its output as soon as something is compiled.
     let started = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     let mut running = started.context("cargo, which builds the exercises, cannot be started")?;
     let mut shown = Shown { what, held_back: Vec::new(), building: false };
@@ -190,13 +193,13 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     }
     if !running.wait()?.success() {
         shown.begin();
-        bail!("{what} cannot be built: the compiler says above what is wrong");
+        bail!("{what} cannot be built: see the errors of the compiler above");
     }
     programs.iter().map(|program| placed(folder, program)).collect()
 }
 
-/// Where cargo has put a program. One that was built with a feature gets a name of its own: the same program without the
-/// feature would take its place.
+/// The path of a program that cargo has built. A program that was built with a feature is copied to a name of
+/// its own, because a build without the feature would overwrite it.
 fn placed(folder: &Path, program: &Program) -> Result<PathBuf> {
     let built = folder.join(program.file());
     let Some(feature) = program.feature else { return Ok(built) };
@@ -216,10 +219,10 @@ fn placed(folder: &Path, program: &Program) -> Result<PathBuf> {
     Ok(kept)
 }
 
-/// What is shown of the output of cargo: nothing, while everything is up to date.
+/// Filters the output of cargo: it shows nothing while everything is up to date.
 struct Shown<'a> {
     what: &'a str,
-    /// Warnings of what was built before.
+    /// Lines that are held back, such as warnings of crates that were built before.
     held_back: Vec<String>,
     building: bool,
 }
@@ -240,7 +243,7 @@ impl Shown<'_> {
         }
     }
 
-    /// From here on everything is shown.
+    /// Shows everything from here on.
     fn begin(&mut self) {
         if !self.building {
             eprintln!("building {} …", self.what);

@@ -1,6 +1,6 @@
 //! The parts of the program `raykata`, so that tests and the programs of instructors can reach them.
 
-/// Prints a line as the macro of the standard library does, but ends in peace when nobody reads it any more.
+/// Prints a line like the macro of the standard library, but does not panic if the reader has closed the pipe.
 macro_rules! println {
     () => { $crate::report::say(format_args!("\n")) };
     ($($words:tt)*) => { $crate::report::say(format_args!("{}\n", format_args!($($words)*))) };

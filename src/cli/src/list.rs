@@ -1,11 +1,11 @@
-//! `raykata list` and `raykata hint`: what the rubric says of the checks.
+//! `raykata list` and `raykata hint`: the contents of the rubric.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use anyhow::{Result, bail};
 use raykata::rubric::{self, Entry};
 use std::fmt::Write;
 
-/// Lines have at most so many columns.
+/// The maximum width of a line, in columns.
 const WIDTH: usize = 80;
 
 /// `raykata list`.
@@ -22,12 +22,12 @@ pub static HINT: Spec = Spec {
     about: "Get a hint for a check.",
     arguments: &[
         Argument::required("CHECK", "Its name, as `raykata list` and failing tests print it."),
-        Argument::optional("LEVEL", "1 is a nudge, 3 nearly the answer [default: 1]."),
+        Argument::optional("LEVEL", "1 is a question, 2 the formula, 3 nearly the code [default: 1]."),
     ],
     options: &[],
 };
 
-/// What `raykata check` takes besides a kit.
+/// The argument of `raykata check`.
 pub const STAGE: Argument = Argument::optional("STAGE", "One stage only, such as 3 or stage3.");
 
 /// `raykata check`.
@@ -41,22 +41,22 @@ pub static CHECK: Spec = Spec {
 /// `raykata gauntlet`.
 pub static GAUNTLET: Spec = Spec {
     name: "raykata gauntlet",
-    about: "Show how accurate your ray/triangle tests are: against hard inputs, judged exactly.",
+    about: "Measure the accuracy of your ray/triangle tests on hard inputs, against exact arithmetic.",
     arguments: &[],
     options: &[
         &[
             Opt::value(
                 "--inputs",
                 "N",
-                "Inputs of each distribution, and rays at each closed mesh [default: 20000].",
+                "Inputs per distribution, and rays per closed mesh [default: 20000].",
             ),
-            Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
+            Opt::value("--seed", "N", "Seed of the inputs [default: 1]."),
         ],
         crate::kits::Choice::OPTIONS,
     ],
 };
 
-/// The stage that was asked for, if any: `3` and `stage3` are the same. A stage that does not exist is an error.
+/// The requested stage, if any: `3` and `stage3` are the same. A stage that does not exist is an error.
 pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
     let known: Vec<u8> = rubric::stages().into_iter().map(|(number, _)| number).collect();
     given.parsed_argument(0, |text| {
@@ -68,7 +68,7 @@ pub fn stage(given: &Given) -> Result<Option<u8>, Misuse> {
     })
 }
 
-/// The checks of a stage, or of all, with their points and laws.
+/// The checks of a stage, or of all stages, with their points and titles.
 pub fn list(stage: Option<u8>) -> String {
     let mut text = String::new();
     for (number, about) in
@@ -90,7 +90,7 @@ pub fn list(stage: Option<u8>) -> String {
     text
 }
 
-/// The words in lines of at most so many letters.
+/// The words wrapped to lines of at most `width` characters.
 fn lines(words: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in words.split_whitespace() {

@@ -8,7 +8,7 @@ use raykata_cli::{compare, cost, explain, judge, list, render, strip, tree};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// A command and what does it.
+/// A command, and the function that runs it.
 type Command = (&'static Spec, fn(&Given) -> Result<ExitCode>);
 
 /// All commands, in the order of the help.
@@ -70,7 +70,7 @@ fn find(name: &str) -> Result<&'static Command, Misuse> {
     const { &COMMANDS }.iter().find(|(spec, _)| word(spec) == name).ok_or_else(|| {
         let known: Vec<&str> = COMMANDS.iter().map(|(spec, _)| word(spec)).collect();
         let author = ["sync", "corpus", "gaps", "mutants", "generate", "handout", "export", "merge", "grade"];
-        // A student's repository has no grader.
+        // Mention the grader only where there is one: a student's repository has none.
         let has_grader = || root().is_ok_and(|root| root.join("tests/grader").is_dir());
         let grader = match author.contains(&name) && has_grader() {
             true => "; that is `cargo run -p grader -- …`",
@@ -87,15 +87,15 @@ fn find(name: &str) -> Result<&'static Command, Misuse> {
 fn help() -> String {
     let commands: String = COMMANDS.iter().map(|(spec, _)| entry(word(spec), spec.about)).collect();
     format!(
-        "Build a ray tracer by making its tests pass. Without a command: where you stand
-and what comes next.
+        "Build a ray tracer by making its checks pass. Without a command, it shows your
+points and your next step.
 
 You write in exercises/src. `cargo test --test stage1` grades stage 1,
-`raykata hint CHECK` helps where you are stuck, `raykata render
-scenes/stage1.toml` makes a picture.
+`raykata hint CHECK` gives hints for a check, `raykata render
+scenes/stage1.toml` renders a picture.
 
-Exit codes: 0 all went well; 1 something is wrong: checks failed, files differ,
-a scene cannot be read; 2 the command line was not understood.
+Exit codes: 0 for success; 1 if checks failed, files differ or a scene cannot
+be read; 2 if the command line was not understood.
 
 Usage: raykata [COMMAND]
 
@@ -103,7 +103,7 @@ Commands:
 {commands}
 Options:
 {}{}
-`raykata COMMAND --help` explains a command.
+`raykata COMMAND --help` lists the options of a command.
 ",
         entry("-h, --help", "Print this help."),
         entry("-V, --version", "Print the version.")

@@ -1,4 +1,4 @@
-//! How far a long work is, drawn on standard error. Nothing is drawn where nobody sees it: in a file or a pipe.
+//! A progress bar on standard error. It is drawn on a terminal only, not into a file or a pipe.
 
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
@@ -6,17 +6,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Time between two drawings.
+/// The time between two drawings.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Time between two drawings of a work that says nothing.
+/// The time between two drawings while no progress is reported.
 const TICK: Duration = Duration::from_millis(500);
 
-/// Columns of the bar, and of the whole line.
+/// The columns of the bar, and of the whole line.
 const BAR: usize = 30;
 const LINE: usize = 79;
 
-/// A line that shows how far a work is.
+/// A line that shows the progress of a task.
 #[derive(Clone)]
 pub struct ProgressBar(Arc<Shared>);
 
@@ -28,7 +28,7 @@ struct Shared {
 
 struct State {
     done: u64,
-    /// 0 while nobody knows.
+    /// The number of steps; 0 while it is unknown.
     total: u64,
     message: String,
     began: Instant,
@@ -36,7 +36,7 @@ struct State {
 }
 
 impl ProgressBar {
-    /// For so many steps; 0 if nobody knows how many.
+    /// A bar for `total` steps; 0 if their number is unknown.
     pub fn new(total: u64) -> ProgressBar {
         let (message, began) = (String::new(), Instant::now());
         let state = Mutex::new(State { done: 0, total, message, began, drawn: None });
@@ -57,27 +57,27 @@ impl ProgressBar {
         }
     }
 
-    /// So many steps more are done.
+    /// Adds `steps` finished steps.
     pub fn inc(&self, steps: u64) {
         self.change(|state| state.done += steps);
     }
 
-    /// So many steps are done, of this many.
+    /// Sets the number of finished steps and of all steps.
     pub fn set(&self, done: u64, total: u64) {
         self.change(|state| (state.done, state.total) = (done, total));
     }
 
-    /// There are this many steps.
+    /// Sets the number of all steps.
     pub fn set_length(&self, total: u64) {
         self.change(|state| state.total = total);
     }
 
-    /// What is done now.
+    /// Sets the message that says what is being done.
     pub fn set_message(&self, message: impl Into<String>) {
         self.change(|state| state.message = message.into());
     }
 
-    /// Begins anew: what comes goes at another pace.
+    /// Starts again from 0 with another message, because the next steps take another time each.
     pub fn begin(&self, message: impl Into<String>, total: u64) {
         self.change(|state| {
             (state.done, state.total, state.began) = (0, total, Instant::now());
@@ -85,7 +85,7 @@ impl ProgressBar {
         });
     }
 
-    /// Draws now and then, so that whoever waits sees that time passes.
+    /// Redraws the line regularly, so that the elapsed time is up to date.
     pub fn tick(&self) {
         let bar = self.clone();
         if !bar.0.visible {
@@ -99,14 +99,14 @@ impl ProgressBar {
         });
     }
 
-    /// Takes the line away while something is printed.
+    /// Removes the line while `print` runs.
     pub fn suspend<T>(&self, print: impl FnOnce() -> T) -> T {
         let mut state = self.state();
         self.clear(&mut state);
         print()
     }
 
-    /// The work is done: takes the line away.
+    /// Removes the line after the last step.
     pub fn finish_and_clear(&self) {
         self.0.over.store(true, Ordering::Relaxed);
         let mut state = self.state();
@@ -130,14 +130,14 @@ impl State {
     fn line(&self, gone: Duration) -> String {
         let mut line = String::new();
         if self.total == 0 {
-            let _ = write!(line, "{} gone  {}", clock(gone), self.message);
+            let _ = write!(line, "{} elapsed  {}", clock(gone), self.message);
         } else {
             let share = (self.done as f64 / self.total as f64).min(1.0);
             let full = (share * BAR as f64) as usize;
             let _ = write!(line, "{}{} {:>3.0} %", "█".repeat(full), "░".repeat(BAR - full), 100.0 * share);
             if self.done > 0 {
                 let left = gone.mul_f64((1.0 - share) / share.max(1e-9));
-                let _ = write!(line, "  {} gone, {} to go", clock(gone), clock(left));
+                let _ = write!(line, "  {} elapsed, {} left", clock(gone), clock(left));
             }
             let _ = write!(line, "  {}", self.message);
         }
@@ -162,10 +162,10 @@ mod tests {
     fn a_line_says_how_far_it_is_and_how_long_it_takes() {
         let mut state =
             State { done: 0, total: 0, message: "a frame".into(), began: Instant::now(), drawn: None };
-        assert_eq!(state.line(Duration::from_secs(7)), "7 s gone  a frame");
+        assert_eq!(state.line(Duration::from_secs(7)), "7 s elapsed  a frame");
         (state.done, state.total) = (1, 4);
         let line = state.line(Duration::from_secs(40));
-        assert!(line.ends_with(" 25 %  40 s gone, 2:00 min to go  a frame"), "{line}");
+        assert!(line.ends_with(" 25 %  40 s elapsed, 2:00 min left  a frame"), "{line}");
         state.message = "x".repeat(200);
         assert_eq!(state.line(Duration::from_secs(40)).chars().count(), LINE);
     }

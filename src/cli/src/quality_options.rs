@@ -1,28 +1,28 @@
-//! The parameters of a scene on the command line, the same for all commands that render.
+//! The quality parameters of a scene as options, the same for all commands that render.
 
 use crate::args::{Given, Misuse, Opt, names};
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
 
-/// How many threads render, the same for all commands.
+/// The number of threads that render, the same for all commands.
 pub struct Threads(u16);
 
 impl Threads {
-    /// As an option.
+    /// The option.
     pub const OPTIONS: &[Opt] =
         &[Opt::value("--threads", "N", "Threads; 0 takes one per core [default: 0].")];
 
-    /// As they were given.
+    /// Reads the options.
     pub fn read(given: &Given) -> Result<Threads, Misuse> {
         Ok(Threads(given.number("--threads", 0..=1024)?.unwrap_or(0)))
     }
 
-    /// As a job takes it.
+    /// The number of threads for a job.
     pub fn count(&self) -> usize {
         usize::from(self.0)
     }
 }
 
-/// Accuracy against time; what is not named stays as the scene says.
+/// Parameters that trade accuracy for time. Those that are not given keep the value of the scene.
 #[derive(Default)]
 pub struct Knobs {
     size: Option<(u32, u32)>,
@@ -40,7 +40,7 @@ pub struct Knobs {
     min_contribution: Option<f32>,
 }
 
-/// Samplers by the names that scene files use, with `-` for `_`; so are the other lists here.
+/// The samplers by the names of scene files, with `-` in place of `_`. The other lists use the same names.
 pub(crate) const SAMPLERS: [(&str, Sampler); 5] = [
     ("center", Sampler::Center),
     ("random", Sampler::Random),
@@ -78,7 +78,7 @@ const TRIANGLES: [(&str, TriangleMethod); 3] = [
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
 impl Knobs {
-    /// As options.
+    /// The options.
     pub const OPTIONS: &[Opt] = &[
         Opt::value(
             "--size",
@@ -86,24 +86,24 @@ impl Knobs {
             "Size in pixels, such as 640x360 [default: the scene's, as for all below].",
         ),
         Opt::value("--spp", "N", "Samples per pixel."),
-        Opt::value("--sampler", "NAME", "Where the samples of a pixel lie.").choices(&names(&SAMPLERS)),
-        Opt::value("--light-samples", "N", "Places on an area light that a hit asks about."),
-        Opt::value("--glossy-samples", "N", "Rays that go on from a rough surface."),
-        Opt::value("--depth", "N", "How often a ray may be reflected or refracted."),
+        Opt::value("--sampler", "NAME", "Positions of the samples in a pixel.").choices(&names(&SAMPLERS)),
+        Opt::value("--light-samples", "N", "Samples per area light and hit."),
+        Opt::value("--glossy-samples", "N", "Rays per glossy reflection or refraction."),
+        Opt::value("--depth", "N", "The most reflections and refractions on a path."),
         Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
-        Opt::value("--leaf-size", "N", "Most primitives in a leaf."),
-        Opt::value("--accelerator", "NAME", "What finds the closest hit.").choices(&names(&ACCELERATORS)),
+        Opt::value("--leaf-size", "N", "The most primitives in a leaf."),
+        Opt::value("--accelerator", "NAME", "Acceleration structure.").choices(&names(&ACCELERATORS)),
         Opt::value(
             "--grid-resolution",
             "N",
-            "Cells of a grid along its longest side; 0 takes the formula's number.",
+            "Cells of a grid along its longest side; 0 takes the number of the formula.",
         ),
         Opt::value("--triangles", "NAME", "Ray/triangle test.").choices(&names(&TRIANGLES)),
         Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
-        Opt::value("--min-contribution", "X", "Rays of less weight are not traced, 0 to 1."),
+        Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
     ];
 
-    /// As they were given.
+    /// Reads the options.
     pub fn read(given: &Given) -> Result<Knobs, Misuse> {
         Ok(Knobs {
             size: given.parsed("--size", parse_size)?,
@@ -122,12 +122,12 @@ impl Knobs {
         })
     }
 
-    /// Whether the picture has a size that somebody asked for.
+    /// Whether a size was given.
     pub fn names_a_size(&self) -> bool {
         self.size.is_some()
     }
 
-    /// Turns the parameters of the scene that were named.
+    /// Sets the given parameters in the scene.
     pub fn apply(&self, scene: &mut Scene) {
         if let Some((width, height)) = self.size {
             (scene.film.width, scene.film.height) = (width, height);
@@ -148,7 +148,7 @@ impl Knobs {
     }
 }
 
-/// The arguments that turn the parameters of `own` to where `wanted` has them, as far as they differ.
+/// The options that change `own` to `wanted`, for the parameters that differ.
 pub fn arguments(own: &Quality, wanted: &Quality) -> String {
     let values = |quality: &Quality| {
         let named = |value: serde_json::Result<serde_json::Value>| {
@@ -179,7 +179,7 @@ fn parse_share(text: &str) -> Result<f32, String> {
     share.ok_or_else(|| "a weight is a number from 0 to 1, such as 0.001".into())
 }
 
-/// As in scene files: 2²⁸, three gigabytes of film.
+/// The most pixels, as in scene files: 2²⁸, which take three gigabytes.
 const MOST_PIXELS: u64 = 1 << 28;
 
 pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -229,7 +229,7 @@ mod tests {
         let line = arguments(&own, &wanted);
         assert!(line.starts_with(" --spp 343 --sampler jittered --light-samples 7"), "{line}");
         let Read::Given(given) = LINE.read(line.split_whitespace().map(OsString::from)).unwrap() else {
-            panic!("help was asked for");
+            panic!("help was requested");
         };
         Knobs::read(&given).unwrap().apply(&mut scene);
         assert_eq!(scene.quality, wanted);

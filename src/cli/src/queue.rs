@@ -1,26 +1,26 @@
-//! Work shared out among threads: whoever is free takes the next item.
+//! Distributes work among threads: a free thread takes the next item.
 
 use anyhow::{Result, bail};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Workers that need nothing of their own, one a core.
+/// Workers without state, one per core.
 pub fn one_a_core() -> Vec<()> {
     vec![(); cores()]
 }
 
-/// How many threads run at once.
+/// The number of threads that run at the same time.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// What `work` makes of each item, in the order of the items; each worker has a thread. After an error nobody begins
-/// another item, and the error of the first item that has one is returned.
+/// The results of `work` for all items, in the order of the items; each worker has a thread. After an error
+/// no other item is started, and the error of the first item that has one is returned.
 pub fn run<W: Sync, I: Sync, T: Send>(
     workers: &[W],
     items: &[I],
     work: impl Fn(&W, &I) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
-    assert!(items.is_empty() || !workers.is_empty(), "nobody is there to do the work");
+    assert!(items.is_empty() || !workers.is_empty(), "there are no workers for the items");
     let next = AtomicUsize::new(0);
     let job = |worker: &W| {
         let mut done = Vec::new();
@@ -42,7 +42,7 @@ pub fn run<W: Sync, I: Sync, T: Send>(
     for done in joined {
         match done {
             Ok(done) => results.extend(done),
-            Err(_) => bail!("a job broke: see the message above"),
+            Err(_) => bail!("a job panicked: see the message above"),
         }
     }
     results.sort_by_key(|(index, _)| *index);
@@ -79,6 +79,6 @@ mod tests {
             assert!(*item != 2, "as this test wants it");
             Ok(())
         });
-        assert!(broken.unwrap_err().to_string().contains("broke"));
+        assert!(broken.unwrap_err().to_string().contains("panicked"));
     }
 }

@@ -1,4 +1,4 @@
-//! `raykata render`: a scene becomes a picture.
+//! `raykata render`: renders a scene to a picture.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
@@ -16,20 +16,20 @@ pub static SPEC: Spec = Spec {
     about: "Render a scene to a picture.",
     arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
     options: &[
-        &[Opt::value("--out", "FILE", "Where the picture goes: .png, .hdr or .exr [default: out/NAME.png].")
+        &[Opt::value("--out", "FILE", "The picture: .png, .hdr or .exr [default: out/NAME.png].")
             .short("-o")],
         Choice::OPTIONS,
         Threads::OPTIONS,
         &[
-            Opt::value("--seed", "N", "Picks the random numbers [default: 0]."),
+            Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::flag("--normals", "Show normals instead of light."),
-            Opt::flag("--no-counts", "Do not count work: a little faster."),
+            Opt::flag("--no-counts", "Do not count rays and tests; a little faster."),
         ],
         Knobs::OPTIONS,
     ],
 };
 
-/// What to render and how.
+/// The scene, and how to render it.
 pub struct Options {
     scene: PathBuf,
     out: Option<PathBuf>,
@@ -42,7 +42,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             scene: given.required(0)?.into(),
@@ -57,7 +57,7 @@ impl Options {
     }
 }
 
-/// Which kind of file a picture becomes.
+/// The file format of a picture.
 #[derive(Clone, Copy)]
 enum Format {
     Png,
@@ -74,14 +74,11 @@ fn format_of(file: &Path) -> Result<Format> {
         "exr" => bail!(
             "this program was built without OpenEXR; `cargo run --features exr -- render …` builds it with OpenEXR"
         ),
-        _ => bail!(
-            "cannot tell what kind of picture {} is to be: let it end in .png, .hdr or .exr",
-            file.display()
-        ),
+        _ => bail!("the format of {} is unknown: let it end in .png, .hdr or .exr", file.display()),
     }
 }
 
-/// Renders and tells what it took.
+/// Renders the picture and prints what it cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
     options.parameters.apply(&mut scene);
@@ -94,9 +91,11 @@ pub fn run(options: &Options) -> Result<()> {
     let format = format_of(&out)?;
     make_folder_of(&out)?;
 
+    // Build the kit.
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = source.fresh();
+    // Render the picture.
     let view = if options.normals { View::Normals } else { View::Shaded };
     let job = RenderJob {
         scene,
@@ -109,6 +108,7 @@ pub fn run(options: &Options) -> Result<()> {
     let rendering = kit_error::catch(|| kit.render(&job, &bar))?.context("the frame was cancelled")?;
     bar.finish();
 
+    // Write the file, and print what the picture cost.
     let write = match format {
         Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
         Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),
@@ -119,7 +119,7 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Gamma 2 is an exercise, so the kit that made the picture encodes it.
+/// Writes a PNG file. The kit that rendered the picture encodes it, because gamma 2 is an exercise.
 pub(crate) fn write_png(film: &Film, out: &Path, encoding: Encoding, kit: &dyn Kit) -> Result<()> {
     match encoding {
         Encoding::Srgb => film.write_png(out, encode_srgb)?,
@@ -155,8 +155,8 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     let Rendering { film, counts, .. } = rendering;
     let quality = &job.scene.quality;
     let samples = match quality.samples_per_pixel {
-        1 => "1 sample a pixel".to_owned(),
-        n => format!("{n} samples a pixel"),
+        1 => "1 sample per pixel".to_owned(),
+        n => format!("{n} samples per pixel"),
     };
     println!("{}  {} × {} pixels, {samples}", out.display(), film.width, film.height);
     println!("  primitives       {}", Thousands(rendering.primitives));
@@ -176,7 +176,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         );
     }
     if rendering.bytes_of_parts > 0 {
-        println!("  inside instances {}", Bytes(rendering.bytes_of_parts));
+        println!("  shared meshes    {}", Bytes(rendering.bytes_of_parts));
     }
     println!("  build            {:.3} s", rendering.build_seconds);
     println!("  render           {:.3} s", rendering.render_seconds);
@@ -185,7 +185,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         println!("  shadow rays      {}", Thousands(counts.shadow));
         println!("  reflected rays   {}", Thousands(counts.reflection));
         println!("  refracted rays   {}", Thousands(counts.transmission));
-        println!("  surfaces met     {}", Thousands(counts.hits));
+        println!("  hits             {}", Thousands(counts.hits));
         println!("  random numbers   {}", Thousands(counts.random_numbers));
         println!("  image reads      {}", Thousands(counts.texture_reads));
         println!("  node visits      {}", Thousands(counts.node_visits));
@@ -193,7 +193,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         println!("  primitive tests  {}", Thousands(counts.primitive_tests));
         let rays = counts.rays().max(1) as f64;
         println!(
-            "  a ray            {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
+            "  per ray          {:.1} box tests, {:.1} primitive tests, {:.0} ns on all threads together",
             counts.box_tests as f64 / rays,
             counts.primitive_tests as f64 / rays,
             1e9 * rendering.render_seconds / rays
@@ -204,9 +204,6 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     }
     match film.not_a_number() {
         0 => {}
-        n => println!(
-            "  warning          {} pixels are not numbers (NaN); they are magenta",
-            Thousands(n as u64)
-        ),
+        n => println!("  warning          {} pixels are NaN; they are magenta", Thousands(n as u64)),
     }
 }

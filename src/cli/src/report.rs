@@ -1,4 +1,4 @@
-//! How things are told: numbers that can be read, errors in files with the line drawn, and how far a long work is.
+//! Output for people: readable numbers, errors with the line of the file, and the progress of a frame.
 
 use crate::progress::ProgressBar;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
@@ -11,8 +11,8 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
-/// Prints. A reader that has gone away, such as `head`, is no error: what is printed after that is lost, and files are
-/// still written.
+/// Prints to standard output. If the reader has closed the pipe, as `head` does, the rest of the output is
+/// lost; that is not an error, and files are still written.
 pub fn say(words: fmt::Arguments<'_>) {
     let mut out = std::io::stdout().lock();
     let _ = out.write_fmt(words).and_then(|()| out.flush());
@@ -35,7 +35,7 @@ impl fmt::Display for Thousands {
     }
 }
 
-/// A size in bytes, in the unit that leaves a number of people's size.
+/// A size in bytes, shown in a readable unit.
 pub struct Bytes(pub u64);
 
 impl fmt::Display for Bytes {
@@ -51,12 +51,12 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Reads a scene; an error shows the line that is to blame.
+/// Reads a scene; an error shows the line that is wrong.
 pub fn load_scene(file: &Path) -> Result<Scene> {
     load::load(file).map_err(|error| anyhow!(draw(&error)))
 }
 
-/// The error with the line that is to blame, as the compiler would draw it.
+/// The error with the line that is wrong, in the style of the compiler.
 pub fn draw(error: &LoadError) -> String {
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
     if error.place.is_none() || error.span.end > text.len() || error.span.is_empty() {
@@ -76,30 +76,30 @@ pub fn draw(error: &LoadError) -> String {
     drawn.strip_prefix("error: ").map_or_else(|| drawn.clone(), str::to_owned)
 }
 
-/// Makes a folder, and those above it.
+/// Creates a folder and its parent folders.
 pub fn make_folder(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| format!("cannot make the folder {}", folder.display()))
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot create the folder {}", folder.display()))
 }
 
-/// Makes the folder in which `file` is to be written.
+/// Creates the folder of `file`.
 pub fn make_folder_of(file: &Path) -> Result<()> {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).map_or(Ok(()), make_folder)
 }
 
-/// A bar for so many steps, each of which can be named; draws nothing when nobody sees it.
+/// A bar for `n` steps, whose message can name each step; it is drawn on a terminal only.
 pub fn bar_of_steps(n: usize) -> ProgressBar {
     ProgressBar::new(n as u64)
 }
 
-/// How far a frame is: what is built first, then its pixels. Draws nothing when nobody sees it.
+/// The progress of a frame: first its structure, then its pixels. It is drawn on a terminal only.
 pub struct FrameBar {
     bar: ProgressBar,
-    /// What is being made, and what is counted of it.
+    /// What is being rendered, and what is counted.
     now: Mutex<(String, &'static str)>,
 }
 
 impl FrameBar {
-    /// `what` is being made; it may be said later.
+    /// A bar for `what`, which [`FrameBar::begin`] can change.
     pub fn new(what: &str) -> Self {
         let bar = FrameBar { bar: ProgressBar::new(0), now: Mutex::default() };
         bar.begin(what.to_owned());
@@ -107,7 +107,7 @@ impl FrameBar {
         bar
     }
 
-    /// Something else begins.
+    /// Starts the progress of something else.
     pub fn begin(&self, what: String) {
         self.bar.begin(what.as_str(), 0);
         *self.now.lock().unwrap_or_else(PoisonError::into_inner) = (what, "nothing");
@@ -116,14 +116,14 @@ impl FrameBar {
     fn tell(&self, counted: &'static str, done: u64, total: u64) {
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         if now.1 != counted {
-            // Pixels go at another pace than primitives.
+            // Start the bar again, because a pixel takes another time than a primitive.
             now.1 = counted;
             self.bar.begin(format!("{} {counted}", now.0), total);
         }
         self.bar.set(done, total);
     }
 
-    /// Nothing more to show.
+    /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
     }
@@ -131,7 +131,7 @@ impl FrameBar {
 
 impl Watch for FrameBar {
     fn building(&self, placed: u64, total: u64) {
-        // Nobody knows how long it takes before anything has found its place.
+        // The remaining time is unknown until the first primitive is in a leaf.
         if placed > 0 {
             self.tell("(building)", placed, total);
         }
@@ -142,7 +142,8 @@ impl Watch for FrameBar {
     }
 }
 
-/// The lower quartile, the median and the upper quartile; of an even number the median is the lower of the middle two.
+/// The lower quartile, the median and the upper quartile; for an even number of values the median is the
+/// lower of the two in the middle.
 pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
     let last = values.len().saturating_sub(1);

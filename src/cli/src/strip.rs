@@ -1,5 +1,5 @@
 //! `raykata strip`: one scene at growing depths of recursion (lecture "Example: Reflection", "Example: Refraction"), or
-//! with each way to place samples ("Antialiasing", "Generate pixel samples"), side by side.
+//! with each sampler ("Antialiasing", "Generate pixel samples"), side by side.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::kits::{Choice, Need, Source, root};
@@ -26,24 +26,20 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--depths",
                 "LIST",
-                "How often rays may be reflected or refracted, one picture each [default: 1,2,5,10].",
+                "The most reflections and refractions on a path, one picture each [default: 1,2,5,10].",
             )
             .many(),
-            Opt::value(
-                "--samplers",
-                "LIST",
-                "Instead of depths: where the samples of a pixel lie, one picture each.",
-            )
-            .choices(&names(&SAMPLERS))
-            .many(),
-            Opt::value("--out", "FILE", "Where the PNG goes [default: out/NAME-strip.png].").short("-o"),
+            Opt::value("--samplers", "LIST", "Instead of depths: the samplers, one picture each.")
+                .choices(&names(&SAMPLERS))
+                .many(),
+            Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
         ],
         Choice::OPTIONS,
         Knobs::OPTIONS,
     ],
 };
 
-/// Which scene, how deep.
+/// The scene, and the depths or samplers.
 pub struct Options {
     scene: PathBuf,
     depths: Vec<u32>,
@@ -54,7 +50,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--samplers", "--depths")?;
         let mut depths = given.list("--depths", |text| whole_number(text, &(0..=1000)))?;
@@ -72,7 +68,7 @@ impl Options {
     }
 }
 
-/// Renders the strip and tells what each picture took.
+/// Renders the strip and prints what each picture cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
     options.parameters.apply(&mut scene);

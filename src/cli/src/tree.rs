@@ -21,7 +21,8 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--format",
                 "NAME",
-                "How to show the tree: indented lines, a list of rays in JSON, or a graph for Graphviz [default: text].",
+                "Format of the tree: indented lines, a list of rays in JSON, or a graph for Graphviz \
+                 [default: text].",
             )
             .choices(&names(&FORMATS)),
         ],
@@ -29,7 +30,7 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Which pixel of which scene.
+/// The scene, the pixel and the format.
 pub struct Options {
     scene: PathBuf,
     pixel: (u32, u32),
@@ -38,7 +39,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         let pixel = given.parsed("--pixel", parse_pixel)?;
         Ok(Options {
@@ -50,7 +51,7 @@ impl Options {
     }
 }
 
-/// How a tree is shown.
+/// The format of a tree.
 #[derive(Clone, Copy)]
 pub enum Format {
     /// Indented lines.
@@ -116,21 +117,21 @@ fn levels_above(rays: &[TracedRay], index: usize) -> usize {
     std::iter::successors(rays[index].parent, |&parent| rays[parent].parent).count()
 }
 
-/// Kind, weight, depth and hit in one line.
+/// The kind, depth, weight and hit of a ray in one line.
 fn label(ray: &TracedRay) -> String {
     let kind = match ray.kind {
         RayKind::Primary => "primary",
         RayKind::Reflection => "reflection",
         RayKind::Transmission => "transmission",
-        RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "hidden" } else { "lit" }),
+        RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "occluded" } else { "lit" }),
     };
     let weight = match ray.weight {
         w if w.x == w.y && w.y == w.z => format!("{:.3}", w.x),
         w => format!("({:.3} {:.3} {:.3})", w.x, w.y, w.z),
     };
     let hit = match &ray.hit {
-        Some((t, material)) => format!("meets {material} at t = {t:.3}"),
-        None => "meets nothing".into(),
+        Some((t, material)) => format!("hits {material} at t = {t:.3}"),
+        None => "hits nothing".into(),
     };
     format!("{kind}, depth {}, weight {weight}, {hit}", ray.depth)
 }

@@ -1,7 +1,7 @@
-//! The other side of a worker: starts the process, asks, and turns whatever happens into an answer or a [`KitError`].
+//! The caller's side of a worker: starts the process, sends requests, and returns an answer or a [`KitError`].
 //!
-//! A process that panics, loops, overflows its stack or ends costs the call that it was asked, and nothing else: the
-//! next call starts a new one.
+//! If a process panics, loops, overflows its stack or ends, only the current call fails: the next call starts a new
+//! process.
 
 mod autopsy;
 mod watchdog;
@@ -19,18 +19,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use watchdog::Watchdog;
 
-/// How long a call of a check may take. The slowest needs a tenth of a second.
+/// The longest time for a call of a check. The slowest needs a tenth of a second.
 pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
 
-/// How long a frame may go without progress: building a large hierarchy in a development build takes a while.
+/// The longest time without progress in a frame, because building a large hierarchy in a development build
+/// takes long.
 const FRAME_PATIENCE: Duration = Duration::from_secs(120);
 
-/// The longest reply of a worker that nobody trusts: ten times what the largest frame of a check takes. It bounds what
-/// the judge can be made to hold; values can take some times as much in memory as in a message.
+/// The longest reply of an untrusted worker: ten times the size of the largest frame of a check. It bounds
+/// the memory of the judge; decoded values can take several times as much memory as their message.
 const LONGEST_UNTRUSTED_REPLY: usize = 64 << 20;
 
-/// How the process of a worker is started, and what its end means. Whoever runs code that nobody trusts puts a sandbox
-/// between it and the machine.
+/// Starts the process of a worker and interprets its end. The grader implements it with a sandbox for untrusted code.
 pub trait Launcher: Send + Sync {
     /// The command that starts `program`.
     fn command(&self, program: &Path) -> Command;
@@ -38,26 +38,27 @@ pub trait Launcher: Send + Sync {
     /// Starts the command.
     fn spawn(&self, command: Command) -> io::Result<Child>;
 
-    /// Why the process ended, if the sandbox knows: it has this status and wrote this to standard error.
+    /// The reason why the process ended with `status`, if the sandbox knows it; `stderr` is what the process
+    /// wrote there.
     fn death(&self, status: ExitStatus, stderr: &str) -> Option<Death>;
 
-    /// How much processor time the process has used so far.
+    /// The processor time that the process has used so far.
     fn cpu_time(&self, process: u32) -> Duration;
 }
 
-/// Why the process of a worker ended.
+/// The reason why the process of a worker ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Death {
-    /// It has used up its processor time.
+    /// It used up its processor time.
     TimedOut,
-    /// What this says.
+    /// Another reason, in words.
     Crashed(String),
 }
 
-/// A kit in a process of its own.
+/// A kit in a separate process.
 pub struct Worker {
     program: PathBuf,
-    /// What starts the processes of code that nobody trusts.
+    /// Starts the processes of untrusted code.
     launcher: Option<Arc<dyn Launcher>>,
     call_patience: Duration,
     frame_patience: Duration,
@@ -66,7 +67,7 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// A worker that will run `program` when it is first asked something.
+    /// A worker that starts `program` at its first call.
     pub fn new(program: PathBuf, call_patience: Duration) -> Self {
         Worker {
             program,
@@ -78,17 +79,17 @@ impl Worker {
         }
     }
 
-    /// The same for code that nobody trusts, in the sandbox of `launcher`. It has `patience` for a frame, too, however often that says that it gets
-    /// on. Time counts only while the worker computes, up to three times the patience, so that a busy machine does
-    /// not change a verdict.
+    /// The same for untrusted code, in the sandbox of `launcher`. A frame has the time `patience` as well,
+    /// even if it reports progress. Only processor time counts, within three times `patience` of elapsed
+    /// time, so that a busy machine does not change a verdict.
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
         Worker { launcher: Some(launcher), frame_patience: patience, ..Worker::new(program, patience) }
     }
 
-    /// The same for small pictures, of which some never end: it waits no longer for a frame than for any other call.
-    /// But on a busy machine that may be too short, so what is late is asked once more, with the long wait; until that
-    /// has been in vain.
+    /// The same for small pictures, some of which never end: a frame has no more time than any other call.
+    /// Because that may be too short on a busy machine, a late frame is tried once more with the long time
+    /// limit, until such a second try has failed.
     pub fn hasty(program: PathBuf, patience: Duration) -> Self {
         Worker {
             frame_patience: patience,
@@ -109,7 +110,7 @@ impl Worker {
                 *slot = Some(process);
                 Err(shortened(error))
             }
-            // That is for frames that are no longer wanted: from here it could be out of step.
+            // Only the caller can cancel a frame: refuse this answer, and end the process, which may be out of step.
             Ok(Some(Reply::Answer(answer))) if matches!(*answer, Answer::Render(None)) => {
                 Err(KitError::Malformed { what: "no picture".into() })
             }
@@ -169,17 +170,19 @@ impl Process {
         })
     }
 
-    /// `None` if `watch` no longer wants the answer.
+    /// The reply to `request`; `None` if `watch` cancelled it.
     fn ask(&mut self, request: &Request, watch: &dyn Watch, patience: Duration) -> io::Result<Option<Reply>> {
         let trusted = self.launcher.is_none();
         let longest = if trusted { LONGEST_MESSAGE } else { LONGEST_UNTRUSTED_REPLY };
-        // Before the question: a worker that does not read it may not stop us for ever.
+        // Start the watchdog before writing, because a worker that does not read would block the write forever.
         self.watchdog.bark_after(patience);
         worker::send(&mut self.to_worker, request)?;
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
                 Reply::Progress { .. } | Reply::Building { .. } if !matches!(request, Request::Render(_)) => {
-                    return Err(io::Error::other("it says how far a frame is, and was asked for none"));
+                    return Err(io::Error::other(
+                        "it reports the progress of a frame, but no frame was requested",
+                    ));
                 }
                 told @ (Reply::Progress { .. } | Reply::Building { .. }) => {
                     match told {
@@ -190,7 +193,7 @@ impl Process {
                     if watch.cancelled() {
                         return Ok(None);
                     }
-                    // Code that nobody trusts could say so for ever.
+                    // Do not extend the time of untrusted code, which could report progress forever.
                     if trusted {
                         self.watchdog.bark_after(patience);
                     }
@@ -203,12 +206,12 @@ impl Process {
         }
     }
 
-    /// Why the process no longer answers, or what is wrong with what it says.
+    /// The reason why the process does not answer, or what is wrong with its reply.
     fn post_mortem(mut self, error: &io::Error, patience: Duration) -> KitError {
         let timed_out = self.watchdog.has_barked();
-        // That is how a message is refused; the pipe fails in other ways.
+        // This kind of error means a refused message; errors of the pipe have other kinds.
         let nonsense = !timed_out && error.kind() == io::ErrorKind::Other;
-        // The pipe may close a moment before the process is gone; then it ends by itself.
+        // The pipe may close a moment before the process ends, so wait briefly for its own exit status.
         let status = if nonsense { None } else { wait_briefly(&self.child) };
         let _ = lock(&self.child).kill();
         let status = status.or_else(|| lock(&self.child).wait().ok());
@@ -228,7 +231,7 @@ impl Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // By exact process id, and waited for, so that nothing is left behind.
+        // End exactly this process and wait for it, so that no process remains.
         let mut child = lock(&self.child);
         let _ = child.kill();
         let _ = child.wait();
@@ -248,7 +251,8 @@ fn spawn(mut command: Command, launcher: Option<&dyn Launcher>) -> io::Result<Pi
     use std::os::fd::OwnedFd;
     use std::os::unix::net::UnixStream;
     let (ours, theirs) = UnixStream::pair()?;
-    // The command keeps its end open until it is dropped; then only the worker has it, and its end is our end of file.
+    // The command holds `theirs` until it is dropped. Then only the worker holds it, so we read an end of
+    // file when the worker ends.
     command.stdin(Stdio::from(OwnedFd::from(theirs)));
     let child = match launcher {
         Some(launcher) => launcher.spawn(command)?,

@@ -34,9 +34,9 @@ pub(super) fn where_it_might_be(path: &Path) -> String {
     };
     let mut names: Vec<String> =
         entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort(); // folders list their files in any order
+    names.sort(); // a folder lists its files in an arbitrary order
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
-    // Without extensions, which make any two short names look alike.
+    // Compare the names without extensions, which make any two short names similar.
     let stem = |name: &str| Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     names.retain(|name| nearest(&stem(&wanted), [stem(name).as_str()]).is_some());
     match nearest(&wanted, names.iter().map(String::as_str)) {

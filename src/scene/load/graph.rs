@@ -19,14 +19,14 @@ pub(super) fn roots(nodes: &[Node]) -> Vec<usize> {
     (0..nodes.len()).filter(|&index| is_root[index]).collect()
 }
 
-/// What is known of a node while the graph is walked.
+/// The state of a node while the graph is traversed.
 #[derive(Clone, Copy)]
 enum Visit {
     /// Not seen yet.
     No,
-    /// Its children are being walked.
+    /// Its children are being visited.
     Under,
-    /// Done: how many levels and shapes it has, itself included.
+    /// Done, with the number of its levels and shapes, itself included.
     Done { levels: u32, shapes: u64 },
 }
 
@@ -35,8 +35,8 @@ enum Visit {
 pub(super) fn check(nodes: &[Node], listed: &[Vec<Value>]) -> Result<(), LoadError> {
     let mut visits = vec![Visit::No; nodes.len()];
     for start in 0..nodes.len() {
-        // The way down from `start`, each node with the number of its children that are done. A list and not a
-        // recursive call, because a loop or a long chain in a file must not end in a stack overflow.
+        // The path from `start` down, each node with the number of its finished children. It is a list instead of a
+        // recursion, because a loop or a long chain in a file must not overflow the stack.
         let mut way: Vec<(usize, usize)> = Vec::new();
         if matches!(visits[start], Visit::No) {
             visits[start] = Visit::Under;
@@ -63,7 +63,7 @@ pub(super) fn check(nodes: &[Node], listed: &[Vec<Value>]) -> Result<(), LoadErr
     Ok(())
 }
 
-/// Adds up the levels and shapes of a node whose children are all done.
+/// The levels and shapes of a node whose children are all done.
 fn finished(node: &Node, listed: &[Value], visits: &[Visit]) -> Result<Visit, LoadError> {
     let (mut levels, mut shapes) = (1, u64::from(node.shape.is_some()));
     for (&child, value) in node.children.iter().zip(listed) {

@@ -58,9 +58,9 @@ fn rectangle(value: Value) -> Result<AreaShape, LoadError> {
     let edges_value = table.need("edges", "[[1, 0, 0], [0, 0, 1]]")?;
     let edges = edges_value.list_of(2, "two edges of three numbers each")?;
     let (u, v) = (edges[0].vector()?, edges[1].vector()?);
-    // Exact for edges of like size: the products of two `f32` fit into an `f64`.
+    // In double precision the products of two `f32` are exact.
     if u.as_dvec3().cross(v.as_dvec3()).length_squared() == 0.0 {
-        return Err(edges_value.error("the edges run along one line, so the light has no area"));
+        return Err(edges_value.error("the edges are parallel or zero, so the light has no area"));
     }
     Ok(AreaShape::Rectangle { corner, edges: (u, v) })
 }

@@ -108,7 +108,7 @@ pub(super) fn from_obj(obj: &ObjMaterial) -> Result<Material, String> {
         specular: color("specular", obj.specular, default.specular)?,
         exponent: number("shininess", obj.shininess, default.exponent, 0.0, f32::MAX)?,
         transmission: Vec3::splat(1.0 - number("dissolve", obj.dissolve, 1.0, 0.0, 1.0)?),
-        // Nothing in nature bends light like 0.001 or 1000: the bounds only keep out what is no index at all.
+        // No real material has such an index: the bounds only exclude values that cannot be an index of refraction.
         index_of_refraction: number(
             "index of refraction",
             obj.index_of_refraction,

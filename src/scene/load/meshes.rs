@@ -49,7 +49,7 @@ fn read(table: &Table) -> Result<(PathBuf, ObjFile), LoadError> {
         "ply" => ObjFile { mesh: ply::read(&file)?, materials: Vec::new() },
         "obj" => obj::read(&file)?,
         _ => {
-            let message = format!("{} is no mesh that can be read", value.spelled());
+            let message = format!("{} is not a mesh that can be read", value.spelled());
             return Err(value.error(message).help("meshes are `.ply` or `.obj` files"));
         }
     };
@@ -105,12 +105,13 @@ impl Adopter<'_, '_> {
             return Ok(index);
         }
         let remedy = format!(
-            "define `[materials.{}]`, or write `materials = false` to have the whole mesh in the material of its node",
+            "define `[materials.{}]`, or write `materials = false` to give the whole mesh the material of \
+             its node",
             name.escape_debug()
         );
         let Some(described) = self.described.iter().find(|material| material.name == name).cloned() else {
             let message = format!(
-                "mesh {} uses material {}, and nothing defines it",
+                "mesh {} uses material {}, which is not defined",
                 quoted(self.mesh.key),
                 quoted(name)
             );

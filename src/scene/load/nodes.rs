@@ -79,7 +79,8 @@ fn children(listed: &[Value], names: &Names) -> Result<Vec<usize>, LoadError> {
         let child = names.find(*value)?;
         if !seen.insert(child) {
             return Err(value.error(format!("{} is listed twice", value.spelled())).help(
-                "both would stand in the same place; for another place, add a node with a `transform` around it",
+                "both would have the same place; for another place, add a parent node with a `transform` \
+                 around it",
             ));
         }
         children.push(child);

@@ -11,7 +11,7 @@ impl<'a> Value<'a> {
     /// The value as a whole number; fails if it is not an integer in the closed `range`.
     pub fn whole(&self, range: RangeInclusive<u32>) -> Result<u32, LoadError> {
         let DeValue::Integer(integer) = self.item() else { return Err(self.wrong("a whole number")) };
-        // A number that does not even fit into 128 bits is out of any range.
+        // A number that does not fit into 128 bits is outside of any range.
         let wide = i128::from_str_radix(integer.as_str(), integer.radix()).unwrap_or(i128::MAX);
         u32::try_from(wide)
             .ok()
@@ -85,7 +85,7 @@ impl<'a> Value<'a> {
     pub fn direction_f64(&self) -> Result<DVec3, LoadError> {
         let vector = self.vector()?.as_dvec3();
         vector.try_normalize().ok_or_else(|| {
-            self.error(format!("{} has no length, so it points nowhere", self.name()))
+            self.error(format!("{} has no length, so it gives no direction", self.name()))
                 .help("give a direction, for example `[0, 1, 0]`")
         })
     }
@@ -119,7 +119,7 @@ impl<'a> Value<'a> {
         let items = self.list(wanted)?;
         match items.len() {
             length if length == count => Ok(items),
-            length => Err(self.error(format!("{} must be {wanted}, and has {length}", self.name()))),
+            length => Err(self.error(format!("{} must be {wanted}, but has {length}", self.name()))),
         }
     }
 

@@ -53,7 +53,7 @@ fn area_vector(corners: &[DVec3]) -> DVec3 {
 fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
     let size = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-    // Far from the origin, the rounding of the coordinates to `f32` moves corners as well.
+    // Allow for the rounding of the coordinates to `f32` as well, which matters far from the origin.
     let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
     let tolerance = FLATNESS * size + f64::from(f32::EPSILON) * largest;
     corners.iter().position(|corner| (corner - middle).dot(normal).abs() > tolerance)
@@ -68,7 +68,7 @@ fn turns_back(corners: &[DVec3], normal: DVec3) -> Option<usize> {
         let (before, after) = (edge(index + count - 1), edge(index));
         let angle = before.cross(after).dot(normal).atan2(before.dot(after));
         turned += angle;
-        // Corners in the middle of a straight edge are allowed, with the roundings of their coordinates.
+        // Accept corners in the middle of a straight edge, up to the rounding of their coordinates.
         !(-FLATNESS..PI - FLATNESS).contains(&angle) || turned > TAU + 1e-3
     })
 }

@@ -35,7 +35,9 @@ impl<'a> Source<'a> {
         match nearest(word, known.iter().copied()) {
             Some(meant) => self.error(span, format!("{message}; did you mean {}?", quoted(meant))),
             None if known.is_empty() => self.error(span, message).help("the scene defines none"),
-            None => self.error(span, message).help(format!("known are {}", listed(known.iter().copied()))),
+            None => {
+                self.error(span, message).help(format!("known names are {}", listed(known.iter().copied())))
+            }
         }
     }
 }
@@ -84,7 +86,7 @@ impl<'a> Table<'a> {
         let all = listed(keys.iter().copied());
         match given[..] {
             [value] => Ok(value),
-            [] => Err(self.error(format!("{} needs one of {all}, and has none", self.name))),
+            [] => Err(self.error(format!("{} needs one of {all}, but has none", self.name))),
             [first, second, ..] => {
                 let message = format!("{} has both `{}` and `{}`", self.name, first.key, second.key);
                 Err(self.source.error(self.key_span(second.key), message).help("delete one of the two"))
@@ -164,7 +166,7 @@ impl<'a> Value<'a> {
             DeValue::Array(_) => "a list".into(),
             DeValue::Table(_) => "a table".into(),
         };
-        self.error(format!("{} must be {wanted}, and is {found}", self.name()))
+        self.error(format!("{} must be {wanted}, but is {found}", self.name()))
     }
 
     /// The value as a table; fails if it is not a table or has a key that is not among `known`.

@@ -39,7 +39,7 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     match pixels <= MAX_PIXELS {
         true => Ok(film),
         false => Err(table
-            .error(format!("the picture has {pixels} pixels, and the most is {MAX_PIXELS}"))
+            .error(format!("the picture has {pixels} pixels; the maximum is {MAX_PIXELS}"))
             .help("make `width` or `height` smaller")),
     }
 }
@@ -53,10 +53,10 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
     let aim = table.one_of(&["look_at", "direction"])?;
     let direction = match aim.key {
         "direction" => aim.direction()?,
-        // In double precision, the difference of two points neither overflows nor vanishes unless they are equal.
+        // Subtract in double precision, where the difference overflows never and is 0 only for equal points.
         _ => {
             (aim.vector()?.as_dvec3() - position.as_dvec3()).try_normalize().map(|d| d.as_vec3()).ok_or_else(
-                || aim.error("`look_at` and `position` are the same point, so the camera looks nowhere"),
+                || aim.error("`look_at` and `position` are the same point, so the camera has no direction"),
             )?
         }
     };
@@ -68,8 +68,8 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
         .map_or(Ok(40.0), |angle| angle.number_that("above 0 and below 180 degrees", below_180))?;
 
     let camera = Camera::new(position, direction, up, vertical_fov, aspect).map_err(|error| {
-        // All that is left to go wrong: up and the view direction are parallel. Any other axis than the one along
-        // which the camera looks will do.
+        // The only remaining error is that `up` is parallel to the view direction. Suggest an axis along
+        // which the camera does not look.
         let other = if direction.y.abs() > 0.5 { "[0, 0, -1]" } else { "[0, 1, 0]" };
         up_value.unwrap_or(aim).error(error.to_string()).help(format!("write, for example, `up = {other}`"))
     })?;

@@ -29,7 +29,7 @@ pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
     };
     match shape.bounds(&[]) {
         Some(bounds) if !(bounds.min.is_finite() && bounds.max.is_finite()) => {
-            Err(kind.error(format!("{} reaches beyond the largest number, 3.4e38", kind.name())))
+            Err(kind.error(format!("{} exceeds the largest number, 3.4e38", kind.name())))
         }
         _ => Ok(shape),
     }

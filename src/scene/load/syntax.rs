@@ -20,18 +20,20 @@ pub(super) fn explain(source: &Source, error: &toml::de::Error) -> LoadError {
             ("a value is missing after `=`".into(), "write it, as in `width = 640`")
         }
         message if message.starts_with("string values must be quoted") => {
-            (format!("{} stands without quotes", quoted(blamed)), "put text between quotes, as in `\"red\"`")
+            (format!("{} has no quotes", quoted(blamed)), "put text between quotes, as in `\"red\"`")
         }
         message if message.starts_with("invalid mantissa") || message.starts_with("invalid fraction") => {
             ("a number has no digits on one side of its point".into(), "write `0.5` and `5.0`")
         }
         message if message.starts_with("unexpected key or value") => {
-            ("the line goes on after its value".into(), "put lists between brackets, as in `[0, 1, 5]`")
+            ("the line continues after its value".into(), "put lists between brackets, as in `[0, 1, 5]`")
         }
         message if message.starts_with("key with no value") => {
             ("a key has no value".into(), "write the key, `=` and the value")
         }
-        "recursion limit" => ("this is nested too deep".into(), "no scene needs that many brackets"),
+        "recursion limit" => {
+            ("brackets are nested too deep".into(), "a scene needs only a few levels of brackets")
+        }
         message => return source.error(span, format!("this is not TOML: {}", one_line(message))),
     };
     source.error(span, message).help(help)

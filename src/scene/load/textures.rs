@@ -46,7 +46,7 @@ pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
 /// The pixels row by row from the top, in linear light; transparency is ignored.
 fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
     match image {
-        // High dynamic range files store linear light already.
+        // High dynamic range files already store linear light.
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
             image.to_rgb32f().pixels().map(|pixel| Vec3::from_array(pixel.0)).collect()
         }
@@ -57,7 +57,7 @@ fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
             let decode = |code: u16| srgb_to_linear(f32::from(code) / 65_535.0);
             image.to_rgb16().pixels().map(|pixel| Vec3::from_array(pixel.0.map(decode))).collect()
         }
-        // 256 codes need 256 powers, not three for every pixel.
+        // Compute the power once for each of the 256 codes, instead of three times per pixel.
         _ => {
             let table: [f32; 256] = std::array::from_fn(|code| srgb_to_linear(code as f32 / 255.0));
             let decode = |code: u8| table[usize::from(code)];

@@ -14,8 +14,8 @@ pub(super) fn of_node(table: &Table) -> Result<(Affine3A, Option<Affine3A>), Loa
     match keeps_volume(&start.matrix3, &end.matrix3) {
         true => Ok((single(start), Some(single(end)))),
         false => Err(value
-            .error("between `transform` and `transform_end` the shape is squeezed flat")
-            .help("do not mirror, and turn by less than half a turn")),
+            .error("between `transform` and `transform_end` the shape becomes flat")
+            .help("do not reflect the shape, and rotate it by less than 180 degrees")),
     }
 }
 
@@ -28,13 +28,11 @@ fn steps(value: Value) -> Result<DAffine3, LoadError> {
     let stored = single(all);
     let sound = stored.is_finite()
         && stored.inverse().is_finite()
-        // Rounding to single precision must not turn the inside out.
+        // Rounding to single precision must not change the sign of the determinant.
         && stored.matrix3.determinant() as f64 * all.matrix3.determinant() > 0.0;
     match sound {
         true => Ok(all),
-        false => {
-            Err(value.error(format!("{} is too extreme to be undone in single precision", value.name())))
-        }
+        false => Err(value.error(format!("{} cannot be inverted in single precision", value.name()))),
     }
 }
 
@@ -64,8 +62,8 @@ fn matrix(value: Value) -> Result<DAffine3, LoadError> {
     let linear = DMat3::from_cols(column(0), column(1), column(2));
     if !spans_volume(&linear) {
         return Err(value
-            .error("`matrix` is singular: it squeezes space flat, so no ray can be carried back")
-            .help("no column may be zero or a mixture of the other two"));
+            .error("`matrix` is singular, so rays cannot be transformed back")
+            .help("no column may be zero or a linear combination of the others"));
     }
     Ok(DAffine3::from_mat3_translation(linear, column(3)))
 }

@@ -8,7 +8,7 @@ pub(super) fn nearest<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) 
         .into_iter()
         .filter_map(|name| {
             let longest = word.chars().count().max(name.chars().count());
-            // Comparing takes time and room in the square of the length, and nobody names a thing like that.
+            // Skip long names, because the comparison takes time and memory quadratic in the length.
             if longest > 100 {
                 return None;
             }

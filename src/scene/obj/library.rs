@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<PathBuf>, LoadError> {
     let directory = file.parent().unwrap_or(Path::new(""));
     let names = &text[span.clone()];
-    // The format separates several names by blanks, but many tools write one name that holds blanks.
+    // The format separates names by blanks, but many tools write one name that contains blanks.
     let whole = directory.join(names.replace('\\', "/"));
     if whole.is_file() {
         return Ok(vec![whole]);
@@ -26,7 +26,7 @@ pub(super) fn find(file: &Path, text: &str, span: &Range<usize>) -> Result<Vec<P
             }
             let message = format!("there is no material library {}", quote(name.text));
             Err(LoadError::at(file, text, name.span, message).help(format!(
-                "it was looked for at {}: put it there, or remove the `mtllib` line",
+                "looked for {}: put the library there, or remove the `mtllib` line",
                 path.display()
             )))
         })
@@ -77,7 +77,7 @@ fn convert(material: tobj::Material, directory: &Path) -> ObjMaterial {
 struct Reader<'a> {
     file: &'a Path,
     text: &'a str,
-    /// Lines that are right and that we have a use for.
+    /// The valid lines that are used.
     clean: String,
     /// Whether a `newmtl` line has been seen.
     named: bool,
@@ -99,7 +99,7 @@ impl Reader<'_> {
             }
             "Ka" | "Kd" | "Ks" | "Ke" => self.colour(keyword, &rest[..comment])?,
             "Ns" | "Ni" | "d" => {
-                // `d -halo 0.5` lets the middle of an object fade; we have only the number for that.
+                // `d -halo 0.5` makes the opacity depend on the angle; only its number is used.
                 let halo = rest.first().is_some_and(|word| word.text == "-halo");
                 self.numbers(keyword, &rest[usize::from(halo)..comment], 1)?
             }
@@ -157,7 +157,7 @@ impl Reader<'_> {
         for word in &values[..count] {
             if !word.text.parse().is_ok_and(f32::is_finite) {
                 return Err(self
-                    .trouble(word.span.clone(), format!("{} is no number", quote(word.text)))
+                    .trouble(word.span.clone(), format!("{} is not a number", quote(word.text)))
                     .help("replace it by a number, with a decimal point and not a comma"));
             }
         }
@@ -176,7 +176,7 @@ fn after_options<'a, 'b>(mut rest: &'b [Word<'a>]) -> &'b [Word<'a>] {
             | "-type" => 1,
             _ => return rest,
         };
-        // Options of three numbers may have fewer; the name of an image is no number.
+        // Options of three numbers may have fewer; the name of an image is not a number.
         let numbers = values.iter().take(most).take_while(|word| word.text.parse::<f32>().is_ok()).count();
         rest = &values[if most == 1 { values.len().min(1) } else { numbers }..];
     }

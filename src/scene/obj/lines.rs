@@ -30,7 +30,7 @@ const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 /// names a vertex, texture coordinate or normal that is not above it.
 pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
     let mut reader = Reader { file, text, lines: Lines::default(), names: HashSet::new() };
-    // The one library that `tobj` sees: it stands for all names of materials.
+    // `tobj` gets one library, which stands for all names of materials.
     reader.lines.clean.push_str("mtllib all\n");
     for line in logical_lines(text) {
         reader.line(line)?;
@@ -82,7 +82,8 @@ impl<'a> Reader<'a> {
         let comment = words.iter().position(|word| word.text.starts_with('#'));
         let values = &words[1..comment.unwrap_or(words.len()).max(1)];
         match keyword.text {
-            // A fourth number is the weight for free-form surfaces, and more are a colour; neither is for meshes.
+            // A fourth number is the weight for free-form surfaces, and more numbers are a colour; a mesh has
+            // neither.
             "v" => {
                 self.numbers(&keyword, values, 3)?;
                 self.lines.vertices += 1;
@@ -101,7 +102,7 @@ impl<'a> Reader<'a> {
                 let names = self.rest(&keyword, line.end, "name a file, as in `mtllib box.mtl`")?;
                 self.lines.libraries.push(names);
             }
-            // Points and lines have no surface; objects, groups and smoothing do not matter to one set of triangles.
+            // Points and lines have no surface; objects, groups and smoothing do not affect one set of triangles.
             _ => self.check_keyword(&keyword)?,
         }
         Ok(())
@@ -131,15 +132,15 @@ impl<'a> Reader<'a> {
 
     fn number(&self, keyword: &Word, word: &Word) -> Result<f32, LoadError> {
         let number = word.text.parse::<f32>();
-        // A normal without a direction costs the mesh its normals later on; it is no reason to refuse the file.
+        // Accept a normal without a direction: all normals of the mesh are dropped later.
         if let Ok(number) = number
             && (number.is_finite() || keyword.text == "vn")
         {
             return Ok(number);
         }
         let message = match number {
-            Ok(_) => format!("{} is no place", quote(word.text)),
-            Err(_) => format!("{} is no number", quote(word.text)),
+            Ok(_) => format!("{} is not a finite number", quote(word.text)),
+            Err(_) => format!("{} is not a number", quote(word.text)),
         };
         Err(self.trouble(word.span.clone(), message).help(if word.text.contains(',') {
             "write a decimal point, not a comma, and blanks between numbers"
@@ -175,9 +176,10 @@ impl<'a> Reader<'a> {
             ("normal", "normals", self.lines.normals),
         ];
         let malformed = || {
-            self.trouble(corner.span.clone(), format!("{} is no corner of a face", quote(corner.text))).help(
-                "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
-            )
+            self.trouble(corner.span.clone(), format!("{} is not a corner of a face", quote(corner.text)))
+                .help(
+                    "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
+                )
         };
         let parts: Vec<&str> = corner.text.split('/').collect();
         if parts.len() > tables.len() || parts[0].is_empty() {
@@ -193,7 +195,7 @@ impl<'a> Reader<'a> {
             }
             let index: i64 = part.parse().map_err(|_| malformed())?;
             let count = count as i64;
-            // Negative indices count back from the line of the face: -1 is the last one above it.
+            // Negative indices count back from the line of the face: -1 is the last vertex above it.
             if (1..=count).contains(&index) || (-count..=-1).contains(&index) {
                 continue;
             }
@@ -236,7 +238,10 @@ impl<'a> Reader<'a> {
     fn check_keyword(&self, keyword: &Word) -> Result<(), LoadError> {
         match nearest(keyword.text, LONG_KEYWORDS) {
             Some(meant) if meant != keyword.text && !keyword.text.starts_with('#') => Err(self
-                .trouble(keyword.span.clone(), format!("{} is no keyword of OBJ files", quote(keyword.text)))
+                .trouble(
+                    keyword.span.clone(),
+                    format!("{} is not a keyword of OBJ files", quote(keyword.text)),
+                )
                 .help(format!("did you mean `{meant}`?"))),
             _ => Ok(()),
         }

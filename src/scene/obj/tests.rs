@@ -1,4 +1,4 @@
-//! Facts about OBJ files.
+//! Tests of the OBJ reader.
 
 mod libraries;
 
@@ -157,7 +157,7 @@ fn every_index_is_checked() {
         check(
             &format!("f 1 2 {corner}"),
             &format!(
-                "5:7: `{corner}` is no corner of a face\n\
+                "5:7: `{corner}` is not a corner of a face\n\
                  help: write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal"
             ),
         );
@@ -180,12 +180,12 @@ fn a_place_has_three_numbers() {
         "v 1 2",
         "5:1: `v` needs 3 numbers, but has 2\nhelp: write them on the same line, as in `v 0 0.5 1`",
     );
-    check("v 1 2 x", "5:7: `x` is no number\nhelp: replace it by a number below 3e38");
-    check("v 1 nan 3", "5:5: `nan` is no place\nhelp: replace it by a number below 3e38");
-    check("vt 1e39 0", "5:4: `1e39` is no place\nhelp: replace it by a number below 3e38");
+    check("v 1 2 x", "5:7: `x` is not a number\nhelp: replace it by a number below 3e38");
+    check("v 1 nan 3", "5:5: `nan` is not a finite number\nhelp: replace it by a number below 3e38");
+    check("vt 1e39 0", "5:4: `1e39` is not a finite number\nhelp: replace it by a number below 3e38");
     check(
         "v 1 2 0,5",
-        "5:7: `0,5` is no number\nhelp: write a decimal point, not a comma, and blanks between numbers",
+        "5:7: `0,5` is not a number\nhelp: write a decimal point, not a comma, and blanks between numbers",
     );
     check(
         "vn 0 0",
@@ -203,11 +203,11 @@ fn a_file_without_faces_shows_nothing() {
         parsed("ply\nformat ascii 1.0\n").unwrap_err().to_string(),
         "a.obj: this is not an OBJ file\nhelp: it looks like a PLY file: give it the ending `.ply`"
     );
-    check("usemlt red\nf 1 2 3", "5:1: `usemlt` is no keyword of OBJ files\nhelp: did you mean `usemtl`?");
+    check("usemlt red\nf 1 2 3", "5:1: `usemlt` is not a keyword of OBJ files\nhelp: did you mean `usemtl`?");
     check("usemtl\nf 1 2 3", "5:1: `usemtl` without a name\nhelp: name a material, as in `usemtl red`");
 }
 
-/// Whatever the bytes are, the answer is a mesh that is sound or an error.
+/// For any bytes, the result is a valid mesh or an error.
 #[test]
 fn no_bytes_make_the_reader_panic() {
     let text = format!(
@@ -216,7 +216,7 @@ fn no_bytes_make_the_reader_panic() {
     for original in [&text[10..], &text] {
         crate::scene::ply::text::mutations(original.as_bytes(), |bytes| {
             if let Ok(file) = parsed(bytes) {
-                file.mesh.validate().expect("a mesh that is accepted is sound");
+                file.mesh.validate().expect("an accepted mesh is valid");
             }
         });
     }

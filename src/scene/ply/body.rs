@@ -81,7 +81,7 @@ impl<'a> Body<'a> {
     /// Skips all elements of a kind that is not needed; fails at the end of the file.
     pub fn skip_element(&mut self, element: &Element) -> Result<(), LoadError> {
         if element.properties.is_empty() {
-            return Ok(()); // and do not count to four billion for it
+            return Ok(()); // without a loop over up to four billion elements
         }
         for number in 0..element.count {
             for property in &element.properties {
@@ -113,7 +113,7 @@ impl<'a> Body<'a> {
         if self.encoding != Encoding::Ascii || !self.next_word() {
             return Ok(());
         }
-        Err(trouble_at(self.file, self.bytes, self.last.clone(), "the file goes on after its last element")
+        Err(trouble_at(self.file, self.bytes, self.last.clone(), "the file continues after its last element")
             .help("a count in the header is too small, or a row has a number too many"))
     }
 
@@ -167,7 +167,7 @@ impl<'a> Body<'a> {
         let word = readable(&self.bytes[self.last.clone()]);
         let (element, property) = (&place.element.name, &place.property.name);
         let message = format!(
-            "{} is no number; `{property}` of {element} {} should be here",
+            "{} is not a number; `{property}` of {element} {} should be here",
             quote(&word),
             place.number
         );
@@ -190,6 +190,6 @@ impl<'a> Body<'a> {
             Encoding::Ascii => trouble_at(self.file, self.bytes, end..end, message),
             Encoding::Binary(_) => LoadError::new(self.file, format!("{message} at byte {end}, the end")),
         };
-        error.help(format!("export or fetch the file again, or correct the line `element {name} {count}`"))
+        error.help(format!("export or download the file again, or correct the line `element {name} {count}`"))
     }
 }

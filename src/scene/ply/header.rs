@@ -108,10 +108,10 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn new(bytes: &'a [u8]) -> Self {
-        // Some editors of text open every file with a byte order mark.
+        // Some text editors begin every file with a byte order mark.
         let at = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
-        // The first line tells how lines end: "\n" and "\r\n" both end in a newline, since blanks at the end of
-        // a line do not count; the earliest PLY files have "\r" alone.
+        // Find out from the first line how lines end: "\n" and "\r\n" both end in a newline, because blanks
+        // at the end of a line are ignored; the earliest PLY files have "\r" alone.
         let end = bytes.iter().position(|byte| b"\r\n".contains(byte));
         let newline = match end.map(|end| &bytes[end..]) {
             Some([b'\r', next, ..]) if *next != b'\n' => b'\r',
@@ -156,7 +156,7 @@ impl Draft<'_> {
         }
         let Some((_, encoding)) = ENCODINGS.iter().find(|(known, _)| *known == name.text) else {
             return Err(self
-                .trouble(name.span.clone(), format!("{} is no format of PLY files", quote(name.text)))
+                .trouble(name.span.clone(), format!("{} is not a format of PLY files", quote(name.text)))
                 .help(did_you_mean(
                     nearest(name.text, ENCODINGS.map(|(known, _)| known)),
                     "the formats are ascii, binary_little_endian and binary_big_endian",
@@ -166,7 +166,7 @@ impl Draft<'_> {
             let message = format!("version {} of the format is unknown", quote(version.text));
             return Err(self
                 .trouble(version.span.clone(), message)
-                .help("there is only version 1.0: write `1.0` if the file keeps to it"));
+                .help("the only version is 1.0: write `1.0` if the file follows it"));
         }
         self.encoding = Some(*encoding);
         Ok(())
@@ -176,7 +176,7 @@ impl Draft<'_> {
     fn element(&mut self, words: &[Word]) -> Result<(), LoadError> {
         let [_, name, count] = words else { return Err(self.malformed(words, "element vertex 8")) };
         let Ok(number) = count.text.parse() else {
-            let message = format!("{} is no number of elements", quote(count.text));
+            let message = format!("{} is not a number of elements", quote(count.text));
             return Err(self
                 .trouble(count.span.clone(), message)
                 .help(format!("write how many there are, as in `element {} 8`", name.text)));
@@ -226,7 +226,7 @@ impl Draft<'_> {
 
     fn scalar(&self, word: &Word) -> Result<Scalar, LoadError> {
         Scalar::named(word.text).ok_or_else(|| {
-            self.trouble(word.span.clone(), format!("{} is no type of PLY files", quote(word.text)))
+            self.trouble(word.span.clone(), format!("{} is not a type of PLY files", quote(word.text)))
                 .help(did_you_mean(nearest(word.text, Scalar::NAMES.map(|(name, _)| name)), TYPES))
         })
     }
@@ -238,14 +238,14 @@ impl Draft<'_> {
     }
 
     fn unknown_keyword(&self, keyword: &Word, line: &str) -> LoadError {
-        // A number here is the first of the data.
+        // A number in the header is probably the first number of the data.
         if keyword.text.parse::<f64>().is_ok() {
             return self
-                .trouble(keyword.span.clone(), "numbers before the header has ended")
+                .trouble(keyword.span.clone(), "numbers before the end of the header")
                 .help(END_HEADER);
         }
-        let message = format!("{} is no keyword of PLY headers", quote(keyword.text));
-        // `end header` is one word that lost its underscore, so the line is compared as well.
+        let message = format!("{} is not a keyword of PLY headers", quote(keyword.text));
+        // Compare the whole line as well, because `end header` is `end_header` without its underscore.
         let meant = nearest(line.trim(), KEYWORDS).or_else(|| nearest(keyword.text, KEYWORDS));
         self.trouble(keyword.span.clone(), message).help(did_you_mean(
             meant,
@@ -260,7 +260,7 @@ impl Draft<'_> {
 
     fn not_a_ply(&self, first: Range<usize>) -> LoadError {
         if self.bytes.trim_ascii().is_empty() {
-            return LoadError::new(self.file, "the file is empty").help("export or fetch it again");
+            return LoadError::new(self.file, "the file is empty").help("export or download it again");
         }
         let first = first.start..first.end.min(first.start + 40);
         self.trouble(first, "this is not a PLY file: its first line is not `ply`")

@@ -80,7 +80,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
     mesh.uvs = finite_uvs(mesh.uvs);
     mesh.validate().map_err(|message| {
         LoadError::new(file, message).help(if mesh.triangles.is_empty() {
-            "export the mesh with faces: without one there is nothing to see"
+            "export the mesh with faces: without faces there is nothing to render"
         } else {
             "export the mesh again: each x, y and z has to be a number below 3e38"
         })

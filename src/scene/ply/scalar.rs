@@ -65,7 +65,7 @@ impl Scalar {
     ///
     /// If there are more than eight bytes.
     pub fn decode(self, bytes: &[u8], order: ByteOrder) -> f64 {
-        // Turned round, a big-endian number is a little-endian one: that leaves one way to read each kind.
+        // Reverse the bytes of a big-endian number, so that all numbers are decoded as little-endian.
         let mut little = [0; 8];
         let used = &mut little[..bytes.len()];
         used.copy_from_slice(bytes);
@@ -91,7 +91,7 @@ impl Scalar {
     pub fn parse(self, word: &[u8]) -> Option<f64> {
         let word = std::str::from_utf8(word).ok()?;
         match self {
-            // Rounded once: by way of `f64` a number could be rounded twice and end one step off.
+            // Parse as `f32` directly, because by way of `f64` a number is rounded twice, and can be one step off.
             Scalar::Float32 => word.parse::<f32>().ok().map(f64::from),
             _ => word.parse().ok(),
         }

@@ -142,7 +142,7 @@ impl Layout {
         }
         body.check_left(corners, item, place)?;
 
-        // A fan: the first corner sees every edge that does not touch it, and makes a triangle with each.
+        // Cut the face into a fan: the first corner makes a triangle with each edge that does not touch it.
         let first = self.corner(body, place, item)?;
         let mut previous = self.corner(body, place, item)?;
         for _ in 2..corners {
@@ -156,7 +156,7 @@ impl Layout {
     /// One index of a vertex; fails if there is no such vertex.
     fn corner(&self, body: &mut Body, place: Place, item: Scalar) -> Result<u32, LoadError> {
         let index = body.value(item, place)?;
-        // Some writers spell indices as floats, which is fine as long as they count. False also for a NaN.
+        // Accept indices that are written as floats, if they are whole numbers in range. The test is false for NaN.
         if 0.0 <= index && index < self.vertex_count as f64 && index.fract() == 0.0 {
             return Ok(index as u32);
         }
@@ -174,7 +174,7 @@ impl Layout {
     }
 }
 
-/// What to say of a header that lacks something.
+/// Makes the errors for a header that lacks something.
 struct Missing<'a> {
     file: &'a Path,
     bytes: &'a [u8],

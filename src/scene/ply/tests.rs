@@ -1,4 +1,4 @@
-//! Facts about PLY files.
+//! Tests of the PLY reader.
 
 mod accepted;
 mod refused;
@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use crate::scene::error::LoadError;
 use std::path::Path;
 
-/// The header of a mesh in which nothing is special.
+/// The header of a simple mesh.
 const PLAIN: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
                      element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 const CORNERS: &str = "0 0 0\n1 0 0\n0 1 0\n";
@@ -35,7 +35,7 @@ fn plain_with(from: &str, to: &str) -> String {
     text.replacen(from, to, 1)
 }
 
-/// Whatever the bytes are, the answer is a mesh that is sound or an error.
+/// For any bytes, the result is a valid mesh or an error.
 #[test]
 fn no_bytes_make_the_reader_panic() {
     let ascii = format!("{PLAIN}{CORNERS}3 0 1 2\n");
@@ -46,7 +46,7 @@ fn no_bytes_make_the_reader_panic() {
         assert!(parsed(original).is_ok());
         crate::scene::ply::text::mutations(original, |bytes| {
             if let Ok(mesh) = parsed(bytes) {
-                mesh.validate().expect("a mesh that is accepted is sound");
+                mesh.validate().expect("an accepted mesh is valid");
             }
         });
     }

@@ -19,7 +19,7 @@ pub(crate) struct Word<'a> {
 pub(crate) fn read_bytes(file: &Path) -> Result<Vec<u8>, LoadError> {
     std::fs::read(file).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => LoadError::new(file, "there is no such file")
-            .help("check the spelling; names count from the directory in which the command was started"),
+            .help("check the spelling; paths are relative to the directory in which the command was started"),
         _ => LoadError::new(file, format!("the file cannot be read: {error}"))
             .help("check that it is a file and that you may read it"),
     })
@@ -51,9 +51,9 @@ pub(crate) fn trouble_at(
     span: Range<usize>,
     message: impl Into<String>,
 ) -> LoadError {
-    // Only the text before the trouble is counted into lines, so the rest may be megabytes of binary data.
+    // Count lines only in the text before the error, because the rest may be megabytes of binary data.
     let text = readable(&bytes[..span.end]);
-    // Very old files end their lines with a carriage return alone.
+    // Lines of very old files end with a carriage return alone.
     let text = if text.contains('\n') { text } else { text.replace('\r', "\n").into() };
     LoadError::at(file, &text, span, message)
 }
@@ -79,7 +79,7 @@ pub(crate) fn quote(word: &str) -> String {
 /// distance of at most 1 plus a fifth of the candidate's length. Case does not matter in `word`; a word of
 /// more than 40 bytes has no candidate.
 pub(crate) fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // Longer words are no typing mistakes, and the distance takes time that is quadratic in the length.
+    // Skip longer words: they are not typing mistakes, and the distance takes time quadratic in the length.
     const LONGEST: usize = 40;
     if word.len() > LONGEST {
         return None;
@@ -106,7 +106,10 @@ pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
         (b"OFF", "it looks like an OFF file: export the mesh as PLY or OBJ"),
         (b"glTF", "it looks like a glTF file: export the mesh as PLY or OBJ"),
         (b"{", "it looks like JSON, perhaps a glTF file: export the mesh as PLY or OBJ"),
-        (b"<", "it looks like a web page, perhaps an error page saved by a download: fetch the file again"),
+        (
+            b"<",
+            "it looks like a web page, perhaps an error page saved by a download: download the file again",
+        ),
         (b"version https://git-lfs", "it is only a pointer to the real file: run `git lfs pull`"),
         (b"\x1f\x8b", "it is compressed: unpack it with `gunzip` first"),
         (b"PK", "it is a zip archive: unpack it first"),
@@ -116,7 +119,7 @@ pub(crate) fn guess(bytes: &[u8]) -> Option<&'static str> {
         (b"v ", LOOKS_LIKE_OBJ),
         (b"newmtl ", "it looks like a material library: the mesh is the OBJ file that names it"),
     ];
-    // OBJ files often open with comments, which tell nothing.
+    // Skip the comments with which OBJ files often begin.
     let mut bytes = bytes.trim_ascii_start();
     while bytes.starts_with(b"#") {
         let end = bytes.iter().position(|&byte| byte == b'\n').unwrap_or(bytes.len());

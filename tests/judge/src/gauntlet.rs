@@ -1,4 +1,4 @@
-//! Ray/triangle tests against distributions of hard inputs and against closed meshes, judged exactly.
+//! Measures ray/triangle tests on distributions of hard inputs and on closed meshes, against exact arithmetic.
 
 use crate::leak_table;
 use anyhow::Result;
@@ -12,20 +12,20 @@ use raykata_cli::cost::Summary;
 use raykata_cli::report::bar_of_steps;
 use std::hint::black_box;
 
-/// A question to a method.
+/// An input of a method: a ray and a triangle.
 pub type Input = (Ray, Triangle);
 /// The `t` of each hit.
 pub type Answers = Vec<Option<f32>>;
-/// Answers many questions.
+/// Answers a batch of inputs.
 type Ask<'a> = Box<dyn Fn(&[Input]) -> Answers + Sync + 'a>;
 
-/// A method or a function of the kit.
+/// A method, or a function of the kit.
 pub struct Row<'a> {
-    /// What it is called.
+    /// The name of the method.
     pub name: String,
-    /// How it answers all inputs.
+    /// Answers all inputs.
     pub answer: Ask<'a>,
-    /// The method itself, if it is cheap to ask: then nothing is asked that an earlier answer has settled.
+    /// The method itself, if a call is cheap. Then triangles are tested one by one, and none after the first hit.
     pub method: Option<fn(&Ray, &Triangle) -> Option<f32>>,
 }
 
@@ -45,7 +45,7 @@ pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
                 inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
             ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
         };
-        // A function that is not written yet is left out, with a word about it.
+        // Leave out a function that is not written yet, and say so.
         match kit_error::catch(|| answer(&[example])) {
             Ok(_) => rows.push(Row { name: name.into(), answer: Box::new(answer), method: None }),
             Err(error) => println!("{name} is left out: {error}"),
@@ -57,7 +57,7 @@ pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
 /// Inputs of each distribution, and rays at the edges and at the vertices of each mesh, for a [`summary`].
 const INPUTS_OF_SUMMARY: usize = 10_000;
 
-/// All rows in short.
+/// The summaries of all rows.
 pub fn summary(rows: Vec<Row<'_>>) -> Vec<Summary> {
     const SEED: u64 = 1;
     let bar = bar_of_steps(rows.len());
@@ -82,7 +82,7 @@ pub fn summary(rows: Vec<Row<'_>>) -> Vec<Summary> {
     summaries
 }
 
-/// Prints how often each row is wrong on each distribution, by how much, and how often it leaks.
+/// Prints how often each row is wrong on each distribution and by how much, and how often it leaks.
 pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<()> {
     let bar = bar_of_steps(DISTRIBUTIONS.len() + rows.len());
     let judged: Vec<Judged> = DISTRIBUTIONS
@@ -108,9 +108,9 @@ pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<()> {
     print_table("worst μ", &rows, &heads, |row, column| short(cells[row][column].margin), None);
     print_table("t, ulps", &rows, &heads, |row, column| short(cells[row][column].ulps), None);
     println!(
-        "wrong %: verdicts that are not the exact one; ns: of one call, with the answer stored (interior).\n\
-         worst μ: how many roundings the worst of them was from flipping; a stable method stays below 64.\n\
-         t, ulps: 99 of 100 hits have a t that is off by less.\n\n\
+        "wrong %: wrong verdicts; ns: time per call, with the answer stored (distribution `interior`).\n\
+         worst μ: the margin of the worst wrong verdict, in roundings; a stable method stays below 64.\n\
+         t, ulps: the error of t that 99 of 100 hits stay below.\n\n\
          The distributions:"
     );
     for distribution in &DISTRIBUTIONS {
@@ -145,7 +145,7 @@ fn percent(share: f64) -> String {
     }
 }
 
-/// Three digits, whatever the size.
+/// The number with three digits.
 fn short(number: f64) -> String {
     match number {
         0.0 => "0".into(),

@@ -1,4 +1,4 @@
-//! Leaks of closed meshes.
+//! Counts the leaks of closed meshes.
 
 use crate::gauntlet::{Answers, Input, Row};
 use anyhow::Result;
@@ -8,7 +8,8 @@ use oracle::splitmix::Random;
 use raykata::ray::Ray;
 use raykata_cli::queue;
 
-/// Prints how many rays leak, by row and mesh. Methods are counted one per thread, and then the functions of the kit.
+/// Prints how many rays leak, by row and mesh. Methods are counted first, one per thread, then the functions
+/// of the kit.
 pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<()> {
     let meshes = closed();
     let of_method = |(): &(), row: &Row<'_>| {
@@ -26,7 +27,7 @@ pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<()> {
     Ok(())
 }
 
-/// Leaks of one row in a million rays, over all meshes and both aims.
+/// Leaks of one row per million rays, over all meshes and both aims.
 pub fn per_million(row: &Row<'_>, seed: u64, rays: u64) -> f64 {
     let meshes = closed();
     let pairs = || meshes.iter().flat_map(|mesh| Aim::ALL.map(|aim| (mesh, aim)));
@@ -42,15 +43,15 @@ fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> String {
     meshes.iter().map(cell).collect()
 }
 
-/// The same count for somebody whom it is dear to ask.
+/// The same count with calls in batches, for kits, whose calls are expensive.
 fn in_batches(mesh: &Closed, aim: Aim, seed: u64, rays: u64, answer: impl Fn(&[Input]) -> Answers) -> u64 {
     let mut random = Random::new(seed, aim as u64);
     let rays: Vec<(Ray, u32)> = (0..rays).map(|_| aimed(mesh, aim, &mut random)).collect();
     leaks_of(mesh, &rays, answer)
 }
 
-/// How many rays, each with a vertex near which it hits, leak: the triangles around the vertices of all rays are asked in
-/// one batch, and all triangles only for rays that hit none of these.
+/// The number of rays that leak; each ray comes with a vertex near which it should hit. The triangles around
+/// the vertices of all rays are tested in one batch, and all triangles only for rays that hit none of these.
 pub fn leaks_of(mesh: &Closed, rays: &[(Ray, u32)], answer: impl Fn(&[Input]) -> Answers) -> u64 {
     let fan = |vertex: u32| &mesh.fans[vertex as usize];
     let near: Vec<Input> = rays

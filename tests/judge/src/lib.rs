@@ -1,7 +1,7 @@
-//! The judge: puts the checks and the exact oracle to a kit, which runs in a worker. `raykata` starts it as a program of
-//! its own, so that a picture need not build it; the grader shares its parts.
+//! The judge: runs the checks and the exact oracle on a kit, which runs in a worker. It is a separate
+//! program, so that `raykata` can render a picture without building it; the grader uses its modules as well.
 
-/// Prints a line as the macro of the standard library does, but ends in peace when nobody reads it any more.
+/// Prints a line like the macro of the standard library, but does not panic if the reader has closed the pipe.
 macro_rules! println {
     () => { raykata_cli::report::say(format_args!("\n")) };
     ($($words:tt)*) => { raykata_cli::report::say(format_args!("{}\n", format_args!($($words)*))) };

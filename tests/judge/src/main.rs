@@ -1,5 +1,5 @@
-//! What `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge gauntlet ROOT WORKER
-//! INPUTS SEED`, and `judge hits`, which is asked through standard input.
+//! The program that `raykata` starts: `judge check ROOT WORKER [STAGE]`, `judge status ROOT WORKER`, `judge
+//! gauntlet ROOT WORKER INPUTS SEED`, and `judge hits`, which reads requests from standard input.
 
 use anyhow::{Result, bail};
 use judge::{gauntlet, hits, scorecard};
@@ -18,7 +18,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether all went well.
+/// Runs a command; returns whether it succeeded.
 fn run() -> Result<bool> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();

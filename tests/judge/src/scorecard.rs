@@ -1,4 +1,4 @@
-//! `raykata check`, and `raykata` alone: where a student stands and what comes next.
+//! `raykata check`, and `raykata` without a command: the points of a student and the next step.
 
 use all_checks::STAGES;
 use anyhow::Result;
@@ -8,13 +8,13 @@ use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;
 use std::path::Path;
 
-/// A check and how it ended.
+/// A check and its verdict.
 pub struct Graded {
     /// The check.
     pub check: &'static Check,
-    /// How it ended.
+    /// The verdict.
     pub verdict: Verdict,
-    /// What it is worth.
+    /// The points of the check.
     pub points: u32,
 }
 
@@ -24,12 +24,12 @@ impl Graded {
     }
 }
 
-/// Runs all checks of the stages for which `wanted` holds, each with a kit of its own, on all cores.
+/// Runs all checks of the stages for which `wanted` is true, each with a kit of its own, on all cores.
 pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
     run_checks_on(queue::cores(), source, wanted, 0)
 }
 
-/// The same on this many threads, with the inputs that `seed` picks.
+/// The same on this many threads, with the inputs of `seed`.
 pub fn run_checks_on(
     threads: usize,
     source: &Source,
@@ -45,7 +45,7 @@ pub fn run_checks_on(
     queue::run(&vec![(); threads], &checks, grade)
 }
 
-/// Prints the scorecard; `Ok(true)` if everything passed.
+/// Prints the scorecard; `Ok(true)` if all checks passed.
 pub fn scorecard(source: &Source, stage: Option<u8>) -> Result<bool> {
     let graded = run_checks(source, |number| stage.is_none_or(|stage| stage == number))?;
     for (number, _) in STAGES.iter().filter(|(number, _)| stage.is_none_or(|stage| stage == *number)) {
@@ -81,7 +81,7 @@ fn wait_for_it(checks: usize) -> String {
     if checks == 1 { "1 check waits for it".into() } else { format!("{checks} checks wait for it") }
 }
 
-/// `(place, (task, checks that wait for it))`, in the order of the lecture.
+/// The gaps, `(place, (task, number of checks that wait for it))`, in the order of the lecture.
 fn gaps(graded: &[Graded]) -> Vec<(String, (String, usize))> {
     let mut gaps: Vec<(String, (String, usize))> = Vec::new();
     for one in graded {
@@ -111,7 +111,7 @@ fn stage_line(number: u8, graded: &[&Graded]) -> String {
     )
 }
 
-/// Where the student stands, and the next step.
+/// Prints the points of the student, and the next step.
 pub fn status(root: &Path, source: &Source) -> Result<()> {
     let graded = run_checks(source, |_| true)?;
     for (number, _) in STAGES {

@@ -1,5 +1,5 @@
-//! A worker that does everything wrong, for the tests beside it and for those of the grader. The radius of the first sphere says what, if it is
-//! below zero; other questions are answered as the reference would.
+//! A worker that misbehaves, for the tests beside it and for those of the grader. A negative radius of the
+//! first sphere selects how; all other requests are answered by the reference.
 
 use raykata::kit::{Answer, Request, StudentKit};
 use raykata::worker::{Reply, send};
@@ -11,7 +11,7 @@ fn recurse(depth: u64) -> u64 {
     if black_box(depth) == u64::MAX { 0 } else { 1 + black_box(recurse(depth + 1)) }
 }
 
-/// Late for ever, but only once: the process that is asked next finds the mark that the one before left, and goes on.
+/// Waits forever, but only once: the next process finds the mark file of the one before, removes it and continues.
 fn late_once(mark: u32) {
     let mark = std::env::temp_dir().join(format!("raykata-late-{mark}"));
     if std::fs::File::create_new(&mark).is_ok() {
@@ -22,7 +22,7 @@ fn late_once(mark: u32) {
     let _ = std::fs::remove_file(mark);
 }
 
-/// The pipe to the judge, behind the back of the library.
+/// The pipe to the judge, opened without the library.
 #[cfg(unix)]
 fn pipe() -> impl std::io::Write {
     use std::os::fd::AsFd;
@@ -62,13 +62,13 @@ fn main() {
                     "{:?}",
                     std::process::Command::new("/bin/sh").spawn().map_err(|error| error.kind())
                 ),
-                // No message.
+                // Bytes that are not a message.
                 -20 => drop(pipe().write_all(&[8, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255])),
-                // One that never ends.
+                // A message that never ends.
                 -21 => drop(pipe().write_all(&[255; 4096])),
                 -22 => while say(&Reply::Progress { done: 0, total: 1 }) {},
                 -23 => drop(say(&Reply::Answer(Box::new(Answer::Render(None))))),
-                // Answers to all questions to come.
+                // Answers to all future requests.
                 -24 => while say(&Reply::Answer(Box::new(Answer::SphereAlgebraic(vec![Some(1.0)])))) {},
                 _ => {}
             }

@@ -1,5 +1,5 @@
-//! Code in a worker may panic, loop, overflow its stack or end its process: that costs the call it was asked, with a
-//! message that says what happened, and the next call is answered as if nothing had been.
+//! Code in a worker may panic, loop, overflow its stack or end its process. Then only the current call fails,
+//! with a message that says what happened, and the next call is answered normally.
 
 mod asking;
 
@@ -33,7 +33,7 @@ fn each_way_to_die_is_told_and_the_next_call_is_answered() {
     assert!(how_it_crashed(ask(&door, -2.0)).contains("exit status: 0"));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     how_it_crashed(ask(&door, -3.0));
-    assert_eq!(how_it_crashed(ask(&door, -4.0)), "the stack overflowed: a recursion that never ends?");
+    assert_eq!(how_it_crashed(ask(&door, -4.0)), "the stack overflowed: is there an infinite recursion?");
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
 }
 
@@ -42,7 +42,7 @@ fn an_endless_loop_ends() {
     let door = door();
     let started = Instant::now();
     assert_eq!(ask(&door, -5.0), Err(KitError::TimedOut { seconds: 2 }));
-    // Not how fast it is, but that it ends at all: without the watchdog this test hangs.
+    // Test only that the call ends: without the watchdog this test hangs.
     assert!(started.elapsed() < Duration::from_secs(60));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
 }
@@ -51,8 +51,8 @@ fn an_endless_loop_ends() {
 fn what_is_late_on_a_busy_machine_is_no_endless_loop() {
     let program = || env!("CARGO_BIN_EXE_misbehaving-worker").into();
     let patience = Duration::from_secs(2);
-    // Late the first time, however long anybody waits, and prompt the second time: how fast the machine is decides nothing.
-    // The range of the ray tells runs side by side apart.
+    // The first try never ends and the second one ends at once, so the speed of the machine does not matter.
+    // The range of the ray distinguishes runs at the same time.
     let mut late = query(-9.0);
     late.ray.t_max = std::process::id() as f32;
     let ask_late = |door: &Door<Worker>| kit_error::catch(|| door.sphere_algebraic(&[late]));
@@ -61,7 +61,7 @@ fn what_is_late_on_a_busy_machine_is_no_endless_loop() {
     assert_eq!(ask(&hasty, 10.0), Ok(vec![Some(10.0)]));
     assert!(ask_late(&hasty).is_ok());
     assert_eq!(ask_late(&Door(Worker::new(program(), patience))), Err(KitError::TimedOut { seconds: 2 }));
-    // The process that was ended has left its mark; this takes it away.
+    // Remove the mark file of the process that was ended.
     assert!(ask_late(&hasty).is_ok());
 }
 
@@ -109,8 +109,8 @@ fn a_frame_through_the_pipe_is_the_frame_that_is_linked() {
         }
     }
     let seen = Seen(AtomicU64::new(0));
-    let piped = door().render(&job, &seen).expect("nobody cancels");
-    let linked = solutions::Kit.door().render(&job, &Unwatched).expect("nobody cancels");
+    let piped = door().render(&job, &seen).expect("not cancelled");
+    let linked = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     assert_eq!((piped.film, piped.counts, piped.notes), (linked.film, linked.counts, linked.notes));
     assert_eq!(seen.0.load(Ordering::Relaxed), 1000);
 }

@@ -1,9 +1,9 @@
-//! A stream of random bits for inputs by the million: SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom
-//! number generators", 2014). Small inputs that shall shrink come from proptest.
+//! A stream of random bits for millions of inputs: SplitMix64 (Steele, Lea and Flood, "Fast splittable
+//! pseudorandom number generators", 2014). Inputs that a check shrinks come from proptest.
 
 use glam::{Vec3, vec3};
 
-/// The stream.
+/// The stream of random bits.
 pub struct Random(u64);
 
 impl Random {
@@ -25,17 +25,17 @@ impl Random {
         ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
     }
 
-    /// In `0..1`.
+    /// A number in `0..1`.
     pub fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 * (-24f32).exp2()
     }
 
-    /// In `-1..1`.
+    /// A number in `-1..1`.
     pub fn signed(&mut self) -> f32 {
         2.0 * self.unit() - 1.0
     }
 
-    /// Each coordinate in `-1..1`.
+    /// A vector with each coordinate in `-1..1`.
     pub fn in_cube(&mut self) -> Vec3 {
         vec3(self.signed(), self.signed(), self.signed())
     }

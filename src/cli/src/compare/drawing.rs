@@ -1,4 +1,4 @@
-//! Pictures: the boxes or cells of a structure over the scene, and what every pixel cost.
+//! Pictures: the boxes or cells of a structure over the scene, and the cost of each pixel.
 
 use super::measure::Measured;
 use crate::report::Thousands;
@@ -12,7 +12,7 @@ use raykata::scene::Scene;
 use raykata::world::camera_for;
 use std::path::Path;
 
-/// More edges than this are a blot and no picture.
+/// The most edges that are drawn: with more, the picture is a blot.
 const MOST_EDGES: usize = 200_000;
 
 /// Writes `cells-ROW.png` for rows that have cells, and `tests-ROW.png` for all, in the same colours.
@@ -31,7 +31,7 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         let work = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         works.push((file("tests"), work.film));
     }
-    // The brightest pixel of all pictures is white, so that they can be compared.
+    // Scale all pictures by the most expensive pixel of all, so that they can be compared.
     let most = works.iter().flat_map(|(_, film)| &film.pixels).map(|p| p.element_sum()).fold(1.0, f32::max);
     for (file, film) in &works {
         let mut heat = Film::new(film.width, film.height);
@@ -39,8 +39,8 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         save(&heat, file)?;
     }
     println!(
-        "\ntests-*.png: visits, box and primitive tests of all rays of a pixel; black is 1, white {}, and each step of \
-         brightness a factor; what a packet asks is counted at one of its pixels",
+        "\ntests-*.png: visits, box tests and primitive tests of all rays of a pixel; black is 1, white is \
+         {}, and the scale is logarithmic; the work of a packet is counted at one of its pixels",
         Thousands(most as u64)
     );
     Ok(())
@@ -56,7 +56,7 @@ fn file_name(row: &str) -> String {
     name.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
 }
 
-/// Black, violet, red, yellow, white, by the logarithm.
+/// A colour from black over violet, red and yellow to white, on a logarithmic scale.
 fn heat_color(tests: f32, most: f32) -> Vec3 {
     const COLORS: [Vec3; 5] = [
         Vec3::new(0.0, 0.0, 0.02),
@@ -88,7 +88,7 @@ fn projected(camera: &Camera, film: &Film, ends: [Vec3; 2]) -> Option<[Vec2; 2]>
         let way = end - camera.position;
         Vec3::new(way.dot(camera.right), way.dot(camera.up), way.dot(camera.towards))
     });
-    // What is behind is cut off a little in front of the eye.
+    // Clip the part behind the camera at a plane a little in front of it.
     let near = 1e-3 * seen[0].z.abs().max(seen[1].z.abs()).max(1e-6);
     let cut = |from: Vec3, to: Vec3| {
         if from.z >= near { from } else { from.lerp(to, (near - from.z) / (to.z - from.z)) }
@@ -113,7 +113,7 @@ fn line(film: &mut Film, from: Vec2, to: Vec2) {
         let at = from.lerp(to, step as f32 / steps as f32);
         if at.x >= 0.0 && at.y >= 0.0 && at.x < film.width as f32 && at.y < film.height as f32 {
             let pixel = &mut film.pixels[at.y as usize * film.width as usize + at.x as usize];
-            // Lines that lie above each other do not grow together to a blot.
+            // Blend the colour with the picture, so that what lies behind the lines remains visible.
             *pixel = pixel.lerp(COLOR, 0.35);
         }
     }

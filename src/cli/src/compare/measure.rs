@@ -1,4 +1,4 @@
-//! Measuring: counts once, times by turns.
+//! Measuring: each picture once with counts, then all pictures in turn for times.
 
 use super::rows::Row;
 use crate::report::{bar_of_steps, quartiles};
@@ -13,10 +13,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// More questions than this are not asked for one picture; a smaller one has to tell.
+/// The most tests for one picture; where it needs more, a smaller picture is measured.
 const MOST_QUESTIONS: u64 = 60_000_000;
 
-/// Who is measured, and how often.
+/// The kit that is measured, and the number of rounds.
 pub struct Bench<'a> {
     pub kit: &'a dyn Kit,
     pub rounds: u32,
@@ -31,29 +31,31 @@ pub struct Measured {
     pub name: String,
     /// Seconds to build, the median.
     pub build_seconds: f64,
-    /// How large the structure is; nothing for brute force.
+    /// The size of the structure; `None` for brute force.
     pub size: Option<StructureSize>,
-    /// Memory of the structure and of those inside instances.
+    /// Bytes of the structure and of those of shared meshes.
     pub bytes: u64,
     pub counts: Counts,
     pub rays: u64,
-    /// Nanoseconds a ray on all threads together, the median.
+    /// Nanoseconds per ray on all threads together, the median.
     pub nanoseconds: f64,
-    /// Half the distance between the quartiles, as a share of the median.
+    /// Half the distance between the quartiles of the times, as a fraction of the median.
     pub spread: f64,
-    /// The picture was made at this many times fewer columns and rows, because it would take too long.
+    /// The factor by which columns and rows were divided, because the whole picture would take too long; 1 if
+    /// they were not.
     pub slice: u32,
-    /// Pixels that differ from those that the hierarchy by surface area makes at this size.
+    /// Number of pixels that differ from the picture of the hierarchy by surface area at the same size.
     pub different_pixels: u64,
-    /// What the picture lacks.
+    /// What the picture lacks, one sentence each.
     pub notes: Vec<String>,
     #[serde(skip)]
     pub film: Film,
 }
 
 impl Bench<'_> {
-    /// Makes every picture once with counts, then all of them by turns without.
+    /// Renders every picture once with counts, then all of them in turn without counts.
     pub fn measure(&self, scene: &Scene, rows: &[Row]) -> Result<Vec<Measured>> {
+        // Render each picture once with counts, as large as is affordable.
         let bar = bar_of_steps(rows.len() * (1 + self.rounds as usize));
         let mut measured: Vec<Measured> = Vec::new();
         let mut references = BTreeMap::new();
@@ -67,6 +69,7 @@ impl Bench<'_> {
             }
             bar.inc(1);
         }
+        // Time all pictures in turn.
         let mut times = vec![(Vec::new(), Vec::new()); measured.len()];
         for _ in 0..self.rounds {
             for (one, (builds, renders)) in measured.iter().zip(&mut times) {
@@ -78,6 +81,7 @@ impl Bench<'_> {
             }
         }
         bar.finish_and_clear();
+        // Take medians and quartiles.
         for (one, (builds, renders)) in measured.iter_mut().zip(times) {
             one.build_seconds = quartiles(builds)[1];
             let [low, median, high] = quartiles(renders);
@@ -87,7 +91,7 @@ impl Bench<'_> {
         Ok(measured)
     }
 
-    /// `references` are pictures by the hierarchy, by slice.
+    /// Renders one picture with counts; `references` are the pictures of the hierarchy, by slice.
     fn counted(
         &self,
         scene: &Scene,
@@ -96,6 +100,7 @@ impl Bench<'_> {
         references: &mut BTreeMap<u32, Film>,
     ) -> Result<Measured> {
         let frame = self.frame(scene, row, slice, true)?;
+        // Compare the picture with that of the hierarchy at the same size, bit by bit.
         let reference = match references.entry(slice) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(place) => {
@@ -125,24 +130,28 @@ impl Bench<'_> {
         })
     }
 
-    /// By how much columns and rows are to be divided so that the picture is done soon. Asked of a tiny picture, and
-    /// before that of a single pixel where even the tiny one may take minutes; `None` if the pixel does.
+    /// The factor by which columns and rows are divided so that the picture takes seconds. It is estimated
+    /// from a tiny picture, and before that from a single pixel where even the tiny picture may take minutes;
+    /// `None` if one pixel takes minutes.
     fn affordable_slice(&self, scene: &Scene, row: &Row) -> Result<Option<u32>> {
         let longer = scene.film.width.max(scene.film.height);
         let tiny = (longer / 10).max(1);
         let tried = match row.quality.accelerator {
-            // Each primitive is in one leaf, and a ray asks some tens even in the forest: whole pictures are soon done.
+            // Each primitive is in one leaf, and a ray tests some tens even in the forest, so whole pictures
+            // take seconds.
             Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
-            // A ray may ask all there are, or all in a node or a cell.
+            // A ray may test all primitives, or all in a node or a cell.
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes
             | Accelerator::BoundingSpheres
             | Accelerator::Grid => &[longer, tiny][..],
-            // Each has a scene on which it does badly; at worst a ray asks some ten thousand (a BSP tree in the forest).
+            // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the
+            // forest).
             Accelerator::Octree | Accelerator::OctreeByCells | Accelerator::KdTree | Accelerator::Bsp => {
                 &[tiny][..]
             }
         };
+        // Render smaller pictures first, and extrapolate their numbers of tests.
         for &slice in tried {
             let frame = self.frame(scene, row, slice, true)?;
             let Counts { node_visits, box_tests, primitive_tests, .. } = frame.counts;

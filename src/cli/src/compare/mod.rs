@@ -1,7 +1,7 @@
-//! `raykata compare`: the structures of stages 3, 8 and 9 side by side on one scene: what each costs to build, in memory,
-//! in questions a ray and in time; and pictures of where it divides space and of where rays are dear.
+//! `raykata compare`: the structures of stages 3, 8 and 9 on one scene: build time, memory, tests per ray and
+//! time of each, and pictures of its cells and of the cost of each pixel.
 //!
-//! `rows` (what is compared) · `measure` (how) · `table` and `plot` (how it is told) · `drawing` (pictures)
+//! `rows` (what is compared) · `measure` (counts and times) · `table` and `plot` (the report) · `drawing` (pictures)
 
 mod drawing;
 mod measure;
@@ -22,15 +22,16 @@ use std::path::{Path, PathBuf};
 /// `raykata compare`.
 pub static SPEC: Spec = Spec {
     name: "raykata compare",
-    about: "Compare the structures that find what rays meet, side by side on one scene.",
+    about: "Compare the acceleration structures on one scene.",
     arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
     options: &[
         &[
             Opt::value(
                 "--of",
                 "WHAT",
-                "What is compared: all accelerators; what the search of a scene graph saves; the kd-tree without each \
-                 of its heuristics; grids of growing resolution; or instances and copies [default: structures].",
+                "What is compared: all accelerators; the optimisations of a scene graph search; the kd-tree \
+                 without each of its heuristics; grids of growing resolution; or instances and copies \
+                 [default: structures].",
             )
             .choices(&names(&Of::NAMES)),
             Opt::value("--only", "LIST", "Only these accelerators, instead of all.")
@@ -39,12 +40,12 @@ pub static SPEC: Spec = Spec {
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is timed, by turns; the median counts [default: 3].",
+                "How often each picture is timed, all in turn; the median counts [default: 3].",
             ),
             Opt::value(
                 "--level",
                 "N",
-                "How deep the boxes and cells lie that are drawn, the root being at level 0 [default: 6].",
+                "The level of the boxes and cells that are drawn; the root has level 0 [default: 6].",
             ),
             Opt::value(
                 "--out",
@@ -52,7 +53,7 @@ pub static SPEC: Spec = Spec {
                 "The folder for pictures, plot and numbers [default: out/NAME-compare].",
             )
             .short("-o"),
-            Opt::flag("--table", "Only the table: no pictures, no plot."),
+            Opt::flag("--table", "Print only the table: no pictures, no plot."),
         ],
         Choice::OPTIONS,
         Threads::OPTIONS,
@@ -60,7 +61,7 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Which scene, what of it, and how long.
+/// The scene, what is compared, and how often.
 pub struct Options {
     scene: PathBuf,
     of: Of,
@@ -75,7 +76,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--only", "--of")?;
         Ok(Options {
@@ -93,8 +94,8 @@ impl Options {
     }
 }
 
-/// Measures, prints the table and writes the rest. Whether all rows make the same picture; copies and instances need not,
-/// for a ray that is carried into another space is rounded.
+/// Measures, prints the table and writes the rest. Returns whether all rows make the same picture; copies and
+/// instances may differ, because a ray that is transformed into another space is rounded.
 pub fn run(options: &Options) -> Result<bool> {
     let mut scene = load_scene(&options.scene)?;
     options.parameters.apply(&mut scene);

@@ -1,4 +1,5 @@
-//! The plot: bars for time and for tests, one pair a row, on logarithmic scales. An SVG file, the same for the same numbers.
+//! The plot: bars for time and for tests, one pair per row, on logarithmic scales. The same numbers give the
+//! same SVG file.
 
 use super::measure::Measured;
 use anyhow::{Context, Result};
@@ -18,7 +19,7 @@ pub fn write(file: &Path, title: &str, rows: &[Measured]) -> Result<()> {
         .with_context(|| format!("cannot write {}", file.display()))
 }
 
-/// One panel: numbers above 0, and how they are written.
+/// One panel: numbers above 0, and their format.
 struct Panel {
     title: &'static str,
     value: fn(&Measured) -> f64,
@@ -33,13 +34,13 @@ fn tests(one: &Measured) -> f64 {
 
 const PANELS: [Panel; 2] = [
     Panel {
-        title: "nanoseconds a ray",
+        title: "nanoseconds per ray",
         value: |one| one.nanoseconds,
         write: |x| format!("{x:.0}"),
         color: "#4477aa",
     },
     Panel {
-        title: "visits, box and primitive tests a ray",
+        title: "visits, box tests and primitive tests per ray",
         value: tests,
         write: |x| format!("{x:.1}"),
         color: "#cc6677",
@@ -74,7 +75,7 @@ impl Panel {
         let values: Vec<f64> = rows.iter().map(self.value).collect();
         let most = values.iter().copied().fold(1.0, f64::max);
         let least = values.iter().copied().filter(|x| *x > 0.0).fold(most, f64::min);
-        // Whole powers of ten, one of them to spare at least, so that no bar has length 0.
+        // Begin the axis at least one power of ten below the smallest number, so that no bar has length 0.
         let (low, high) =
             ((0.5 * least).log10().floor(), most.log10().ceil().max((0.5 * least).log10().floor() + 1.0));
         let x = |value: f64| left + BARS * ((value.log10() - low) / (high - low)).max(0.0);

@@ -1,4 +1,4 @@
-//! What can be compared: settings that differ in one thing.
+//! The rows that can be compared: settings that differ in one thing.
 
 use raykata::graph::Savings;
 use raykata::partition::KdHeuristics;
@@ -7,15 +7,16 @@ use raykata::scene::{Accelerator, Quality, Scene, Split};
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
-    /// Every accelerator, the hierarchy with each of its splits.
+    /// Every accelerator; the hierarchy with each of its splits.
     Structures,
-    /// What the search of a scene graph saves: volumes, skipping, sorting, the last hit.
+    /// The optimisations of a scene graph search: volumes, skipping, sorting; and a hierarchy with a cache or
+    /// packets.
     Savings,
     /// The kd-tree without each of its five heuristics.
     Heuristics,
     /// The grid at growing resolutions, and the formula's.
     Grids,
-    /// Meshes that stand in several places, kept once or copied.
+    /// Meshes with several instances: shared, or copied.
     Instances,
 }
 
@@ -33,7 +34,7 @@ impl Of {
 /// One line of the table.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// For people, and for names of files.
+    /// The name in the table, and in names of files.
     pub name: String,
     /// The settings.
     pub quality: Quality,

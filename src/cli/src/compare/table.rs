@@ -1,16 +1,16 @@
-//! The table, with the winner of each column marked; and the same numbers for machines.
+//! The table, with the best value of each column marked; and the same numbers as JSON.
 
 use super::measure::Measured;
 use crate::report::{Bytes, Thousands};
 use anyhow::{Context, Result};
 use std::path::Path;
 
-/// A column: its head, its numbers, and how they are written. Less is better in all of them.
+/// A column: its head, its numbers and their format. Smaller is better in all columns.
 struct Column {
     head: &'static str,
     value: fn(&Measured) -> Option<f64>,
     write: fn(f64) -> String,
-    /// Whether the least of them wins.
+    /// Whether the smallest number is marked.
     contest: bool,
 }
 
@@ -18,7 +18,7 @@ fn a_ray(one: &Measured, n: u64) -> Option<f64> {
     Some(n as f64 / one.rays.max(1) as f64)
 }
 
-/// A column in which the least wins.
+/// A column whose smallest number is marked.
 const fn contest(
     head: &'static str,
     value: fn(&Measured) -> Option<f64>,
@@ -27,7 +27,7 @@ const fn contest(
     Column { head, value, write, contest: true }
 }
 
-/// A column in which nobody wins.
+/// A column without a mark.
 const fn plain(head: &'static str, value: fn(&Measured) -> Option<f64>, write: fn(f64) -> String) -> Column {
     Column { head, value, write, contest: false }
 }
@@ -56,11 +56,11 @@ pub fn print(title: &str, rows: &[Measured]) {
         println!("{:<width$}{cells}{off:>10}{slice}", row.name);
     }
     println!(
-        "* least of its column; visits: nodes or cells looked into; ns: on all threads together, the median of rounds;\n\
-         pixels off: not as the hierarchy by surface area has them"
+        "* smallest of its column; visits: nodes or cells that were visited; ns: on all threads together, \
+         median of rounds;\npixels off: pixels that differ from those of the hierarchy by surface area"
     );
     if rows.iter().any(|row| row.slice > 1) {
-        println!("1/n: at an n-th of the columns and rows, because the whole picture would take too long");
+        println!("1/n: with an n-th of the columns and rows, because the whole picture would take too long");
     }
     let mut notes: Vec<&String> = rows.iter().flat_map(|row| &row.notes).collect();
     notes.sort();

@@ -1,4 +1,5 @@
-//! The best for your time: from the cheapest setting upwards, always by the step that buys the most.
+//! The best settings for a time or an error, by greedy search: from the cheapest setting, always the step
+//! that lowers the error most for its time.
 
 use super::greedy::{GreedySearch, Tried};
 use super::ladder::Parameter;
@@ -10,65 +11,65 @@ use anyhow::Result;
 use raykata::scene::Scene;
 use serde::Serialize;
 
-/// What is wanted.
+/// The goal of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
-    /// The least error for so many seconds.
+    /// The smallest error within this many seconds.
     Seconds(f64),
-    /// The least time for no more error than this.
+    /// The shortest time with at most this error.
     Error(f64),
 }
 
-/// One parameter, turned by one level.
+/// One step of the search: a parameter is set to a higher level.
 #[derive(Clone, Debug, Serialize)]
 pub struct Step {
     pub parameter: Parameter,
     pub to: String,
     pub error: f64,
-    /// Of a picture of the full size.
+    /// The time of a picture of the full size, in seconds.
     pub seconds: f64,
 }
 
-/// A parameter that stays where it is, and what one more level of it would do.
+/// A parameter that the search leaves at its level, and the effect of one more level.
 #[derive(Clone, Debug, Serialize)]
 pub struct Left {
     pub parameter: Parameter,
-    /// Where it stays.
+    /// Its value.
     pub at: String,
-    /// How much time, and how much error, one more level would take: 1.5 for half as much again.
+    /// The factors by which one more level changes time and error, for example 1.5.
     pub time_factor: f64,
     pub error_factor: f64,
 }
 
-/// Settings for a goal, and the way to them.
+/// The proposed settings for a goal, and the steps of the search.
 #[derive(Clone, Debug, Serialize)]
 pub struct Advice {
     pub goal: Goal,
-    /// The values of all parameters that this is about.
+    /// The proposed values of the parameters.
     pub values: Vec<(Parameter, String)>,
     pub steps: Vec<Step>,
     pub left: Vec<Left>,
-    /// Values that are faster and let rays through closed surfaces, a sentence each.
+    /// Values that are faster but let rays through closed surfaces, one sentence each.
     pub passed_over: Vec<String>,
-    /// What the scene's own settings come to.
+    /// Error and time of the scene's own settings.
     pub own_error: f64,
     pub own_seconds: f64,
-    /// What is expected of the proposal, and what came of it when it was rendered in full size.
+    /// The expected error and time of the proposal, and those measured when it was rendered in full size.
     pub expected_error: f64,
     pub expected_seconds: f64,
     pub verified_error: Option<f64>,
     pub verified_seconds: Option<f64>,
-    /// How to render what is proposed.
+    /// The command that renders the proposal.
     pub command: String,
     #[serde(skip)]
     pub setting: Setting,
 }
 
-/// How far the error of a setting may lie above that of another and still count as the same.
+/// The factor up to which a larger error counts as the same.
 pub const AS_GOOD: f64 = 1.02;
 
-/// Knobs of which one value is best whatever the others are: the fastest of those that are as accurate.
+/// Parameters with a best value that does not depend on the others: the fastest of the equally accurate values.
 const CHOSEN_ONCE: [Parameter; 6] = [
     Parameter::Accelerator,
     Parameter::Split,
@@ -78,7 +79,7 @@ const CHOSEN_ONCE: [Parameter; 6] = [
     Parameter::Precision,
 ];
 
-/// Proposes settings. `full` is how many times as many pixels the picture has in full size.
+/// Proposes settings. `full` is the number of pixels in full size divided by that of the measured picture.
 pub fn advise(
     bench: &Bench<'_>,
     scene: &Scene,
@@ -87,8 +88,10 @@ pub fn advise(
     goal: Goal,
     full: f64,
 ) -> Result<Option<Advice>> {
+    // Choose the parameters whose best value does not depend on the others.
     let mut tried = Tried { bench, scene, right, known: Vec::new() };
     let (start, passed_over) = with_what_is_best(measured, &Setting::of(scene));
+    // Search the values of the other parameters.
     let turned_by_steps: Vec<&Series> = measured
         .series
         .iter()
@@ -101,10 +104,12 @@ pub fn advise(
     if !search.go_up()? {
         return Ok(None);
     }
+    // Spend the rest of the budget, and measure one more step of each parameter.
     search.spend_the_rest()?;
     let left = search.one_step_more()?;
     let values = [search.values(), names_of_chosen(measured, &search.now.setting)].concat();
     let (now, steps) = (search.now, search.steps);
+    // Compare with the scene's own settings.
     let Some(own) = tried.point(&Setting::of(scene))? else { return Ok(None) };
     Ok(Some(Advice {
         goal,
@@ -123,7 +128,7 @@ pub fn advise(
     }))
 }
 
-/// Seconds of a picture with so many times as many pixels; what is built is the same.
+/// Seconds for a picture with `full` times as many pixels; the build time stays the same.
 pub fn seconds_in_full(point: &Point, full: f64) -> f64 {
     point.seconds * full + point.build_seconds
 }
@@ -132,12 +137,13 @@ fn is_chosen_once(parameter: Parameter) -> bool {
     CHOSEN_ONCE.contains(&parameter) || parameter == Parameter::Sampler
 }
 
-/// Whether one is faster than another by more than what their times wobble by.
+/// Whether `one` is faster than `other` by more than the spread of their times.
 fn is_faster(one: &Point, other: &Point) -> bool {
     one.seconds + one.spread + other.spread < other.seconds
 }
 
-/// The setting with every parameter that is chosen once at its best value, and what was faster and leaks.
+/// The setting with the best value of every parameter that is chosen once, and a sentence for each faster
+/// value that leaks.
 fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String>) {
     let (mut setting, mut passed_over) = (own.clone(), Vec::new());
     let leaks = |point: &Point| point.hits.map_or(0, |hits| hits.leaks);
@@ -145,12 +151,12 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
         let levels = || series.levels.iter().map(|(name, index)| (name, &measured.points[*index]));
         let least = levels().map(|(_, point)| point.error()).fold(f64::INFINITY, f64::min);
         let good = || levels().filter(|(_, point)| point.error() <= AS_GOOD * least);
-        // A picture may not show it, but what leaks in one scene is wrong in the next.
+        // Leave out values that leak: this picture may not show it, but another scene may.
         let fewest = good().map(|(_, point)| leaks(point)).min().unwrap_or_default();
         let tight = good().filter(|(_, point)| leaks(point) == fewest);
         let tight: Vec<_> = tight.map(|(_, point)| point).collect();
         let Some(fastest) = tight.iter().min_by(|a, b| a.seconds.total_cmp(&b.seconds)) else { continue };
-        // What is as fast, to what times wobble by, stays as the scene has it.
+        // Keep the scene's own value unless another is faster by more than the spread of the times.
         let stays = tight.iter().find(|point| point.setting == *own && !is_faster(fastest, point));
         let best = stays.unwrap_or(fastest);
         setting = setting.turned(series.parameter, &best.setting);
@@ -166,7 +172,7 @@ fn with_what_is_best(measured: &Measured, own: &Setting) -> (Setting, Vec<String
     (setting, passed_over)
 }
 
-/// Renders the proposal in full size, with other random numbers, and its error in the small size.
+/// Renders the proposal in full size with other random numbers, and measures its error in the small size.
 pub fn verify(
     bench: &Bench<'_>,
     small: &Scene,
@@ -184,7 +190,7 @@ pub fn verify(
     Ok(())
 }
 
-/// The sampler with the least error at the most samples, if they were compared.
+/// The sampler with the smallest error at the largest number of samples, if samplers were compared.
 fn best_sampler(measured: &Measured) -> Option<&Point> {
     let samplers = measured.series.iter().filter(|series| series.parameter == Parameter::Sampler);
     let last = samplers.filter_map(|series| series.levels.last()).map(|(_, index)| &measured.points[*index]);

@@ -1,14 +1,14 @@
-//! What a scene calls for, as far as parameters depend on it.
+//! The effects and shapes of a scene, which decide which parameters are useful.
 
 use raykata::effects::{Effect, Effects};
 use raykata::scene::Scene;
 use raykata::shape::Shape;
 
-/// A scene, and what is known of it.
+/// A scene and its effects.
 pub struct Called<'a> {
     pub scene: &'a Scene,
     pub effects: &'a Effects,
-    /// What rays are tested against.
+    /// The number of primitives that rays are tested against.
     pub primitives: u64,
 }
 
@@ -18,7 +18,7 @@ impl Called<'_> {
         self.shows(|shape, moves| match shape {
             Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } => true,
             Shape::Sphere(_) | Shape::Plane(_) => false,
-            // What moves has no space of its own and is made of triangles.
+            // A moving shape has no object space of its own and is made of triangles.
             _ => moves,
         })
     }
@@ -28,7 +28,8 @@ impl Called<'_> {
         self.shows(|shape, _| matches!(shape, Shape::Sphere(_)))
     }
 
-    /// Whether some shape is so, and whether it moves while the shutter is open.
+    /// Whether `is_so` holds for a shape that is shown; its second argument is whether the shape moves while
+    /// the shutter is open.
     fn shows(&self, is_so: impl Fn(&Shape, bool) -> bool) -> bool {
         let motion = self.effects.calls_for(Effect::Motion);
         self.scene.shown().iter().any(|shown| {
@@ -45,7 +46,7 @@ mod tests {
     use raykata::scene::load::parse;
     use std::path::Path;
 
-    /// Whether a scene of one node shows triangles and spheres, standing still and moving.
+    /// Checks whether a scene of one node shows triangles and spheres, without and with motion.
     #[track_caller]
     fn check(shape: &str, still: (bool, bool), moving: (bool, bool)) {
         let text = format!(

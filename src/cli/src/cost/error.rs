@@ -1,4 +1,4 @@
-//! How far a picture is from another, in linear light and to the eye.
+//! The difference between two pictures, in linear light and as the eye sees it.
 
 use anyhow::{Context, Result};
 use glam::Vec3;
@@ -6,23 +6,25 @@ use image::RgbImage;
 use raykata::film::{Film, encode_srgb};
 use serde::Serialize;
 
-/// Added to the square of what is right, so that black pixels do not decide (PBRT and others take the same).
+/// Added to the square of the reference, so that black pixels do not dominate (PBRT and others use the same number).
 const DARK: f64 = 0.01;
 
-/// How far off a picture is.
+/// The errors of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
-    /// Root of the mean square over all channels of all pixels, in linear light.
+    /// Root mean square error over all channels of all pixels, in linear light.
     pub rmse: f64,
-    /// Mean of the square divided by the square of what is right and 0.01: errors in the dark count as they are seen.
+    /// Relative mean square error: the mean of `error² / (reference² + 0.01)`, which weights errors in the
+    /// dark as the eye does.
     pub relative_mse: f64,
-    /// Structural similarity of what a screen shows (MSSIM, Wang and others, 2004): 1 for the same picture.
+    /// Mean structural similarity of the pictures as a screen shows them (MSSIM, Wang and others, 2004): 1
+    /// for equal pictures.
     pub similarity: f64,
-    /// Pixels that are not numbers. They count as black.
+    /// The number of pixels with NaN. They count as black.
     pub not_a_number: usize,
 }
 
-/// How far `film` is from `right`, which has the same size.
+/// The errors of `film` against the reference `right`, which has the same size.
 pub fn errors(film: &Film, right: &Film) -> Result<Errors> {
     let pairs = || film.pixels.iter().zip(&right.pixels).flat_map(|(yours, right)| channels(*yours, *right));
     let count = (3 * right.pixels.len()).max(1) as f64;
@@ -39,8 +41,8 @@ pub fn errors(film: &Film, right: &Film) -> Result<Errors> {
 /// Side of the windows of [`similarity`], in pixels.
 const WINDOW: u32 = 8;
 
-/// Mean structural similarity of two pictures of the same size, that of the worst channel. The windows lie side by side;
-/// those at the right and at the bottom may be smaller, and count less.
+/// Mean structural similarity of two pictures of the same size, for the worst channel. The windows do not
+/// overlap; those at the right and at the bottom may be smaller, and have a smaller weight.
 fn similarity(yours: &RgbImage, right: &RgbImage) -> f64 {
     let (width, height) = right.dimensions();
     let corners = || {
@@ -91,13 +93,13 @@ fn channels(yours: Vec3, right: Vec3) -> [(f64, f64); 3] {
     [0, 1, 2].map(|channel| (number(yours[channel]), number(right[channel])))
 }
 
-/// As a screen shows it.
+/// The picture as a screen shows it.
 pub fn shown(film: &Film) -> Result<RgbImage> {
     let bytes = film.to_bytes(encode_srgb).rgb;
     RgbImage::from_raw(film.width, film.height, bytes).context("a film with too few pixels")
 }
 
-/// Where a picture is wrong: black for right, then purple, orange and white for `most` and more.
+/// An image of the errors: black where there is none, then purple, orange, and white for `most` and more.
 pub fn heat(film: &Film, right: &Film, most: f64) -> RgbImage {
     let mut map = RgbImage::new(right.width, right.height);
     for (pixel, (yours, right)) in map.pixels_mut().zip(film.pixels.iter().zip(&right.pixels)) {
@@ -107,7 +109,7 @@ pub fn heat(film: &Film, right: &Film, most: f64) -> RgbImage {
     map
 }
 
-/// A scale of colours that grows lighter all the way, so that it reads in grey as well.
+/// A colour scale whose lightness grows steadily, so that it can be read in grey as well.
 fn glow(share: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 5] = [
         [0.0, 0.0, 0.0],
@@ -148,7 +150,7 @@ mod tests {
         assert_eq!(heat(&grey(0.5), &grey(0.5), 0.25).get_pixel(3, 3).0, [0, 0, 0]);
     }
 
-    /// Against the crate image-compare 0.5, which was used before.
+    /// The expected values come from the crate image-compare 0.5.
     #[test]
     fn similarity_is_that_of_known_pictures() {
         let picture = |a: u32, b: u32| {

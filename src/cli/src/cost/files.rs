@@ -1,4 +1,4 @@
-//! What machines and slides read: JSON, a table with commas, plots.
+//! The report as files for programs and slides: JSON, CSV and plots.
 
 use super::hits::Verdicts;
 use super::ladder::Parameter;
@@ -22,7 +22,7 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
     Ok(())
 }
 
-/// All points, one per line.
+/// All points as CSV, one per line.
 fn table(report: &Report<'_>) -> String {
     const HEADS: [&str; 15] = [
         "parameter",
@@ -75,7 +75,7 @@ fn write_whole(file: &Path, bytes: &[u8]) -> Result<()> {
         .with_context(|| format!("cannot write {}", file.display()))
 }
 
-/// File names and pictures: all parameters, and the samplers if they were compared.
+/// The names and contents of the plots: all parameters, and the samplers if they were compared.
 pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let series = &report.measured.series;
     let parameters: Vec<&Series> = series
@@ -85,11 +85,11 @@ pub fn plots(report: &Report<'_>) -> Vec<(&'static str, String)> {
     let samplers: Vec<&Series> = series.iter().filter(|one| one.parameter == Parameter::Sampler).collect();
     let mut plots = Vec::new();
     if !parameters.is_empty() {
-        let title = format!("{}: error over time, one parameter turned at a time", report.scene);
+        let title = format!("{}: error over time, one parameter changed at a time", report.scene);
         plots.push(("cost.svg", draw(report, &title, &parameters, Vec::new())));
     }
     if !samplers.is_empty() {
-        let title = format!("{}: samplers, 1 to {} samples a pixel", report.scene, most(&samplers));
+        let title = format!("{}: samplers, 1 to {} samples per pixel", report.scene, most(&samplers));
         let guides =
             [(-0.5, "slope −1/2"), (-0.75, "slope −3/4")].map(|(slope, name)| (slope, name.to_owned()));
         plots.push(("samplers.svg", draw(report, &title, &samplers, guides.to_vec())));
@@ -125,23 +125,23 @@ fn draw(report: &Report<'_>, title: &str, series: &[&Series], guides: Vec<(f64, 
         report.pareto_front.iter().map(|&index| (points[index].seconds, points[index].error()));
     svg(&Plot {
         title,
-        x_axis: "seconds a picture, logarithmic",
+        x_axis: "seconds per picture, logarithmic",
         y_axis: "root mean square error in linear light, logarithmic",
         lines: series.iter().map(line).collect(),
         guides,
         pareto_front: if samplers_only { Vec::new() } else { pareto_front.collect() },
-        // Below that it is the reference that is off.
+        // Below this line the error of the reference itself dominates.
         floor: report.reference_error.max(1e-9),
     })
 }
 
-/// Nanoseconds against wrong verdicts: each method in single and in double precision, and the functions of the kit.
+/// Nanoseconds against wrong hits: each method in single and in double precision, and the functions of the kit.
 fn numerics(all: &[Summary]) -> String {
     let mut lines: Vec<Line> = Vec::new();
     for one in all {
         let place = [one.nanoseconds, one.wrong_per_million, one.wrong_per_million, one.wrong_per_million];
         match lines.last_mut() {
-            // Under its method.
+            // The double precision version belongs to the line of its method.
             Some(line) if one.name.trim() == "in double" => line.points.push(place),
             _ if one.name.starts_with(' ') => {}
             _ => lines.push(Line { name: one.name.clone(), points: vec![place] }),
@@ -149,17 +149,17 @@ fn numerics(all: &[Summary]) -> String {
     }
     svg(&Plot {
         title: "ray/triangle tests: from single to double precision",
-        x_axis: "nanoseconds a test, logarithmic",
-        y_axis: "wrong in a million hard inputs, logarithmic",
+        x_axis: "nanoseconds per test, logarithmic",
+        y_axis: "wrong hits per million hard inputs, logarithmic",
         lines,
         guides: Vec::new(),
         pareto_front: Vec::new(),
-        // None at all is drawn as one.
+        // Zero cannot be drawn on a logarithmic axis, so it is drawn as one.
         floor: 1.0,
     })
 }
 
-/// What theory says of a ladder of samples.
+/// The theoretical slope for a series of sample counts.
 pub fn expected_slope(report: &Report<'_>, name: &str) -> Option<f64> {
     theory(if name == Parameter::Samples.name() { report.own_sampler } else { name })
 }

@@ -1,4 +1,5 @@
-//! The way up: from the cheapest value of every parameter, always by the step that lowers the error most for its time.
+//! The greedy search: from the cheapest value of every parameter, always the step that lowers the error most
+//! for its time.
 
 use super::advice::{AS_GOOD, Goal, Left, Step, seconds_in_full};
 use super::ladder::Parameter;
@@ -10,16 +11,17 @@ use crate::report::bar_of_steps;
 use anyhow::Result;
 use raykata::scene::Scene;
 
-/// How much of a budget is spent on purpose: frames differ by some percent from one to the next.
+/// The fraction of a budget that is planned; the rest is a reserve, because frame times differ by some percent.
 const SHARE: f64 = 0.95;
 
-/// More samples a pixel than this are not proposed.
+/// The most samples per pixel that are proposed.
 const MOST_SAMPLES: u32 = 65_536;
 
-/// How often a budget is met anew, each time with a twentieth fewer samples at least: times wobble by some percent.
+/// How often the number of samples is corrected, each time by at least a twentieth, because times vary by
+/// some percent.
 const ATTEMPTS: u32 = 4;
 
-/// Settings that have been measured, each once, however often it is asked for.
+/// The settings that have been measured. Each is measured once and then kept.
 pub struct Tried<'a> {
     pub bench: &'a Bench<'a>,
     pub scene: &'a Scene,
@@ -28,7 +30,7 @@ pub struct Tried<'a> {
 }
 
 impl Tried<'_> {
-    /// `None` if it takes too long, or nobody wants it any more.
+    /// The measurement of `setting`; `None` if it takes too long or the program is being stopped.
     pub fn point(&mut self, setting: &Setting) -> Result<Option<Point>> {
         if let Some(point) = self.known.iter().find(|point| point.setting == *setting) {
             return Ok(Some(point.clone()));
@@ -39,12 +41,12 @@ impl Tried<'_> {
     }
 }
 
-/// A search, as far as it has come.
+/// The state of a search.
 pub struct GreedySearch<'a, 't> {
     tried: &'a mut Tried<'t>,
     measured: &'a Measured,
     ladders: Vec<&'a Series>,
-    /// The level of each ladder.
+    /// The current level of each ladder.
     at: Vec<usize>,
     goal: Goal,
     full: f64,
@@ -53,18 +55,19 @@ pub struct GreedySearch<'a, 't> {
     bar: ProgressBar,
 }
 
-/// A step that could be taken.
+/// A possible next step.
 struct Candidate {
-    /// Which ladder, and to which level.
+    /// The ladder, and the level after the step.
     ladder: usize,
     level: usize,
     point: Point,
-    /// How much error it saves for its time.
+    /// The logarithm of the error reduction, per second.
     worth: f64,
 }
 
 impl<'a, 't> GreedySearch<'a, 't> {
-    /// At the foot of all ladders, everything else as in `start`. `None` if even that takes too long.
+    /// Starts at the lowest level of all ladders, with everything else as in `start`. `None` if even that
+    /// takes too long.
     pub fn new(
         tried: &'a mut Tried<'t>,
         measured: &'a Measured,
@@ -83,7 +86,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         Ok(Some(GreedySearch { tried, measured, ladders, at, goal, full, now, steps: Vec::new(), bar }))
     }
 
-    /// Goes on until the goal is reached or no step helps. `false` if nobody wants it any more.
+    /// Continues until the goal is reached or no step helps. `false` if the program is being stopped.
     pub fn go_up(&mut self) -> Result<bool> {
         while !self.has_arrived() {
             let best = self.best_step()?;
@@ -117,7 +120,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         self.now = point;
     }
 
-    /// Where the next level of a ladder leads.
+    /// The current setting with one ladder at another level.
     fn turned_to(&self, ladder: usize, level: usize) -> Setting {
         let series = self.ladders[ladder];
         let to = &self.measured.points[series.levels[level].1].setting;
@@ -127,11 +130,11 @@ impl<'a, 't> GreedySearch<'a, 't> {
     fn best_step(&mut self) -> Result<Option<Candidate>> {
         let mut best: Option<Candidate> = None;
         for ladder in 0..self.ladders.len() {
-            // The next level and the one after it: some parameters help only when they are turned far enough.
+            // Try the next level and the one after it, because some parameters help only after a larger step.
             for level in (self.at[ladder] + 1..self.ladders[ladder].levels.len()).take(2) {
                 let Some(point) = self.tried.point(&self.turned_to(ladder, level))? else { continue };
                 let gain = (self.now.error() / point.error().max(1e-12)).ln();
-                // A step that takes no time that can be measured would be worth anything.
+                // Bound the time from below, because a step of no measurable time would have an infinite worth.
                 let time = (point.seconds - self.now.seconds).max(0.01 * self.now.seconds);
                 let worth = gain / time;
                 let helps = self.fits(&point) && point.error() * AS_GOOD < self.now.error();
@@ -143,7 +146,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         Ok(best)
     }
 
-    /// Rungs are a factor of two apart; what is left of a budget goes to as many samples as it pays for.
+    /// Spends the rest of a budget on samples, whose levels are a factor of two apart.
     pub fn spend_the_rest(&mut self) -> Result<()> {
         let Goal::Seconds(budget) = self.goal else { return Ok(()) };
         if !self.ladders.iter().any(|series| series.parameter == Parameter::Samples) {
@@ -152,7 +155,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         let samples = |point: &Point| point.setting.quality.samples_per_pixel;
         let (mut priced, mut most) = (self.now.clone(), MOST_SAMPLES);
         for _ in 0..ATTEMPTS {
-            // As many as the budget pays for at the price that was measured last.
+            // Take as many samples as fit into the budget at the last measured time per sample.
             let price = priced.seconds * self.full / f64::from(samples(&priced));
             let pays_for = ((SHARE * budget - priced.build_seconds) / price.max(1e-9)) as u32;
             if pays_for.min(most) <= samples(&self.now) {
@@ -173,7 +176,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         Ok(())
     }
 
-    /// What one more step of each parameter would do.
+    /// The effect of one more step of each parameter.
     pub fn one_step_more(&mut self) -> Result<Vec<Left>> {
         let mut left = Vec::new();
         for ladder in 0..self.ladders.len() {
@@ -183,7 +186,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
             }
             let more = self.turned_to(ladder, at + 1);
             let here = &self.now.setting;
-            // Samples may have been turned to between two levels, or to the next.
+            // Skip the samples if they already lie above the next level, or at it.
             if more.quality.samples_per_pixel < here.quality.samples_per_pixel || more == *here {
                 continue;
             }
@@ -199,7 +202,7 @@ impl<'a, 't> GreedySearch<'a, 't> {
         Ok(left)
     }
 
-    /// Where each parameter stands.
+    /// The current value of each parameter.
     pub fn values(&self) -> Vec<(Parameter, String)> {
         let value = |(series, &level): (&&Series, &usize)| match series.parameter {
             Parameter::Samples => (series.parameter, self.now.setting.quality.samples_per_pixel.to_string()),

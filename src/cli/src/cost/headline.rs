@@ -1,7 +1,8 @@
-//! The lecture's headline, measured: n triangles and a screen full of rays, with a hierarchy and without.
+//! The lecture's headline example, measured: n triangles and one ray per pixel of a screen, with a hierarchy
+//! and without.
 //!
-//! Nobody waits days for brute force: it is timed on a slice of so many rays that it takes a second or so, and the rest is
-//! multiplication, which is shown.
+//! Brute force for a whole screen takes days. It is timed on a slice of rays that takes about a second, and
+//! extrapolated; the report shows the multiplication.
 
 use super::landscape::{scene, sides};
 use super::measure::Bench;
@@ -16,28 +17,28 @@ use std::path::Path;
 /// The screen of the lecture notes.
 const SCREEN: (u32, u32) = (3840, 2160);
 
-/// Tests of the slice that brute force is timed on: a second or two.
+/// The number of tests on which brute force is timed; they take a second or two.
 const TESTS_OF_SLICE: u64 = 200_000_000;
 
-/// Counting is slower than not counting, and a sixteenth of the rays have the same means.
+/// Work is counted for a sixteenth of the rays, which have the same means, because counting is slower.
 const SHARE_COUNTED: u32 = 4;
 
-/// What came of one size.
+/// The results for one size.
 #[derive(Clone, Debug, Serialize)]
 struct Row {
     triangles: u64,
     build_seconds: f64,
     structure_bytes: u64,
-    /// A ray, on average.
+    /// Averages per ray.
     node_visits: f64,
     box_tests: f64,
     triangle_tests: f64,
-    /// For the whole screen.
+    /// Seconds for the whole screen.
     frame_seconds: f64,
-    /// Rays of the slice, and how long brute force took for them.
+    /// The number of rays in the slice, and the seconds that brute force took for them.
     slice_rays: u64,
     slice_seconds: f64,
-    /// Pixels of the slice that differ between the two ways.
+    /// The number of pixels of the slice that differ between brute force and hierarchy.
     different_pixels: usize,
 }
 
@@ -54,7 +55,7 @@ impl Row {
         1e9 * self.slice_seconds / (self.slice_rays as f64 * self.triangles as f64)
     }
 
-    /// How long the hierarchy over so many triangles should take: sorting makes it n log n.
+    /// The expected build time for this many triangles: sorting makes it n log n.
     fn build_seconds_of(&self, triangles: u64) -> f64 {
         let work = |n: u64| n as f64 * (n as f64).ln();
         self.build_seconds * work(triangles) / work(self.triangles)
@@ -66,11 +67,11 @@ impl Row {
     }
 }
 
-/// Measures sizes from 12 times a power of ten up to `most`, prints the table, and keeps it.
+/// Measures 12 times each power of ten up to `most` triangles, prints the table, and writes it to a file.
 pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
     println!(
-        "A landscape of n triangles on {} × {} pixels: one ray a pixel, shown by its normals, on {} threads.\nBrute force is timed \
-         on a slice, means are over a sixteenth of the rays.\n",
+        "A landscape of n triangles on {} × {} pixels: one ray per pixel, normals as colours, {} \
+         threads.\nBrute force is timed on a slice of rays; means are over a sixteenth of the rays.\n",
         SCREEN.0,
         SCREEN.1,
         if bench.threads == 0 { crate::queue::cores() } else { bench.threads }
@@ -83,7 +84,7 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
         "visits",
         "boxes",
         "triangles",
-        "ns a ray",
+        "ns/ray",
         "frame s",
         "brute ns/ray",
         "brute frame",
@@ -125,7 +126,8 @@ pub fn run(bench: &Bench<'_>, most: u64, out: &Path) -> Result<bool> {
 fn arithmetic(row: &Row) {
     let rays = u64::from(SCREEN.0) * u64::from(SCREEN.1);
     println!(
-        "\n  brute force: {} triangles × {} rays = {} tests\n               × {:.2} ns a test ({} rays of a slice took {:.2} s) = {}",
+        "\n  brute force: {} triangles × {} rays = {} tests\n               × {:.2} ns per test ({} rays of \
+         a slice took {:.2} s) = {}",
         Thousands(row.triangles),
         Thousands(rays),
         Thousands(row.triangles * rays),
@@ -135,9 +137,9 @@ fn arithmetic(row: &Row) {
         duration(row.brute_seconds())
     );
     println!(
-        "  hierarchy:   {:.1} box tests and {:.2} triangle tests a ray, where log2 n is {:.1}\n               {} for the \
-         frame, and {} to build first ({:.0} bytes a triangle)\n  so the frame is {} times as fast, {} times with the \
-         build",
+        "  hierarchy:   {:.1} box tests and {:.2} triangle tests per ray; log2 n is {:.1}\n               {} \
+         for the frame after {} for the build ({:.0} bytes per triangle)\n  so the frame is {} times as \
+         fast, {} times with the build",
         row.box_tests,
         row.triangle_tests,
         (row.triangles as f64).log2(),
@@ -149,13 +151,13 @@ fn arithmetic(row: &Row) {
     );
     let n = row.triangles as f64;
     println!(
-        "  the lecture puts log2 n in the place of n, {} times less; counted are {} times fewer tests",
+        "  the lecture replaces n by log2 n, {} times fewer tests; the tool counts {} times fewer",
         Thousands((n / n.log2()) as u64),
         Thousands((n / (row.box_tests + row.triangle_tests)) as u64)
     );
 }
 
-/// 12 times the powers of ten, and the largest.
+/// The sizes: 12 times the powers of ten below `most`, and `most`.
 fn sizes(most: u64) -> Vec<u64> {
     let powers = (2..).map(|power| 12 * 10u64.pow(power));
     let mut sizes: Vec<u64> = powers.take_while(|size| *size < most).collect();
@@ -163,7 +165,7 @@ fn sizes(most: u64) -> Vec<u64> {
     sizes
 }
 
-/// `None` if nobody wants it any more.
+/// `None` if the program is being stopped.
 fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<Option<Row>> {
     let sides = sides(triangles);
     let exact = 2 * u64::from(sides.0) * u64::from(sides.1);
@@ -171,7 +173,7 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
     let say = |what: &str| bar.begin(format!("{} triangles: {what}", Thousands(exact)));
     say("making the landscape");
     let scene = scene(SCREEN, sides)?;
-    // Before the first leaf there is nothing to count, so this is what the smaller landscape lets expect.
+    // No progress can be shown before the first leaf, so estimate the build time from the smaller landscape.
     let expected = smaller.map_or(0.0, |row| row.build_seconds_of(exact));
     let frame = |what: &str, accelerator: Accelerator, size: (u32, u32), count: bool| {
         match accelerator {
@@ -181,11 +183,11 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
         frame(bench, &bar, &scene, accelerator, size, count)
     };
 
-    // A kit keeps nothing between two pictures: the hierarchy is built for each.
+    // The hierarchy is built for each picture, because a kit keeps nothing between two pictures.
     let sixteenth = (SCREEN.0 / SHARE_COUNTED, SCREEN.1 / SHARE_COUNTED);
     let Some(counted) = frame("counting", Accelerator::Bvh, sixteenth, true)? else { return Ok(None) };
     let Some(whole) = frame("the whole frame", Accelerator::Bvh, SCREEN, false)? else { return Ok(None) };
-    // A slice of the same shape: 16 × 9 times so much.
+    // A slice with the aspect ratio of the screen: 16 × 9 times a number.
     let across = ((TESTS_OF_SLICE as f64 / (144.0 * exact as f64)).sqrt() * 16.0).clamp(4.0, 960.0) as u32;
     let slice = (across, (across * 9 / 16).max(1));
     let brute = frame("brute force on a slice", Accelerator::BruteForce, slice, false)?;
@@ -209,7 +211,7 @@ fn measure(bench: &Bench<'_>, triangles: u64, smaller: Option<&Row>) -> Result<O
     }))
 }
 
-/// `None` if nobody wants it any more.
+/// `None` if the program is being stopped.
 fn frame(
     bench: &Bench<'_>,
     bar: &FrameBar,
@@ -224,7 +226,7 @@ fn frame(
     bench.render(&job, None, Some(bar))
 }
 
-/// As people say it.
+/// The time in a readable unit.
 fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 0.01 => format!("{:.1} ms", 1e3 * s),

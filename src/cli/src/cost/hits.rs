@@ -1,5 +1,5 @@
-//! Whether rays find what they exactly meet first. The judge, a program of its own that is built when it is needed, knows
-//! that; here are the questions to the kit.
+//! Compares the first hits of rays with exact ones. The judge, a separate program that is built when it is
+//! needed, computes the exact hits; this module asks the kit for its hits.
 
 use super::measure::{Bench, Measured};
 use crate::judge::Judge;
@@ -11,18 +11,20 @@ use raykata::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What the oracle says of one way to find hits.
+/// The oracle's counts for one setting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Verdicts {
-    /// Rays that were asked.
+    /// The number of rays that were tested.
     pub rays: u64,
-    /// Of these, those that found something else than what they exactly meet first, or nothing, or something for nothing.
+    /// The number of these rays that report a wrong first hit: another primitive, no hit, or a hit where
+    /// there is none.
     pub wrong: u64,
-    /// Of these, those that went through a closed surface.
+    /// The number of wrong rays that passed through a closed surface.
     pub leaks: u64,
 }
 
-/// Judges all settings of parameters that decide only how hits are found. A scene of too much, or of nothing, is not judged.
+/// Judges all settings of parameters that decide only how hits are found. A scene that is too large or empty
+/// is not judged.
 pub fn judge(root: &Path, bench: &Bench<'_>, scene: &Scene, measured: &mut Measured) -> Result<()> {
     let geometric = measured.series.iter().filter(|series| series.parameter.is_geometric());
     let mut places: Vec<usize> =

@@ -1,4 +1,4 @@
-//! The parameters that trade accuracy for time, each a ladder of values, and which of them a scene calls for.
+//! The parameters that trade accuracy for time, each with a ladder of values, and which of them a scene needs.
 
 use super::called::Called;
 use super::setting::Setting;
@@ -7,63 +7,64 @@ use raykata::effects::Effect;
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
 use serde::Serialize;
 
-/// Something that can be turned.
+/// A parameter that trades accuracy for time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Parameter {
-    /// Samples a pixel; lens and time are sampled with them.
+    /// Samples per pixel; lens and time are sampled with them.
     Samples,
-    /// Where those samples lie.
+    /// The positions of the samples in the pixel.
     Sampler,
-    /// Places on an area light that a hit asks about.
+    /// Samples per area light and hit.
     LightSamples,
-    /// Rays that go on from a rough surface.
+    /// Secondary rays per glossy reflection or refraction.
     GlossySamples,
-    /// How often a ray may be mirrored or refracted.
+    /// The most reflections and refractions on a path.
     Depth,
-    /// Rays of less weight are not traced.
+    /// The weight below which rays are not traced.
     MinContribution,
-    /// Normals interpolated over triangles, or not.
+    /// Whether normals are interpolated over triangles.
     SmoothNormals,
     /// The ray/triangle test.
     Intersection,
-    /// Digits of ray/shape tests.
+    /// The precision of ray/shape tests.
     Precision,
-    /// What finds the closest hit.
+    /// The acceleration structure.
     Accelerator,
-    /// How a hierarchy is split.
+    /// The split strategy of a hierarchy.
     Split,
-    /// Most primitives in a leaf.
+    /// The most primitives in a leaf.
     LeafSize,
     /// Cells of a grid along its longest side.
     GridResolution,
 }
 
-/// Values of a parameter, from cheap to dear.
+/// A series of values of a parameter, from cheap to expensive.
 pub struct Ladder {
     pub parameter: Parameter,
-    /// Which of several ladders of the parameter.
+    /// The name of the ladder, because a parameter can have several.
     pub name: String,
-    /// What each value is called, and the setting.
+    /// The name and the setting of each level.
     pub levels: Vec<(String, Setting)>,
-    /// Values that would take too long, and why.
+    /// Sentences about values that are left out because they would take too long.
     pub left_out: Vec<String>,
 }
 
-/// As many samples as ladders go up to, at least.
+/// The number of samples that ladders reach at least.
 const MOST_SAMPLES: u32 = 64;
 
-/// Asking every ray about more primitives than this takes minutes.
+/// The most primitives for structures that test a ray against many of them; more take minutes.
 const MOST_ASKED: u64 = 2_000;
 
-/// A BSP tree over more primitives takes ten seconds and more to build, and it is built for every picture.
+/// The most primitives for a BSP tree: over more it takes more than ten seconds to build, and it is built for
+/// every picture.
 const MOST_IN_BSP: u64 = 500_000;
 
-/// How deep the reference follows paths, and the ladder of depths goes at least.
+/// The depth of paths in the reference, which the ladder of depths reaches at least.
 pub const LEAST_DEPTH: u32 = 8;
 
 impl Parameter {
-    /// All of them, by the names that the command line has for them.
+    /// All parameters by their names on the command line.
     pub const NAMES: [(&str, Parameter); 13] = [
         ("samples", Parameter::Samples),
         ("sampler", Parameter::Sampler),
@@ -80,10 +81,10 @@ impl Parameter {
         ("grid-resolution", Parameter::GridResolution),
     ];
 
-    /// In words.
+    /// The name in reports.
     pub fn name(self) -> &'static str {
         match self {
-            Parameter::Samples => "samples a pixel",
+            Parameter::Samples => "samples per pixel",
             Parameter::Sampler => "sampler",
             Parameter::LightSamples => "light samples",
             Parameter::GlossySamples => "glossy samples",
@@ -99,7 +100,8 @@ impl Parameter {
         }
     }
 
-    /// Whether it decides only how rays find what they hit: all values make the same picture, if all tests are right.
+    /// Whether the parameter decides only how hits are found: if all tests are right, all values make the
+    /// same picture.
     pub fn is_geometric(self) -> bool {
         !matches!(
             self,
@@ -113,7 +115,7 @@ impl Parameter {
         )
     }
 
-    /// Its ladders on this scene, or why it buys nothing there.
+    /// The ladders of the parameter for this scene, or the reason why it changes nothing there.
     pub fn ladders(self, called: &Called<'_>) -> Result<Vec<Ladder>, String> {
         let Called { scene, effects, primitives } = called;
         let quality = scene.quality;
@@ -157,11 +159,11 @@ impl Parameter {
                 numbers(doubling(quality.light_samples, 16), |q, n| q.light_samples = n)
             }
             Parameter::GlossySamples => {
-                needs(effects.calls_for(Effect::Glossy), "nothing is rough and mirrors")?;
+                needs(effects.calls_for(Effect::Glossy), "no rough surface reflects or transmits light")?;
                 numbers(doubling(quality.glossy_samples, 16), |q, n| q.glossy_samples = n)
             }
             Parameter::Depth => {
-                needs(mirrors, "nothing mirrors or lets light through")?;
+                needs(mirrors, "no surface reflects or transmits light")?;
                 let mut depths = vec![0, 1, 2, 3, 5, LEAST_DEPTH];
                 depths.push(quality.max_depth);
                 depths.sort_unstable();
@@ -169,7 +171,7 @@ impl Parameter {
                 numbers(depths, |q, n| q.max_depth = n)
             }
             Parameter::MinContribution => {
-                needs(mirrors, "nothing mirrors or lets light through")?;
+                needs(mirrors, "no surface reflects or transmits light")?;
                 let mut least = vec![0.1, 0.03, 0.01, 0.003, 0.001, 0.0003];
                 least.push(quality.min_contribution);
                 least.sort_by(|a, b| b.total_cmp(a));
@@ -221,14 +223,15 @@ impl Parameter {
                 let why = |one: Accelerator| {
                     let (name, most) = (name(one), Thousands(most(one)));
                     format!(
-                        "accelerator {name}: for scenes of {most} primitives or fewer; `raykata compare` shows it"
+                        "accelerator {name}: only for scenes with at most {most} primitives; see `raykata \
+                         compare`"
                     )
                 };
                 let left_out = dear.into_iter().map(why).collect();
                 vec![Ladder { left_out, ..ladder(offered.into_iter().map(with).collect()) }]
             }
             Parameter::Split => {
-                needs(hierarchy, "what finds hits is no hierarchy")?;
+                needs(hierarchy, "the accelerator is not a hierarchy")?;
                 let all = [
                     ("object median", Split::ObjectMedian),
                     ("spatial median", Split::SpatialMedian),
@@ -238,13 +241,13 @@ impl Parameter {
                 vec![ladder(all.into_iter().map(with).collect())]
             }
             Parameter::LeafSize => {
-                needs(hierarchy, "what finds hits is no hierarchy")?;
+                needs(hierarchy, "the accelerator is not a hierarchy")?;
                 numbers(doubling(quality.leaf_size, 16), |q, n| q.leaf_size = n)
             }
             Parameter::GridResolution => {
                 needs(
                     quality.accelerator == Accelerator::Grid,
-                    "what finds hits is no grid (--accelerator grid makes it one)",
+                    "the accelerator is not a grid (`--accelerator grid` selects one)",
                 )?;
                 numbers(vec![8, 16, 32, 64, 128], |q, n| q.grid_resolution = n)
             }
@@ -253,7 +256,8 @@ impl Parameter {
     }
 }
 
-/// Those that spread their samples. Gaussian samples reach into the neighbours, so what they converge to is softer.
+/// The samplers that spread their samples. Gaussian samples reach into neighbouring pixels, so they converge
+/// to a softer picture.
 const SAMPLERS: [(Sampler, &str); 4] = [
     (Sampler::Random, "random"),
     (Sampler::Jittered, "jittered"),
@@ -261,12 +265,12 @@ const SAMPLERS: [(Sampler, &str); 4] = [
     (Sampler::LowDiscrepancy, "low discrepancy"),
 ];
 
-/// As scene files call it, in words.
+/// The name of the sampler in reports.
 pub fn sampler_name(sampler: Sampler) -> &'static str {
     SAMPLERS.iter().find(|(one, _)| *one == sampler).map_or("center", |(_, name)| name)
 }
 
-/// 1, 2, 4 … to `most`, and beyond if the scene's own value is; with that value.
+/// The numbers 1, 2, 4 … up to `most`, or up to the scene's own value if that is larger, with the scene's own value.
 fn doubling(own: u32, most: u32) -> Vec<u32> {
     let last = most.max(own.next_power_of_two());
     let mut values: Vec<u32> = (0..32).map(|power| 1 << power).take_while(|value| *value <= last).collect();

@@ -1,4 +1,4 @@
-//! Hills of as many triangles as are asked for, for the headline.
+//! A landscape of hills with a given number of triangles, for the headline.
 
 use anyhow::Result;
 use glam::{Affine3A, Vec3, vec3};
@@ -8,8 +8,8 @@ use raykata::scene::{Node, Scene, SceneMesh, Split};
 use raykata::shape::Shape;
 use std::sync::Arc;
 
-/// How many squares a landscape has on either side, two triangles each: just as many as asked for if some pair of numbers
-/// gives them that is not too long, and about as many otherwise.
+/// The number of squares along both sides of a landscape; each square has two triangles. The number of
+/// triangles is exact if it has a suitable pair of factors, and approximate otherwise.
 pub fn sides(triangles: u64) -> (u32, u32) {
     let squares = (triangles / 2).max(1);
     let root = (squares as f64).sqrt();
@@ -20,7 +20,8 @@ pub fn sides(triangles: u64) -> (u32, u32) {
     }
 }
 
-/// A landscape of so many squares for a picture of such a shape, seen from above one of its edges: it fills the lower two thirds.
+/// A landscape with this many squares, seen from above one of its edges: it fills the lower two thirds of the
+/// picture.
 pub fn scene(screen: (u32, u32), sides: (u32, u32)) -> Result<Scene> {
     let eye = vec3(0.0, 0.55, 1.25);
     let aspect = screen.0 as f32 / screen.1 as f32;
@@ -56,7 +57,7 @@ fn landscape((across, along): (u32, u32)) -> Mesh {
     Mesh { positions, triangles, ..Mesh::default() }
 }
 
-/// Hills on hills: each octave half as high and twice as narrow.
+/// A sum of octaves: each is half as high and twice as narrow as the one before.
 fn height(x: f32, z: f32) -> f32 {
     let octave = |k: i32| {
         let (frequency, k) = (2.0 * 2f32.powi(k), k as f32);

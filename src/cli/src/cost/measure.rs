@@ -1,4 +1,4 @@
-//! Measuring: errors and counts, which do not wobble, and times by turns, which do.
+//! Measures errors and counts, which are exact, and times, which vary and are therefore measured in turn.
 
 use super::error::{Errors, errors};
 use super::hits::Verdicts;
@@ -16,40 +16,41 @@ use serde::Serialize;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// A small picture that takes longer is left out: in all rounds together it would take minutes. What is known to be dear is
-/// left out by numbers that no clock knows (`ladder`); this is for code that is slower than anybody expects.
+/// The longest time for a small picture. One that takes longer is left out, because in all rounds together it
+/// would take minutes. Settings that are known to be slow are left out by their number of primitives
+/// (`ladder`); this limit is for code that is slower than expected.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Who is measured, and how.
+/// The kit that is measured, and how.
 pub struct Bench<'a> {
     pub kit: &'a dyn Kit,
     pub rounds: u32,
     pub threads: usize,
-    /// Picks the random numbers of the first round; each round has others.
+    /// The seed of the first round; each round has another one.
     pub seed: u64,
-    /// Set once nobody wants to go on.
+    /// Set when the program is being stopped.
     pub stop: &'a AtomicBool,
 }
 
-/// A setting, measured.
+/// The measurements of one setting.
 #[derive(Clone, Debug, Serialize)]
 pub struct Point {
     #[serde(skip)]
     pub setting: Setting,
-    /// Of the first round.
+    /// The errors of the first round.
     pub errors: Errors,
-    /// Root mean square error of each round.
+    /// The root mean square error of each round.
     pub rmse: Vec<f64>,
     pub counts: Counts,
-    /// What the oracle says of the hits, for parameters that decide only how they are found.
+    /// The oracle's verdicts on the hits, for parameters that decide only how they are found.
     pub hits: Option<Verdicts>,
-    /// Seconds for the pixels, the median over all rounds.
+    /// Seconds to render the pixels, the median over all rounds.
     pub seconds: f64,
-    /// Seconds to build what finds hits.
+    /// Seconds to build the acceleration structure.
     pub build_seconds: f64,
-    /// Half the distance between the quartiles of those seconds for the pixels.
+    /// Half the distance between the quartiles of the seconds for the pixels.
     pub spread: f64,
-    /// Of the first round.
+    /// The picture of the first round.
     #[serde(skip)]
     pub film: Film,
     #[serde(skip)]
@@ -59,12 +60,12 @@ pub struct Point {
 }
 
 impl Point {
-    /// The mean over all rounds.
+    /// The mean error over all rounds.
     pub fn error(&self) -> f64 {
         self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
     }
 
-    /// One that nobody has measured.
+    /// A point for tests, with these values.
     #[cfg(test)]
     pub fn made_up(setting: Setting, error: f64, seconds: f64, leaks: u64) -> Point {
         Point {
@@ -83,29 +84,29 @@ impl Point {
     }
 }
 
-/// A ladder, measured: its levels that could be.
+/// A measured ladder: those of its levels that could be measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Series {
     pub parameter: Parameter,
     pub name: String,
-    /// What each value is called, and its place among the points.
+    /// The name of each value, and the index of its point.
     pub levels: Vec<(String, usize)>,
 }
 
-/// What came of it.
+/// All measurements.
 #[derive(Default, Serialize)]
 pub struct Measured {
     pub points: Vec<Point>,
     pub series: Vec<Series>,
-    /// Values that were left out, and why.
+    /// Sentences about values that were left out.
     pub left_out: Vec<String>,
-    /// What pictures lack, because it is not written yet, one sentence each.
+    /// What the pictures lack because functions are not written yet, one sentence each.
     pub lacking: Vec<String>,
-    /// How many rounds there were.
+    /// The number of complete rounds.
     pub rounds: u32,
 }
 
-/// Ends a frame that takes too long, or that nobody wants, and shows how far it is.
+/// Cancels a frame that takes too long or is no longer wanted, and shows its progress.
 struct Patience<'a> {
     stop: &'a AtomicBool,
     until: Option<Instant>,
@@ -135,7 +136,7 @@ impl Bench<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// A picture, however long it takes; `None` if nobody wants it any more.
+    /// Renders a picture without a time limit; `None` if the program is being stopped.
     pub fn frame(&self, scene: &Scene, seed: u64, count: bool) -> Result<Option<Rendering>> {
         self.render(&self.job(scene, seed, count), None, None)
     }
@@ -144,7 +145,7 @@ impl Bench<'_> {
         RenderJob { scene: scene.clone(), view: View::Shaded, seed, threads: self.threads, count }
     }
 
-    /// The same, until some moment, and with a bar for whoever waits.
+    /// The same with a deadline, and with a progress bar.
     pub fn render(
         &self,
         job: &RenderJob,
@@ -154,8 +155,8 @@ impl Bench<'_> {
         Ok(kit_error::catch(|| self.kit.render(job, &Patience { stop: self.stop, until, bar }))?)
     }
 
-    /// Measures one setting without regard to others: errors, one time, and counts, if it is to count, which takes time.
-    /// `None` if it takes too long.
+    /// Measures one setting: errors, one time, and counts if `count` is set, which takes longer. `None` if it
+    /// takes too long.
     pub fn point(
         &self,
         scene: &Scene,
@@ -184,7 +185,8 @@ impl Bench<'_> {
         }))
     }
 
-    /// Measures all ladders: each setting once with counts, then all by turns, with other random numbers each round.
+    /// Measures all ladders: each setting once with counts, then all in turn, with other random numbers in
+    /// each round.
     pub fn measure(&self, scene: &Scene, ladders: Vec<Ladder>, right: &Reference) -> Result<Measured> {
         let n_levels: usize = ladders.iter().map(|ladder| ladder.levels.len()).sum();
         let bar = bar_of_steps(n_levels * (1 + self.rounds as usize));
@@ -211,7 +213,7 @@ impl Bench<'_> {
                     }
                     (None, None) if self.stopped() => {}
                     (None, None) => measured.left_out.push(format!(
-                        "{} {name}: a small picture takes more than {} s",
+                        "{} {name}: a small picture takes longer than {} s",
                         ladder.name,
                         PATIENCE.as_secs()
                     )),
@@ -226,7 +228,8 @@ impl Bench<'_> {
             bar.set_message(format!("times, round {} of {}", round + 1, self.rounds));
             for point in &mut measured.points {
                 let seed = self.seed + u64::from(round);
-                // Only who is stopped gives up here, so either all points have this round or it does not count.
+                // A frame is `None` only if the program is being stopped; then this round is incomplete and
+                // not counted.
                 let Some(frame) = self.frame(&point.setting.apply(scene), seed, false)? else { break };
                 point.times.push(frame.render_seconds);
                 if round > 0 {
@@ -241,7 +244,7 @@ impl Bench<'_> {
         }
         bar.finish_and_clear();
         for point in &mut measured.points {
-            // A round that was broken off counts for those that it came to.
+            // The times of an incomplete round are used for the points that have one.
             if !point.times.is_empty() {
                 let [low, median, high] = quartiles(std::mem::take(&mut point.times));
                 (point.seconds, point.spread) = (median, (high - low) / 2.0);
@@ -252,11 +255,12 @@ impl Bench<'_> {
     }
 }
 
-/// A smaller difference between errors is one of rounding, not of accuracy.
+/// The factor above which two errors count as equal, because they differ by rounding only.
 const DIFFERENT: f64 = 0.999;
 
-/// The points that no other beats in both error and time, from the fastest to the most accurate. What lets rays through
-/// closed surfaces is not among them, for the error of a picture hardly shows it.
+/// The Pareto front, from the fastest to the most accurate point: no other point is both faster and more
+/// accurate. Settings that let rays through closed surfaces are left out, because the error of a picture
+/// hardly shows a leak.
 pub fn pareto_front(points: &[Point]) -> Vec<usize> {
     let leaks = |point: &Point| point.hits.map(|hits| hits.leaks);
     let fewest = points.iter().filter_map(leaks).min();

@@ -1,9 +1,10 @@
-//! `raykata cost`: which parameter buys how much accuracy for how much time on a scene, and where it is wasted.
+//! `raykata cost`: measures how much each parameter of a scene lowers the error and how much time it costs.
 //!
-//! `options` (what can be asked) · `called`, `ladder` and `setting` (which parameters, which values) · `reference` (what is right) ·
-//! `error` (how far off) · `hits` (judged exactly) · `measure` (counts, times) · `slope` (how fast error falls) · `advice`
-//! and `greedy` (the best for your time) · `table`, `page`, `plot`, `files` (how it is report) · `headline` and `landscape`
-//! (brute force against a hierarchy)
+//! `options` (the command line) · `called`, `ladder` and `setting` (the parameters and their values) ·
+//! `reference` (the converged picture) · `error` (differences from it) · `hits` (exact verdicts) · `measure`
+//! (counts, times) · `slope` (how fast the error falls) · `advice` and `greedy` (the best settings for a time
+//! or an error) · `table`, `page`, `plot`, `files` (the report) · `headline` and `landscape` (brute force
+//! against a hierarchy)
 
 mod advice;
 mod called;
@@ -45,14 +46,14 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Pictures that are measured have at most so many pixels, unless a size was given: some hundred of them are made.
+/// The most pixels of a measured picture, unless a size is given, because some hundred pictures are rendered.
 const MOST_PIXELS: f64 = 10_000.0;
 
-/// Everything that is report.
+/// The contents of the report.
 #[derive(Serialize)]
 pub struct Report<'a> {
     scene: String,
-    /// How to make this again.
+    /// The command that makes this report.
     command: String,
     kit: &'static str,
     width: u32,
@@ -64,46 +65,47 @@ pub struct Report<'a> {
     reference_error: f64,
     #[serde(flatten)]
     measured: &'a Measured,
-    /// Places of the points that no other beats, from the fastest on.
+    /// The indices of the points on the Pareto front, from the fastest on.
     pareto_front: Vec<usize>,
-    /// The place of the scene's own settings.
+    /// The index of the point with the scene's own settings.
     own: Option<usize>,
-    /// Slopes of error over samples, by the name of the ladder.
+    /// The slope of error over samples, by the name of the ladder.
     slopes: Vec<(String, Slope)>,
-    /// Knobs that buy nothing here, and why.
+    /// Parameters that change nothing in this scene, and why.
     not_offered: NotOffered,
     advice: Option<Advice>,
     numerics: Vec<Summary>,
-    /// Whether it was stopped before its end.
+    /// Whether the measurement was stopped before its end.
     partial: bool,
-    /// Seconds that all this took.
+    /// Seconds that the measurement took.
     took: f64,
     #[serde(skip)]
     right: &'a Reference,
 }
 
-/// Knobs, and why they buy nothing.
+/// Parameters that change nothing, and why.
 type NotOffered = Vec<(Parameter, String)>;
 
-/// Judges the ray/triangle tests of a kit, beside others.
+/// Judges the ray/triangle tests of a kit together with others.
 pub type Numerics<'a> = dyn Fn(&dyn Kit) -> Vec<Summary> + 'a;
 
-/// A ray/triangle test in three numbers.
+/// Three numbers about a ray/triangle test.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Of one call, with the answer stored.
+    /// Nanoseconds per call, with the answer stored.
     pub nanoseconds: f64,
-    /// Verdicts that are not the exact one, mean over all distributions.
+    /// Wrong verdicts per million inputs, the mean over all distributions.
     pub wrong_per_million: f64,
-    /// Rays from inside closed meshes, at edges and vertices, that meet nothing.
+    /// Rays per million that start inside a closed mesh, aim at its edges and vertices, and hit nothing.
     pub leaks_per_million: f64,
 }
 
-/// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report has a chapter
-/// about ray/triangle tests; `program` is how cargo starts this program.
+/// Measures, prints a table and writes the report. `Ok(false)` if it was stopped. With `numerics` the report
+/// has a section about ray/triangle tests; `program` is the command that starts this program.
 pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) -> Result<bool> {
+    // Build the kit and prepare the measurement.
     let began = Instant::now();
     let root = root()?;
     let which = options.kit.or_reference(&root);
@@ -118,10 +120,12 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         stop: &stop,
     };
 
+    // Without a scene, measure the headline example.
     let Some(file) = &options.scene else {
         let out = options.out.clone().unwrap_or_else(|| Path::new("out").join("headline"));
         return headline::run(&bench, options.most, &out);
     };
+    // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file)?;
     let as_written = full.quality;
     options.parameters.apply(&mut full);
@@ -129,24 +133,28 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
+    // Choose the values to measure.
     let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
     for (parameter, why) in &not_offered {
-        println!("{}: not offered, for {why}", parameter.name());
+        println!("{}: not offered, because {why}", parameter.name());
     }
+    // Render the reference, or continue it.
     println!(
-        "the reference: {} samples a pixel, {} × {} pixels",
+        "the reference: {} samples per pixel, {} × {} pixels",
         options.reference, small.film.width, small.film.height
     );
     let code = fingerprint(&source)?;
     let cache = Path::new("out").join("references");
     let Some(right) = reference::reference(&bench, &small, options.reference, &cache, &code)? else {
-        println!("stopped; the reference goes on from here next time");
+        println!("stopped; the next run continues this reference");
         return Ok(false);
     };
     println!("its own error: {:.1e}\n", right.own_error);
 
+    // Measure errors, counts and times, and judge the hits.
     let mut measured = bench.measure(&small, ladders, &right)?;
     hits::judge(&root, &bench, &small, &mut measured)?;
+    // Search the best settings for the goal.
     let goal = options.budget.map(Goal::Seconds).or(options.error.map(Goal::Error));
     let advice = match goal {
         Some(goal) if !bench.stopped() => advised(&bench, &small, &full, &measured, &right, goal)?,
@@ -156,11 +164,13 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         let size = options.parameters.names_a_size().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &advice, size), ..advice }
     });
+    // Measure the ray/triangle tests, if that is possible here.
     let about_tests = measured.series.iter().any(|series| series.parameter == Parameter::Intersection);
     let numerics = match numerics {
         Some(numerics) if about_tests && !bench.stopped() => numerics(kit),
         _ => Vec::new(),
     };
+    // Print and write the report.
     let report = Report {
         scene: name,
         command: command(program),
@@ -191,7 +201,8 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     Ok(!report.partial)
 }
 
-/// The ladders of all parameters that are to be turned, and those that buy nothing. It is an error to ask for one of those.
+/// The ladders of all parameters to measure, and the parameters that change nothing. It is an error to
+/// request one of those.
 fn ladders(
     kit: &dyn Kit,
     bench: &Bench<'_>,
@@ -201,7 +212,7 @@ fn ladders(
     let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
         Ok(mut effects) => effects.remove(0),
         Err(KitError::NotWritten { place, .. }) => {
-            println!("what a scene calls for is not written yet ({place}), so every parameter is offered");
+            println!("the effects analysis is not written yet ({place}), so every parameter is offered");
             Effects::everything(scene)
         }
         Err(error) => return Err(error.into()),
@@ -218,7 +229,9 @@ fn ladders(
         match parameter.ladders(&called) {
             Ok(these) if turned.is_empty() || turned.contains(&parameter) => ladders.extend(these),
             Ok(_) => {}
-            Err(why) if turned.contains(&parameter) => bail!("{} buys nothing here: {why}", parameter.name()),
+            Err(why) if turned.contains(&parameter) => {
+                bail!("{} changes nothing here: {why}", parameter.name())
+            }
             Err(why) => not_offered.push((parameter, why)),
         }
     }
@@ -242,7 +255,7 @@ fn advised(
     Ok(Some(advice))
 }
 
-/// How to render what is proposed.
+/// The command that renders the proposal.
 fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<(u32, u32)>) -> String {
     let flat = if advice.setting.smooth { "" } else { "  # and `smooth = false` for its meshes" };
     let size = size.map_or(String::new(), |(width, height)| format!(" --size {width}x{height}"));
@@ -250,7 +263,7 @@ fn command_for(file: &Path, as_written: &Quality, advice: &Advice, size: Option<
     format!("cargo run --release -- render {}{size}{turned}{flat}", file.display())
 }
 
-/// Of all ladders of samples.
+/// The slopes of all ladders of samples.
 fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
     let of_series = |series: &measure::Series| {
         let samples: Vec<f64> = series.levels.iter().filter_map(|(name, _)| name.parse().ok()).collect();
@@ -276,20 +289,20 @@ fn shrunk(scene: &Scene) -> Scene {
     scene
 }
 
-/// Names the code that renders: another code has another reference.
+/// A name for the code that renders, because each code has its own reference.
 fn fingerprint(source: &Source) -> Result<String> {
     let program = &source.program;
     let bytes = std::fs::read(program).with_context(|| format!("cannot read {}", program.display()))?;
     Ok(reference::fingerprint([&bytes[..]]))
 }
 
-/// As it was started, for whoever wants to see it again.
+/// The command line with which this program was started.
 fn command(program: &str) -> String {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     format!("{program} {}", arguments.join(" "))
 }
 
-/// Set once somebody has pressed Ctrl-C; the second time ends the program.
+/// A flag that the first Ctrl-C sets; the second Ctrl-C ends the program.
 fn stopped_by_ctrl_c() -> Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     let pressed = stop.clone();
@@ -297,8 +310,10 @@ fn stopped_by_ctrl_c() -> Result<Arc<AtomicBool>> {
         if pressed.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("\nstopping: the report of what has been measured comes next; once more ends at once");
+        eprintln!(
+            "\nstopping: the report of what has been measured follows; press Ctrl-C again to end at once"
+        );
     })
-    .context("Ctrl-C cannot be listened to")?;
+    .context("no handler for Ctrl-C can be installed")?;
     Ok(stop)
 }

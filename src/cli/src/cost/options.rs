@@ -1,4 +1,4 @@
-//! What can be asked of `raykata cost`.
+//! The command line of `raykata cost`.
 
 use super::ladder::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
@@ -9,47 +9,48 @@ use std::path::PathBuf;
 /// `raykata cost`.
 pub static SPEC: Spec = Spec {
     name: "raykata cost",
-    about: "Show which parameter buys how much accuracy for how much time, and propose the best settings for a time or an \
-            error.",
+    about: "Measure error and time for the values of each quality parameter, and propose the best settings \
+            for a time or an error.",
     arguments: &[Argument::optional("SCENE", "The scene, a TOML file; not with `--headline`.")],
     options: &[
         &[
             Opt::flag(
                 "--headline",
-                "Instead of a scene: brute force against the hierarchy on a landscape of more and more triangles, on \
-                 3840 × 2160 pixels.",
+                "Instead of a scene: compare brute force with the hierarchy on landscapes of more and more \
+                 triangles, on 3840 × 2160 pixels.",
             ),
-            Opt::value("--most", "N", "How many triangles the largest landscape has [default: 12000000]."),
+            Opt::value("--most", "N", "Triangles of the largest landscape [default: 12000000]."),
             Opt::value(
                 "--parameter",
                 "LIST",
-                "The parameters to turn [default: all that the scene calls for].",
+                "The parameters to measure [default: all that the scene needs].",
             )
             .choices(&names(&Parameter::NAMES))
             .many(),
             Opt::value(
                 "--budget",
                 "TIME",
-                "Propose the settings with the least error for so much time, such as 60s or 1500ms, in the scene's own \
-                 size.",
+                "Propose the settings with the smallest error within this time, such as 60s or 1500ms, at \
+                 the scene's own size.",
             ),
             Opt::value(
                 "--error",
                 "X",
-                "Propose the fastest settings with no more root mean square error than this.",
+                "Propose the fastest settings with at most this root mean square error.",
             ),
             Opt::value(
                 "--reference",
                 "N",
-                "Samples per pixel of the reference; more make its own error smaller [default: 1024].",
+                "Samples per pixel of the reference; a larger number makes its own error smaller [default: \
+                 1024].",
             ),
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is made, by turns and with other random numbers; medians and means count \
-                 [default: 5].",
+                "How often each picture is rendered, all in turn and with other random numbers; medians and \
+                 means count [default: 5].",
             ),
-            Opt::value("--seed", "N", "Picks the random numbers [default: 0]."),
+            Opt::value("--seed", "N", "Seed of the random numbers [default: 0]."),
             Opt::value(
                 "--out",
                 "FOLDER",
@@ -63,9 +64,9 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Which scene, which parameters, and how long.
+/// The scene, the parameters, and how long to measure.
 pub struct Options {
-    /// None for the headline.
+    /// `None` for the headline.
     pub(super) scene: Option<PathBuf>,
     pub(super) most: u64,
     pub(super) turned: Vec<Parameter>,
@@ -81,7 +82,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         let (scene, headline) = (given.argument(0).map(PathBuf::from), given.has("--headline"));
         match (&scene, headline) {
@@ -117,7 +118,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
         |(unit, scale): (&str, f64)| Some(text.strip_suffix(unit)?.trim().parse::<f64>().ok()? * scale);
     match units.into_iter().find_map(number) {
         Some(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("a time is a number above 0 with s, ms or m behind it, such as 60s".into()),
+        _ => Err("a time is a number above 0 with the unit s, ms or m, such as 60s".into()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The report: one HTML file that needs nothing else, for screens, phones and paper.
+//! The report as one self-contained HTML file, for screens, phones and paper.
 
 use super::Report;
 use super::advice::Advice;
@@ -25,8 +25,9 @@ fn page(report: &Report<'_>) -> Result<String> {
     let title = format!("What accuracy costs: {}", report.scene);
     let mut body = element("h1", &title);
     let about = format!(
-        "{} × {} pixels by {}, {} rounds by turns, each with other random numbers. Errors are root mean squares in linear \
-         light, against {} samples a pixel, which are off by {:.1e} themselves. Times are medians. Made by {} in {:.0} s.",
+        "{} × {} pixels by {}, {} rounds with other random numbers each, all pictures in turn. Errors are \
+         root mean squares in linear light against a reference of {} samples per pixel, whose own error is \
+         {:.1e}. Times are medians. Made by {} in {:.0} s.",
         report.width,
         report.height,
         report.kit,
@@ -38,7 +39,7 @@ fn page(report: &Report<'_>) -> Result<String> {
     );
     body += &around("p", "class=\"about\"", &about);
     if report.partial {
-        let words = "Stopped before the end: this is what had been measured by then.";
+        let words = "Stopped before the end: the report shows what had been measured until then.";
         body += &around("p", "class=\"warning\"", words);
     }
     if let Some(advice) = &report.advice {
@@ -48,8 +49,8 @@ fn page(report: &Report<'_>) -> Result<String> {
         body += &around("figure", "class=\"plot\"", &plot);
     }
     if !report.pareto_front.is_empty() {
-        let words = "The broad yellow line is the Pareto front: no setting that was measured is both faster and more accurate. \
-                     What leaks is left out of it.";
+        let words = "The broad yellow line is the Pareto front: no measured setting is both faster and more \
+                     accurate. Settings that leak are left out of it.";
         body += &around("p", "class=\"about\"", words);
     }
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
@@ -69,7 +70,8 @@ fn page(report: &Report<'_>) -> Result<String> {
     }
     left_out += &element(
         "li",
-        "Lens and time have no samples of their own: each sample of a pixel has its own place on the lens and its own moment.",
+        "Lens and time have no samples of their own: each sample of a pixel has its own point on the lens \
+         and its own time.",
     );
     body += &around("ul", "", &left_out);
     Ok(format!(
@@ -81,7 +83,7 @@ fn page(report: &Report<'_>) -> Result<String> {
     ))
 }
 
-/// A row of a table from cells of HTML, the first of which may be a head.
+/// A row of a table from HTML cells; the first cell may be a head.
 fn row(cells: impl IntoIterator<Item = String>) -> String {
     around("tr", "", &cells.into_iter().collect::<String>())
 }
@@ -101,7 +103,7 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
     let mut text = element("h2", goal(report, advice)) + &around("table", "class=\"values\"", &values);
     text.extend(verdict(advice).iter().map(|line| element("p", line)));
     if !advice.steps.is_empty() {
-        let mut steps = heads(&["turn", "to", "error", "seconds in full size"]);
+        let mut steps = heads(&["parameter", "new value", "error", "seconds in full size"]);
         for step in &advice.steps {
             steps += &row([
                 element("td", step.parameter.name()),
@@ -111,7 +113,7 @@ fn proposal(report: &Report<'_>, advice: &Advice) -> String {
             ]);
         }
         let summary =
-            element("summary", "the way there: always the step that lowers the error most for its time");
+            element("summary", "the steps of the greedy search: each lowers the error most for its time");
         text += &around("details", "", &(summary + &around("table", "", &steps)));
     }
     around("section", "class=\"advice\"", &text)
@@ -127,13 +129,17 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     let mut text = element("h2", name);
     if let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) {
         let theory = expected_slope(report, name)
-            .map_or(String::new(), |theory| format!(" (in theory {theory} where there are edges)"));
+            .map_or(String::new(), |theory| format!(" (in theory {theory} where pictures have edges)"));
         let slope = element("b", format!("{:.2} ± {:.2}", slope.mean, slope.half_interval));
-        text += &around("p", "", &format!("Error falls as samples to the power {slope}{theory}"));
+        text += &around(
+            "p",
+            "",
+            &format!("The error is proportional to the number of samples to the power {slope}{theory}"),
+        );
     }
     let mut columns = vec!["", "RMSE"];
     columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
-    columns.extend(["ms", "rays a pixel", "tests a ray"]);
+    columns.extend(["ms", "rays per pixel", "tests per ray"]);
     columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
     let levels = series.levels.iter().map(|(value, index)| level(report, value, *index, geometric));
     let table = heads(&columns) + &levels.collect::<String>();
@@ -173,13 +179,13 @@ fn level(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> 
     around("tr", if unbeaten { "class=\"front\"" } else { "" }, &(head + &cells))
 }
 
-/// The cheapest, the middle and the dearest, and where they are wrong, on one scale.
+/// The pictures of the cheapest, the middle and the most expensive level, and their error images on one scale.
 fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
     let last = series.levels.len() - 1;
     let mut shown_levels = vec![0, last / 2, last];
     shown_levels.dedup();
     let worst = &report.measured.points[series.levels[0].1];
-    // A pixel that is off by three times the mean of the cheapest is white.
+    // White stands for three times the mean error of the cheapest level.
     let most = 3.0 * worst.error();
     let mut figures = String::new();
     for level in shown_levels {
@@ -189,7 +195,7 @@ fn pictures(report: &Report<'_>, series: &Series) -> Result<String> {
         let heat = embedded(&heat(film, &report.right.film, most))?;
         let about = escape(format!("the picture with {} {value}", series.name));
         let images =
-            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"where it is wrong\">");
+            format!("<img src=\"{picture}\" alt=\"{about}\"><img src=\"{heat}\" alt=\"its errors\">");
         figures += &around("figure", "", &(images + &element("figcaption", value)));
     }
     Ok(around("div", "class=\"pictures\"", &figures))
@@ -206,7 +212,7 @@ fn numerics(report: &Report<'_>) -> String {
     if report.numerics.is_empty() {
         return String::new();
     }
-    let mut table = heads(&["", "ns a test", "wrong in a million", "leaks in a million"]);
+    let mut table = heads(&["", "ns per test", "wrong per million", "leaks per million"]);
     for one in &report.numerics {
         table += &row([
             head_of_row(&one.name),
@@ -215,9 +221,9 @@ fn numerics(report: &Report<'_>) -> String {
             element("td", format!("{:.0}", one.leaks_per_million)),
         ]);
     }
-    let words = "Ray/triangle tests on hard inputs, judged exactly: verdicts that are wrong, and rays from inside closed \
-                 meshes that get out.";
-    let mut text = element("h2", "what right digits cost") + &around("p", "class=\"about\"", words);
+    let words = "Ray/triangle tests on hard inputs, judged exactly: wrong verdicts, and rays that leave a \
+                 closed mesh from inside.";
+    let mut text = element("h2", "What precision costs") + &around("p", "class=\"about\"", words);
     text += &around("div", "class=\"wide\"", &around("table", "", &table));
     if let Some(warning) = about_kit_times(report) {
         text += &around("p", "class=\"about\"", warning);

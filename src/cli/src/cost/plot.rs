@@ -1,25 +1,25 @@
-//! Error over time on logarithmic axes: an SVG file, the same for the same numbers.
+//! A plot of error over time on logarithmic axes. The same numbers give the same SVG file.
 
 use std::fmt::Write;
 
-/// What is drawn.
+/// The contents of a plot.
 pub struct Plot<'a> {
     pub title: &'a str,
     pub x_axis: &'a str,
     pub y_axis: &'a str,
     pub lines: Vec<Line>,
-    /// Slopes to compare with, from the first point of the first line on, and what they are called.
+    /// Slopes to compare with, drawn from the first point of the first line on, and their names.
     pub guides: Vec<(f64, String)>,
-    /// Points that no other beats, from left to right.
+    /// The points of the Pareto front, from left to right.
     pub pareto_front: Vec<(f64, f64)>,
-    /// What cannot be told from 0: errors below are drawn on this line.
+    /// The smallest error that is drawn; smaller ones are drawn at this height.
     pub floor: f64,
 }
 
 /// Points with a name.
 pub struct Line {
     pub name: String,
-    /// x, y, and the least and the greatest y that was measured.
+    /// x, y, and the smallest and the largest measured y.
     pub points: Vec<[f64; 4]>,
 }
 
@@ -30,11 +30,12 @@ const RIGHT: f64 = 690.0;
 const TOP: f64 = 56.0;
 const BOTTOM: f64 = 500.0;
 
-/// Tol's bright and muted colours, which differ for all kinds of sight, in grey too when taken in this order.
+/// Tol's bright and muted colours, which colour-blind readers can distinguish; in this order they also differ
+/// in grey.
 const COLORS: [&str; 8] =
     ["#332288", "#ee6677", "#228833", "#997700", "#66ccee", "#aa3377", "#44aa99", "#555555"];
 
-/// A logarithmic axis: whole powers of ten at both ends, or halves of them.
+/// A logarithmic axis, which ends at whole or half powers of ten.
 struct Axis {
     low: f64,
     high: f64,
@@ -58,7 +59,7 @@ impl Axis {
         self.from + (self.to - self.from) * (value.log10() - self.low) / (self.high - self.low)
     }
 
-    /// 1, 2 and 5 times the powers of ten between the ends; the powers alone if there are many.
+    /// The ticks: 1, 2 and 5 times the powers of ten between the ends, or only the powers if there are many.
     fn ticks(&self) -> Vec<(f64, bool)> {
         let powers = (self.low - 1.0) as i32..=self.high.ceil() as i32;
         let ticks = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|digit| (digit, power)));
@@ -71,7 +72,7 @@ impl Axis {
     }
 }
 
-/// The picture.
+/// The plot as SVG.
 pub fn svg(plot: &Plot<'_>) -> String {
     let floored = |y: f64| y.max(plot.floor);
     let points = || plot.lines.iter().flat_map(|line| &line.points);
@@ -142,7 +143,7 @@ fn axes(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     );
 }
 
-/// A broad step line: whatever lies above it is beaten.
+/// The Pareto front as a broad step line: every setting above it is slower or less accurate than one on it.
 fn pareto_front(out: &mut String, points: &[(f64, f64)], x: &Axis, y: &Axis, floor: f64) {
     let mut path = String::new();
     let mut before = None;
@@ -166,7 +167,7 @@ fn guides(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     let Some(&[x0, y0, ..]) = plot.lines.first().and_then(|line| line.points.first()) else { return };
     let y0 = y0.max(plot.floor);
     for (slope, name) in &plot.guides {
-        // To the right end, or to where it leaves below.
+        // Draw to the right end, or to where the line leaves the plot at the bottom.
         let to_bottom = (y.low - y0.log10()) / slope;
         let length = (x.high - x0.log10()).min(if *slope < 0.0 { to_bottom } else { f64::INFINITY });
         let end = (x0 * 10f64.powf(length), y0 * 10f64.powf(slope * length));
@@ -183,7 +184,7 @@ fn guides(out: &mut String, plot: &Plot<'_>, x: &Axis, y: &Axis) {
     }
 }
 
-/// Circles, squares and so on, for those who see no colours, and how far rounds were apart.
+/// One line with markers of its own shape for colour-blind readers, and the range over all rounds at each point.
 fn draw(out: &mut String, line: &Line, color: &str, index: usize, x: &Axis, y: &Axis, floor: f64) {
     let at = |point: &[f64; 4]| (x.at(point[0]), y.at(point[1].max(floor)));
     let path: Vec<String> = line.points.iter().map(at).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
@@ -221,7 +222,7 @@ fn draw(out: &mut String, line: &Line, color: &str, index: usize, x: &Axis, y: &
     }
 }
 
-/// Beside the ends of their lines, moved apart.
+/// Writes the names beside the ends of the lines, moved apart.
 fn write_labels(out: &mut String, mut labels: Vec<(f64, f64, &str, String)>) {
     labels.sort_by(|a, b| a.0.total_cmp(&b.0));
     const APART: f64 = 17.0;
@@ -242,7 +243,7 @@ fn write_labels(out: &mut String, mut labels: Vec<(f64, f64, &str, String)>) {
     }
 }
 
-/// As people write it.
+/// The number in a short form.
 fn number(value: f64) -> String {
     match value {
         value if (0.001..10_000.0).contains(&value) => {

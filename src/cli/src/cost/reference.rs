@@ -1,7 +1,8 @@
-//! What is right: the same scene with so many samples that its own error hardly counts, kept between runs.
+//! The reference: the same scene with so many samples that its own error is small. It is kept between runs.
 //!
-//! It is made of batches with seeds of their own, the even ones and the odd ones apart. Half of what those two differ by
-//! is what is left of its own error. Each batch is kept, so a run that was stopped goes on where it was.
+//! It consists of batches with different seeds. Even and odd batches are summed separately; half of the
+//! difference between the two means estimates the error of the reference. Each batch is kept, so a stopped
+//! run continues where it was.
 
 use super::ladder::LEAST_DEPTH;
 use super::measure::Bench;
@@ -13,33 +14,33 @@ use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Samples a pixel of a batch.
+/// Samples per pixel and batch.
 const BATCH: u32 = 64;
 
-/// Apart from the seeds of what is measured.
+/// The seed of the first batch, which differs from the seeds of all measurements.
 const FIRST_SEED: u64 = 1 << 40;
 
 /// The reference of a scene.
 pub struct Reference {
     pub film: Film,
-    /// Samples a pixel that it is made of.
+    /// The number of samples per pixel.
     pub samples: u32,
-    /// The error that it has itself: root mean square over all channels, in linear light.
+    /// The estimated error of the reference itself: root mean square over all channels, in linear light.
     pub own_error: f64,
 }
 
 /// Sums over batches.
 struct Sums {
     batches: u32,
-    /// Of the even batches and of the odd ones.
+    /// The sums of the even batches and of the odd ones.
     halves: [Vec<DVec3>; 2],
 }
 
-/// How a kept reference begins. The number of batches follows, then the sums of the even batches and of the odd ones, as
-/// numbers of 8 bytes, little end first.
+/// The first bytes of a reference file. The number of batches follows, then the sums of the even batches and
+/// of the odd ones, as little-endian numbers of 8 bytes.
 const KEPT: &[u8; 8] = b"raykata1";
 
-/// The scene with all that costs time and changes what is seen at its best.
+/// The scene with the most accurate value of every setting that changes the picture.
 pub fn converged(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     scene.quality = Quality {
@@ -55,8 +56,9 @@ pub fn converged(scene: &Scene) -> Scene {
     scene
 }
 
-/// Makes the reference of `scene`, or goes on with what lies in `cache`, until it has `samples` a pixel. `code` names the
-/// code that renders. `None` if nobody wants it any more; what has been done is kept.
+/// Renders the reference of `scene`, or continues the one in `cache`, until it has `samples` samples per
+/// pixel. `code` names the code that renders. `None` if the program is being stopped; the finished batches
+/// are kept.
 pub fn reference(
     bench: &Bench<'_>,
     scene: &Scene,
@@ -71,11 +73,11 @@ pub fn reference(
         batches: 0,
         halves: [vec![DVec3::ZERO; pixels], vec![DVec3::ZERO; pixels]],
     });
-    // Two at least, or nobody knows how good it is.
+    // The estimate of the error needs two batches.
     let wanted = samples.div_ceil(BATCH).max(2);
     let bar = bar_of_steps(wanted.saturating_sub(sums.batches) as usize);
     bar.set_message("reference");
-    // More than was asked for does no harm.
+    // A kept reference may have more batches than requested.
     while sums.batches < wanted {
         let Some(frame) = bench.frame(&scene, FIRST_SEED + u64::from(sums.batches), false)? else {
             bar.finish_and_clear();
@@ -98,7 +100,7 @@ impl Sums {
         let [evens, odds] = &self.halves;
         let pairs = || evens.iter().zip(odds);
         let mean = |(a, b): (&DVec3, &DVec3)| -> Vec3 { ((a + b) / (even + odd)).as_vec3() };
-        // The mean of all is off by half of what two halves are off from each other.
+        // The error of the mean is half of the difference between the means of the two halves.
         let square: f64 = pairs().map(|(a, b)| ((a / even - b / odd) / 2.0).length_squared()).sum();
         Reference {
             film: Film { width, height, pixels: pairs().map(mean).collect() },
@@ -108,14 +110,14 @@ impl Sums {
     }
 }
 
-/// By everything that decides what is in it.
+/// The file of a reference, named after the scene and the code that renders it.
 fn file_of(scene: &Scene, cache: &Path, code: &str) -> Result<PathBuf> {
-    let scene = serde_json::to_vec(scene).context("the scene cannot be written down")?;
+    let scene = serde_json::to_vec(scene).context("the scene cannot be serialised")?;
     let name = fingerprint([code.as_bytes(), &scene]);
     Ok(cache.join(format!("{name}.sums")))
 }
 
-/// Nothing, if there is none or it cannot be read: then it is made anew.
+/// The kept sums; `None` if there is no file or it cannot be used, so that the reference starts again.
 fn read(file: &Path, pixels: usize) -> Option<Sums> {
     let bytes = std::fs::read(file).ok()?;
     let (batches, numbers) = bytes.strip_prefix(KEPT)?.split_first_chunk::<4>()?;
@@ -135,7 +137,7 @@ fn write(file: &Path, sums: &Sums) -> Result<()> {
         .with_context(|| format!("cannot keep the reference in {}", file.display()))
 }
 
-/// A name for these bytes: FNV-1a with 128 bits. It tells files apart and proves nothing.
+/// A hash of these bytes: FNV-1a with 128 bits. It distinguishes files and is not cryptographic.
 pub fn fingerprint<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String {
     let mut hash = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d_u128;
     for part in parts {
@@ -158,7 +160,7 @@ mod tests {
         write(&file, &Sums { batches: 3, halves: [vec![sum; 2], vec![-sum; 2]] }).unwrap();
         let back = read(&file, 2).unwrap();
         assert_eq!((back.batches, back.halves), (3, [vec![sum; 2], vec![-sum; 2]]));
-        assert!(read(&file, 3).is_none(), "that is of another picture");
+        assert!(read(&file, 3).is_none(), "it belongs to another picture");
         std::fs::write(&file, "half a fi").unwrap();
         assert!(read(&file, 2).is_none());
     }

@@ -1,10 +1,10 @@
-//! Where all parameters stand.
+//! A setting: the values of all parameters.
 
 use super::ladder::Parameter;
 use raykata::effects::Effect;
 use raykata::scene::{Quality, Scene};
 
-/// A value of a parameter: the scene with one thing changed.
+/// The values of all parameters for one picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     pub quality: Quality,
@@ -13,7 +13,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// As the scene has it.
+    /// The scene's own setting.
     pub fn of(scene: &Scene) -> Setting {
         Setting { quality: scene.quality, smooth: true }
     }
@@ -24,7 +24,7 @@ impl Setting {
         scene
     }
 
-    /// With one parameter turned to where `to` has it.
+    /// The same setting with the value of one parameter taken from `to`.
     pub fn turned(&self, parameter: Parameter, to: &Setting) -> Setting {
         let (from, mut turned) = (&to.quality, self.clone());
         let quality = &mut turned.quality;

@@ -1,17 +1,17 @@
-//! How fast error falls: lines through points on logarithmic axes.
+//! How fast the error falls: the slope of a line through points on logarithmic axes.
 
 use serde::Serialize;
 
-/// A slope, and how far off it may be.
+/// A slope with its confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Slope {
-    /// Mean over all rounds.
+    /// The mean over all rounds.
     pub mean: f64,
-    /// Half of the interval that holds the true slope in 19 of 20 cases (Student's t over the rounds).
+    /// Half of the 95 % confidence interval (Student's t over the rounds).
     pub half_interval: f64,
 }
 
-/// The slope of error over samples: `rounds[i]` holds the errors of round `i`, one a number of samples.
+/// The slope of error over samples: `rounds[i]` holds the errors of round `i`, one per number of samples.
 pub fn slope(samples: &[f64], rounds: &[Vec<f64>]) -> Option<Slope> {
     let slopes: Vec<f64> = rounds.iter().filter_map(|errors| line(samples, errors)).collect();
     let n = slopes.len();
@@ -23,7 +23,7 @@ pub fn slope(samples: &[f64], rounds: &[Vec<f64>]) -> Option<Slope> {
     Some(Slope { mean, half_interval: quantile_of_t(n - 1) * (variance / n as f64).sqrt() })
 }
 
-/// Least squares through the logarithms; points without error are left out.
+/// The slope of the least squares line through the logarithms; points without error are left out.
 fn line(xs: &[f64], ys: &[f64]) -> Option<f64> {
     let points: Vec<(f64, f64)> =
         xs.iter().zip(ys).filter(|(x, y)| **x > 0.0 && **y > 0.0).map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -39,8 +39,8 @@ fn line(xs: &[f64], ys: &[f64]) -> Option<f64> {
     (below > 0.0).then(|| above / below)
 }
 
-/// The 97.5 % quantile of Student's t for so many degrees of freedom, from tables; for more than 30 that of 30, which is
-/// too wide by less than 5 %.
+/// The 97.5 % quantile of Student's t for this many degrees of freedom, from tables. Above 30 degrees it is
+/// that of 30, which is too large by less than 5 %.
 fn quantile_of_t(freedom: usize) -> f64 {
     const TABLE: [f64; 12] =
         [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179];
@@ -52,9 +52,9 @@ fn quantile_of_t(freedom: usize) -> f64 {
     }
 }
 
-/// What theory says of a sampler, for pictures with edges: error falls as a power of the number of samples. Random: the
-/// central limit theorem. Jittered: an edge crosses √n of n cells, and only those are uncertain (Mitchell 1996). Points of
-/// low discrepancy are as good on edges, and better where nothing jumps.
+/// The theoretical exponent of a sampler for pictures with edges, where the error is a power of the number of
+/// samples. Random: the central limit theorem. Jittered: an edge crosses √n of n cells, and only those are
+/// uncertain (Mitchell 1996). Low-discrepancy points are as good on edges, and better on smooth areas.
 pub fn theory(sampler: &str) -> Option<f64> {
     match sampler {
         "random" => Some(-0.5),

@@ -1,4 +1,4 @@
-//! The table in the terminal.
+//! The report as a table in the terminal.
 
 use super::Report;
 use super::advice::{Advice, Goal};
@@ -7,10 +7,10 @@ use super::ladder::Parameter;
 use super::measure::Series;
 use crate::report::Thousands;
 
-/// Prints it.
+/// Prints the report.
 pub fn print(report: &Report<'_>) {
     println!(
-        "{}: {} × {} pixels, {} {}, times are medians ± half the distance of their quartiles\n",
+        "{}: {} × {} pixels, {} {}; times are medians ± half the distance between the quartiles\n",
         report.scene,
         report.width,
         report.height,
@@ -23,7 +23,7 @@ pub fn print(report: &Report<'_>) {
         "RMSE",
         "rel. MSE",
         "similarity",
-        "ms a picture",
+        "ms per picture",
         "rays/pixel",
         "tests/ray",
         "wrong hits",
@@ -54,7 +54,9 @@ pub fn print(report: &Report<'_>) {
             println!("    {waste}");
         }
     }
-    println!("  • no other setting here is both faster and more accurate; what leaks is left out of it");
+    println!(
+        "  • Pareto front: no other setting is both faster and more accurate; settings that leak are left out"
+    );
     if let Some(hits) = about_hits(report) {
         println!("  wrong hits and leaks: {hits}");
     }
@@ -69,28 +71,29 @@ pub fn print(report: &Report<'_>) {
         print_advice(report, advice);
     }
     if report.partial {
-        println!("\nstopped before the end: what is above is what had been measured by then");
+        println!("\nstopped before the end: the report shows what had been measured until then");
     }
 }
 
-/// What was judged, if anything was.
+/// What the hits were judged by, if any were judged.
 pub fn about_hits(report: &Report<'_>) -> Option<String> {
     let rays = report.measured.points.iter().find_map(|point| point.hits)?.rays;
     Some(format!(
-        "of {} rays from the eye, through the picture and at edges and corners that are seen, against exact arithmetic; a \
-         leak goes through a closed surface, other wrong hits are neighbours that a rounding chose",
+        "of {} rays from the camera, through the picture and at visible edges and corners, against exact \
+         arithmetic; a leak passes through a closed surface; the other wrong hits report a neighbouring \
+         primitive because of rounding",
         Thousands(rays)
     ))
 }
 
-/// The scene's own value is marked.
+/// The name of a value; the scene's own value is marked.
 pub fn named(report: &Report<'_>, name: &str, index: usize) -> String {
     if report.own == Some(index) { format!("{name} (the scene's)") } else { name.to_owned() }
 }
 
 fn heading(series: &Series) -> String {
     match series.parameter {
-        Parameter::Sampler => format!("sampler: {}, samples a pixel", series.name),
+        Parameter::Sampler => format!("sampler: {}, samples per pixel", series.name),
         parameter => parameter.name().into(),
     }
 }
@@ -100,13 +103,16 @@ fn slope(report: &Report<'_>, series: &Series) -> String {
         return String::new();
     };
     let theory = expected_slope(report, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
-    format!(": error falls as samples to the power {:.2} ± {:.2}{theory}", slope.mean, slope.half_interval)
+    format!(
+        ": the error is proportional to samples to the power {:.2} ± {:.2}{theory}",
+        slope.mean, slope.half_interval
+    )
 }
 
-/// Errors that differ by less are the same to anybody.
+/// The relative difference below which errors count as the same.
 const SAME: f64 = 0.02;
 
-/// From where on a parameter takes time and gives nothing.
+/// A sentence that says above which value a parameter costs time without lowering the error.
 pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
     if series.parameter.is_geometric() {
         return None;
@@ -117,12 +123,12 @@ pub fn waste(report: &Report<'_>, series: &Series) -> Option<String> {
     let enough = (0..last).find(|&index| point(index).error() <= (1.0 + SAME) * end.error())?;
     let times = end.seconds / point(enough).seconds;
     let takes = match times {
-        // A fiftieth is within what times wobble by.
-        times if times < 1.0 + SAME => "and takes no more time that could be measured".into(),
+        // Times vary by about a fiftieth.
+        times if times < 1.0 + SAME => "and takes no measurable extra time".into(),
         times => format!("and takes up to {times:.2} times as long"),
     };
     let (level, same) = (&series.levels[enough].0, 100.0 * SAME);
-    Some(format!("beyond {level} it gives less than {same:.0} % more accuracy, {takes}"))
+    Some(format!("above {level} it lowers the error by less than {same:.0} %, {takes}"))
 }
 
 fn numerics(report: &Report<'_>) {
@@ -132,7 +138,7 @@ fn numerics(report: &Report<'_>) {
     }
     println!(
         "\n{:<36}{:>10}{:>22}{:>22}",
-        "ray/triangle tests, judged exactly", "ns", "wrong in a million", "leaks in a million"
+        "ray/triangle tests, judged exactly", "ns", "wrong per million", "leaks per million"
     );
     for one in numerics {
         println!(
@@ -148,11 +154,11 @@ fn numerics(report: &Report<'_>) {
     }
 }
 
-/// What the times of a kit in a process of its own say.
+/// A note about the times of a kit in a separate process.
 pub fn about_kit_times(report: &Report<'_>) -> Option<&'static str> {
     report.numerics.iter().any(|one| one.name.starts_with("kit")).then_some(
-        "kit: questions go to a process of their own and answers come back, and that counts in its ns; wrong hits and \
-         leaks do not change",
+        "kit: its ns include the messages to and from a separate process; wrong hits and \
+         leaks do not depend on that",
     )
 }
 
@@ -166,16 +172,16 @@ fn print_advice(report: &Report<'_>, advice: &Advice) {
     }
 }
 
-/// What is proposed, in a sentence.
+/// The goal of the proposal, in a sentence.
 pub fn goal(report: &Report<'_>, advice: &Advice) -> String {
     let size = format!("{} × {} pixels", report.full_width, report.full_height);
     match advice.goal {
-        Goal::Seconds(budget) => format!("the best for {budget:.1} s and {size}:"),
-        Goal::Error(error) => format!("the fastest with an error of at most {error}, at {size}:"),
+        Goal::Seconds(budget) => format!("the best settings for {budget:.1} s at {size}:"),
+        Goal::Error(error) => format!("the fastest settings with an error of at most {error} at {size}:"),
     }
 }
 
-/// What it comes to, and what it says about the scene's own settings.
+/// Errors and times of the proposal and of the scene's own settings, and remarks.
 pub fn verdict(advice: &Advice) -> Vec<String> {
     let mut lines = vec![format!(
         "expected: error {:.4}, {:.2} s; the scene's own settings: error {:.4}, {:.2} s",
@@ -188,12 +194,13 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     match advice.goal {
         Goal::Seconds(budget) if advice.verified_seconds.is_some_and(|seconds| seconds > budget) => {
             lines.push(
-                "that is longer than asked for: times wobble by some percent from one picture to the next"
+                "that is longer than requested, because times vary by some percent from one picture to the \
+                 next"
                     .into(),
             );
         }
         Goal::Error(target) if advice.expected_error > target => {
-            lines.push(format!("no level of these ladders comes to {target}: this is the closest"));
+            lines.push(format!("the search found no setting with an error of {target}; this is the closest"));
         }
         _ => {}
     }
@@ -207,11 +214,11 @@ pub fn verdict(advice: &Advice) -> Vec<String> {
     if !spent.is_empty() {
         lines.push(format!("time is spent on {}", spent.join(", ")));
     }
-    lines.extend(advice.passed_over.iter().map(|sentence| format!("not by what leaks: {sentence}")));
+    lines.extend(advice.passed_over.iter().map(|sentence| format!("left out because it leaks: {sentence}")));
     let wasted = advice.left.iter().filter(|left| left.error_factor > 1.0 - SAME);
     for left in wasted {
         lines.push(format!(
-            "not on {} beyond {}: one step more takes {:.2} times as long for {:.2} times the error",
+            "not on {} above {}: one step more takes {:.2} times as long for {:.2} times the error",
             left.parameter.name(),
             left.at,
             left.time_factor,

@@ -1,4 +1,5 @@
-//! `raykata explain`: what a scene calls for, which part of it asked, what each effect costs, and what is left out.
+//! `raykata explain`: the effects that a scene needs and the parts that need them, the cost of each effect,
+//! and the effects that are left out.
 
 mod subsets;
 mod why;
@@ -18,19 +19,19 @@ use std::path::PathBuf;
 /// `raykata explain`.
 pub static SPEC: Spec = Spec {
     name: "raykata explain",
-    about: "Say what a scene calls for, why, what it costs, and what is left out.",
+    about: "Show which effects a scene needs, why, what each costs, and which are left out.",
     arguments: &[Argument::required("SCENE", "The scene, a TOML file.")],
     options: &[
         &[
             Opt::value(
                 "--rounds",
                 "N",
-                "How often each picture is made: once with everything and once without each effect, by turns \
+                "How often each picture is rendered: with all effects and without each effect, in turn \
                  [default: 5].",
             ),
             Opt::flag(
                 "--subsets",
-                "Instead: what each set of the effects takes that the scene calls for, 2ⁿ lines for n effects.",
+                "Instead: the cost of each set of the effects that the scene needs, 2ⁿ lines for n effects.",
             ),
         ],
         Choice::OPTIONS,
@@ -38,7 +39,7 @@ pub static SPEC: Spec = Spec {
     ],
 };
 
-/// Which scene, and how long to measure.
+/// The scene, and how often to measure.
 pub struct Options {
     scene: PathBuf,
     kit: Choice,
@@ -48,7 +49,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the arguments and options.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             scene: given.required(0)?.into(),
@@ -60,7 +61,7 @@ impl Options {
     }
 }
 
-/// A scene that was looked through.
+/// A scene, the kit, and the effects that the scene needs.
 struct Explained<'a> {
     scene: &'a Scene,
     kit: &'a dyn Kit,
@@ -73,7 +74,7 @@ impl Explained<'_> {
     }
 }
 
-/// Looks through the scene, measures, and prints.
+/// Analyses the scene, measures its effects, and prints the report.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
     options.parameters.apply(&mut scene);
@@ -100,7 +101,7 @@ pub fn run(options: &Options) -> Result<()> {
 
 fn asked(explained: &Explained<'_>) {
     let Explained { scene, effects, .. } = explained;
-    println!("called for        by");
+    println!("needed            by");
     for effect in Effect::ALL {
         let asking = why::asked_by(effect, scene, effects);
         if !asking.is_empty() {
@@ -112,27 +113,28 @@ fn asked(explained: &Explained<'_>) {
         println!("  {effect:<14}  {}", why::not_asked(effect, scene));
     }
     for (index, light) in effects.lights.iter().enumerate().filter(|(_, light)| light.samples == 0) {
-        println!("  light {:<9}  it gives no light", index + 1);
+        println!("  light {:<9}  it emits no light", index + 1);
         debug_assert!(!light.shadows);
     }
     let shown = scene.shown();
     for (index, name) in scene.material_names.iter().enumerate().skip(1) {
         if !shown.iter().any(|shape| shape.materials.contains(&index)) {
-            println!("  {:<14}  nothing is made of it", format!("`{name}`"));
+            println!("  {:<14}  no shape has this material", format!("`{name}`"));
         }
     }
     println!();
 }
 
-/// A picture, measured.
+/// The counts and the time of a picture.
 fn render(kit: &dyn Kit, scene: Scene) -> Result<(Counts, f64)> {
     let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
     let rendering = kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
     Ok((rendering.counts, rendering.render_seconds))
 }
 
-/// Renders the scene with everything, and without each effect, by turns, and prints what the difference is.
+/// Renders the scene with all effects and without each effect, in turn, and prints the differences.
 fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
+    // Render the scene with all effects and without each of them, in turn.
     let called = explained.called_for();
     let scenes: Vec<Scene> = std::iter::once(explained.scene.clone())
         .chain(called.iter().map(|effect| effect.removed_from(explained.scene)))
@@ -150,6 +152,7 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     }
     bar.finish_and_clear();
 
+    // Print what the picture saves without each effect.
     let with = &seconds[0];
     println!(
         "{:<16}  {:>13}  {:>15}  {:>13}  {:>16}",
@@ -157,7 +160,7 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
     );
     for (index, effect) in called.iter().enumerate() {
         let without = &seconds[index + 1];
-        // Each round is a pair of pictures made within moments of each other.
+        // Compare pictures of the same round, because they were rendered within moments of each other.
         let shares = with.iter().zip(without).map(|(with, without)| 100.0 * (1.0 - without / with)).collect();
         let (share, spread) = median_and_spread(shares);
         let [all, rest] = [&counts[0], &counts[index + 1]];
@@ -179,21 +182,22 @@ fn cost(explained: &Explained<'_>, rounds: u32) -> Result<()> {
         format!("{whole:.3} s ± {spread:.3}")
     );
     println!(
-        "  Each line is what the picture costs less without that effect; they need not add up, for a mirror shows\n  \
-         shadows. Times are medians of {rounds} {} with their median deviation, all pictures by turns.\n",
+        "  Each line is what the picture saves without that effect. The lines need not add up, because a \
+         mirror shows\n  shadows. Times are medians of {rounds} {} with their median deviation, all pictures \
+         in turn.\n",
         if rounds == 1 { "round" } else { "rounds" }
     );
     Ok(())
 }
 
-/// The median, and the median of how far values are from it.
+/// The median, and the median of the distances from it.
 fn median_and_spread(values: Vec<f64>) -> (f64, f64) {
     let [_, middle, _] = quartiles(values.clone());
     let [_, deviation, _] = quartiles(values.iter().map(|value| (value - middle).abs()).collect());
     (middle, deviation)
 }
 
-/// `with - without`, with its sign.
+/// `with - without` as text, with its sign.
 fn signed(with: u64, without: u64) -> String {
     match with.checked_sub(without) {
         Some(more) => Thousands(more).to_string(),
@@ -201,7 +205,7 @@ fn signed(with: u64, without: u64) -> String {
     }
 }
 
-/// Rays as predicted and as counted.
+/// Prints the predicted and the counted numbers of rays.
 fn bounds(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, effects } = explained;
     let query = BoundQuery { scene: (*scene).clone(), effects: effects.clone() };
@@ -211,17 +215,18 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
     let lines = [
         ("from the camera", most.primary, counted.primary),
         ("to lights", most.shadow, counted.shadow),
-        ("off mirrors", most.reflection, counted.reflection),
-        ("through surfaces", most.transmission, counted.transmission),
+        ("reflected", most.reflection, counted.reflection),
+        ("refracted", most.transmission, counted.transmission),
     ];
     for (what, most, counted) in lines {
-        let most = if most == u64::MAX { "beyond counting".to_owned() } else { Thousands(most).to_string() };
+        let most =
+            if most == u64::MAX { "too many to count".to_owned() } else { Thousands(most).to_string() };
         println!("  {what:<16}  {most:>18}  {:>13}", Thousands(counted).to_string());
     }
     let seen = counted.primary + counted.reflection + counted.transmission;
     println!(
-        "  {} of the {} rays that look for a surface met one; only there are lights asked about, and only those in \
-         front of it.",
+        "  {} of {} rays other than shadow rays hit a surface. Shadow rays start only there, and only to \
+         lights in front of it.",
         Thousands(counted.hits),
         Thousands(seen)
     );

@@ -1,21 +1,21 @@
-//! What each set of effects takes.
+//! The cost of each set of effects.
 
 use super::{Explained, render};
 use crate::report::{Thousands, bar_of_steps};
 use anyhow::{Result, bail};
 use raykata::effects::Effect;
 
-/// One line for each set of the effects that the scene calls for, from none to all.
+/// Prints one line for each set of the effects that the scene needs, from none to all.
 pub fn print(explained: &Explained<'_>) -> Result<()> {
     let called = explained.called_for();
     if called.len() > 9 {
-        bail!("the scene calls for {} effects: {} sets are too many", called.len(), 1u64 << called.len());
+        bail!("the scene needs {} effects: {} sets are too many", called.len(), 1u64 << called.len());
     }
     for (effect, letter) in called.iter().zip('A'..) {
         println!("  {letter}  {effect}");
     }
     let head =
-        ["from camera", "to lights", "mirrored", "refracted", "random numbers", "image reads", "box tests"];
+        ["from camera", "to lights", "reflected", "refracted", "random numbers", "image reads", "box tests"];
     let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
     println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
     let bar = bar_of_steps(1 << called.len());

@@ -1,4 +1,4 @@
-//! Which part of a scene asks for an effect, and why nothing asks for the others.
+//! The parts of a scene that need an effect, and the reasons why the scene does not need the others.
 
 use glam::Vec3;
 use raykata::effects::{Effect, Effects};
@@ -6,7 +6,7 @@ use raykata::material::{AreaShape, Emitter, Fresnel, Light, Material};
 use raykata::scene::Scene;
 use raykata::shape::Shape;
 
-/// The parts of `scene` that ask for `effect`, in words; none if it is not called for.
+/// The parts of `scene` that need `effect`, in words; none if the scene does not need it.
 pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String> {
     let seen = |light: usize| effects.materials.iter().any(|material| material.lights.contains(&light));
     let lights = |wants: &dyn Fn(usize) -> bool| {
@@ -31,7 +31,7 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
             .camera
             .lens
             .filter(|_| effects.lens)
-            .map(|lens| format!("camera: opening {}, sharp at {}", lens.aperture, lens.focal_distance))
+            .map(|lens| format!("camera: aperture {}, focal distance {}", lens.aperture, lens.focal_distance))
             .into_iter()
             .collect(),
         Effect::Motion if effects.motion => {
@@ -48,7 +48,7 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
     }
 }
 
-/// Why nothing asks for `effect`.
+/// The reason why no part of `scene` needs `effect`.
 pub fn not_asked(effect: Effect, scene: &Scene) -> String {
     let shown = scene.shown();
     let has = |wants: &dyn Fn(&Material) -> bool, what: &str| {
@@ -62,34 +62,32 @@ pub fn not_asked(effect: Effect, scene: &Scene) -> String {
         (!idle.is_empty()).then(|| format!("{} {what}", list(&idle)))
     };
     let area = |light: &Light| matches!(light.emitter, Emitter::Area { .. });
-    let unused = "could, but nothing is made of it, or max_depth is 0";
+    let unused = "could, but no shape has this material, or max_depth is 0";
     match effect {
         Effect::Shadows if scene.lights.is_empty() => "there is no light".into(),
-        Effect::Shadows => "no light that lights something casts them".into(),
+        Effect::Shadows => "no light that reaches a surface casts shadows".into(),
         Effect::AreaLights if scene.lights.iter().any(area) && scene.quality.light_samples == 0 => {
-            "light_samples is 0: lights shine from their middle".into()
+            "light_samples is 0: area lights shine from their centre".into()
         }
-        Effect::AreaLights if scene.lights.iter().any(area) => {
-            "the lights that have an extent light nothing".into()
-        }
-        Effect::AreaLights => "no light has an extent".into(),
+        Effect::AreaLights if scene.lights.iter().any(area) => "no area light reaches a surface".into(),
+        Effect::AreaLights => "there is no area light".into(),
         Effect::Mirrors => has(&|m| m.mirror != Vec3::ZERO || m.fresnel != Fresnel::None, unused)
-            .unwrap_or_else(|| "nothing mirrors".into()),
+            .unwrap_or_else(|| "no material is a mirror".into()),
         Effect::Transmission => has(&|m| m.transmission != Vec3::ZERO, unused)
-            .unwrap_or_else(|| "nothing lets light through".into()),
+            .unwrap_or_else(|| "no material transmits light".into()),
         Effect::Glossy => {
-            has(&|m| m.roughness > 0.0, "is rough, but nothing made of it mirrors or lets light through")
+            has(&|m| m.roughness > 0.0, "is rough, but no shape of this material reflects or transmits light")
                 .unwrap_or_else(|| "no material is rough".into())
         }
-        Effect::Lens if scene.camera.lens.is_some() => "the opening of the lens is 0".into(),
+        Effect::Lens if scene.camera.lens.is_some() => "the aperture of the lens is 0".into(),
         Effect::Lens => "the camera is a pinhole".into(),
         Effect::Motion if !shown.iter().any(|shape| shape.moves) => "nothing moves".into(),
-        Effect::Motion => "the shutter is not open for any time".into(),
+        Effect::Motion => "the shutter opens and closes at the same time".into(),
         Effect::SmoothNormals if scene.meshes.is_empty() => "there is no mesh".into(),
         Effect::SmoothNormals => "no mesh that is shown is smooth".into(),
-        Effect::Textures => has(&|m| m.texture.is_some(), "has an image, but nothing shows it")
+        Effect::Textures => has(&|m| m.texture.is_some(), "has an image, but no shape shows it")
             .unwrap_or_else(|| "no material has an image".into()),
-        Effect::IndirectLight => "[environment] does not ask for it".into(),
+        Effect::IndirectLight => "[environment] does not request it".into(),
     }
 }
 
@@ -104,7 +102,7 @@ fn light_name(scene: &Scene, light: usize) -> String {
     format!("light {} ({kind})", light + 1)
 }
 
-/// A material and the first things that are made of it.
+/// The name of a material, and the first nodes that have it.
 fn material(scene: &Scene, index: usize) -> String {
     let mut nodes: Vec<String> = scene
         .shown()
@@ -138,7 +136,7 @@ fn node(scene: &Scene, index: usize) -> String {
     format!("{kind} of {unnamed}")
 }
 
-/// The first three, and how many more.
+/// The first three parts, and how many more there are.
 pub fn list(parts: &[String]) -> String {
     match parts {
         [first, second, third, more @ ..] if !more.is_empty() => {

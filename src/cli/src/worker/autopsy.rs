@@ -1,4 +1,4 @@
-//! What became of a worker that no longer answers.
+//! Finds out why a worker does not answer any more.
 
 use super::{Death, Launcher, lock};
 use raykata::kit::KitError;
@@ -7,10 +7,10 @@ use std::process::{Child, ExitStatus};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// How much of what a worker writes to standard error is kept.
+/// The number of bytes of a worker's standard error that are kept.
 const KEPT_STDERR: u64 = 64 * 1024;
 
-/// How much of a message of student code is passed on: it goes into reports.
+/// The number of characters of a student's message that are passed on to reports.
 const KEPT_WORDS: usize = 2000;
 
 pub(super) fn wait_briefly(child: &Mutex<Child>) -> Option<ExitStatus> {
@@ -24,7 +24,7 @@ pub(super) fn wait_briefly(child: &Mutex<Child>) -> Option<ExitStatus> {
     None
 }
 
-/// `launcher` is what started it, if nobody trusts it.
+/// The reason why the process ended. `launcher` has started it if its code is untrusted.
 pub(super) fn cause_of_death(
     status: Option<ExitStatus>,
     stderr: &str,
@@ -33,7 +33,7 @@ pub(super) fn cause_of_death(
 ) -> KitError {
     let crashed = |how: &str| KitError::Crashed { how: how.into() };
     if stderr.contains("has overflowed its stack") {
-        return crashed("the stack overflowed: a recursion that never ends?");
+        return crashed("the stack overflowed: is there an infinite recursion?");
     }
     let Some(status) = status else { return crashed("for an unknown reason") };
     match launcher.and_then(|launcher| launcher.death(status, stderr)) {
@@ -42,18 +42,18 @@ pub(super) fn cause_of_death(
         None => {}
     }
     match last_words(stderr) {
-        Some(last) => crashed(&format!("{status}; its last words: {last}")),
+        Some(last) => crashed(&format!("{status}; its last line on standard error: {last}")),
         None => crashed(&status.to_string()),
     }
 }
 
-/// The last line that is not empty, with no more letters than a message has room for.
+/// The last line that is not empty, shortened to the length of a message.
 pub fn last_words(stderr: &str) -> Option<String> {
     let last = stderr.lines().rev().find(|line| !line.trim().is_empty())?;
     Some(last.chars().take(160).collect())
 }
 
-/// With no more words than anybody reads.
+/// The error with its texts shortened.
 pub(super) fn shortened(error: KitError) -> KitError {
     let short = |words: String| match words.char_indices().nth(KEPT_WORDS) {
         Some((end, _)) => format!("{} …", &words[..end]),

@@ -6,20 +6,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How many times its patience a process gets in all when others keep it from computing. More would let one that sleeps
-/// hold up a class.
+/// The limit of elapsed time in units of the patience, for a process that other processes keep from
+/// computing. With a larger limit a process that sleeps would delay the grading of a class.
 const MOST_TIMES: u32 = 3;
 
-/// The processor time of a call is counted from this part of its patience on: most calls are over by then, so it costs
-/// them nothing.
+/// The fraction of its patience after which the processor time of a call is measured. Most calls end earlier
+/// and cost no measurement.
 const COUNTED_AFTER: u32 = 20;
 
-/// One thread a process; it sleeps between calls.
+/// Ends a process that exceeds its time. It has one thread per process, which sleeps between calls.
 pub(super) struct Watchdog {
     deadline: Mutex<Deadline>,
     changed: Condvar,
     barked: AtomicBool,
-    /// Knows how much processor time the process has used. With one, time counts only while the process computes.
+    /// Measures the processor time of the process. If it is set, time counts only while the process computes.
     launcher: Option<Arc<dyn Launcher>>,
 }
 
@@ -34,12 +34,12 @@ enum Deadline {
 struct Call {
     asked: Instant,
     patience: Duration,
-    /// What the process had used when counting began.
+    /// The processor time of the process when measuring began.
     used_before: Option<Duration>,
 }
 
 impl Watchdog {
-    /// A watchdog for this process.
+    /// Starts a watchdog for this process.
     pub(super) fn guard(child: &Arc<Mutex<Child>>, launcher: Option<Arc<dyn Launcher>>) -> Arc<Watchdog> {
         let watchdog = Arc::new(Watchdog {
             deadline: Mutex::new(Deadline::None),
@@ -120,7 +120,7 @@ impl Watchdog {
 }
 
 impl Call {
-    /// When to look again, if the process, which has used so much processor time, has not had its time yet.
+    /// The time of the next test if the process may continue; `used` is its processor time so far.
     fn more_time(&self, used: Duration) -> Option<Instant> {
         let used = used.saturating_sub(self.used_before.unwrap_or_default());
         let last = self.asked + self.patience * MOST_TIMES;

@@ -1,4 +1,4 @@
-//! The command `compare` as its users run it.
+//! Runs the command `compare`.
 
 use super::program_runs::{printed, raykata};
 
@@ -46,9 +46,9 @@ fn structures_are_compared_side_by_side() {
             picture.display()
         );
     }
-    // Each column in which less is better has a winner.
+    // Each column in which smaller is better has a mark.
     assert!(said.matches('*').count() > 4, "{said}");
-    // What has cells or boxes is drawn; brute force has none.
+    // Structures with cells or boxes are drawn; brute force has none.
     let drawn = |row: &str| out.path().join(format!("cells-{row}.png")).exists();
     assert!(
         drawn("bsp")
@@ -62,7 +62,7 @@ fn structures_are_compared_side_by_side() {
     let numbers: serde_json::Value = serde_json::from_str(&numbers).expect("JSON");
     assert_eq!(numbers.as_array().map(Vec::len), Some(rows.len()));
     let asked = |row: usize| numbers[row]["counts"]["primitive_tests"].as_u64().expect("a count");
-    assert!(asked(0) > asked(5), "brute force asks more than a hierarchy");
+    assert!(asked(0) > asked(5), "brute force makes more tests than a hierarchy");
     let plot = std::fs::read_to_string(out.path().join("compare.svg")).expect("a plot");
     assert!(rows.iter().all(|row| plot.contains(&format!(">{row}<"))), "{plot}");
 }

@@ -1,4 +1,4 @@
-//! `raykata cost` as people run it, on tiny pictures.
+//! Runs `raykata cost` on tiny pictures.
 
 use serde_json::Value;
 use std::fs;
@@ -22,10 +22,10 @@ fn said(output: &Output) -> String {
 
 const QUICK: [&str; 4] = ["--size", "16x12", "--rounds", "2"];
 
-/// The report without what a clock says.
+/// The report without measured times.
 fn without_times(folder: &Path) -> (Value, Vec<String>) {
     let mut json: Value = serde_json::from_slice(&fs::read(folder.join("cost.json")).unwrap()).unwrap();
-    for name in ["command", "took", "front", "numerics"] {
+    for name in ["command", "took", "pareto_front", "numerics"] {
         json.as_object_mut().unwrap().remove(name);
     }
     for point in json["points"].as_array_mut().unwrap() {
@@ -48,24 +48,27 @@ fn two_runs_have_the_same_errors_and_counts() {
         assert!(output.status.success(), "{}", said(&output));
         (said(&output), without_times(&folder.path().join(out)))
     };
-    let parameters = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
-    let (told, one) = run("one", &parameters);
-    let (_, other) = run("other", &[&parameters[..], &["--threads", "1"]].concat());
+    let knobs = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
+    let (told, one) = run("one", &knobs);
+    let (_, other) = run("other", &[&knobs[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
-    assert!(told.contains("glossy samples: not offered, for nothing is rough and mirrors"), "{told}");
+    assert!(
+        told.contains("glossy samples: not offered, because no rough surface reflects or transmits light"),
+        "{told}"
+    );
     assert!(told.contains("(the scene's)"), "{told}");
 
     let points = one.0["points"].as_array().unwrap();
     let errors: Vec<f64> = points.iter().map(|point| point["rmse"][0].as_f64().unwrap()).collect();
-    // The ladder of samples comes first, from 1 on: more of them are more accurate.
+    // The ladder of samples comes first, from 1 on: more samples are more accurate.
     assert!(errors[0] > 2.0 * errors[5], "{errors:?}");
     let page = fs::read_to_string(folder.path().join("one/index.html")).unwrap();
-    // It needs nothing else: the only address in it is the name of a format.
+    // The page is self-contained: the only address in it is the name of a format.
     assert_eq!(page.matches("://").count(), page.matches("http://www.w3.org/2000/svg").count());
     assert!(page.contains("data:image/png;base64,") && page.contains("<svg"));
 
-    // The reference was kept, and a longer one goes on with it.
+    // The reference was kept, and a longer one continues it.
     let kept: Vec<_> = fs::read_dir(folder.path().join("out/references")).unwrap().collect();
     assert_eq!(kept.len(), 1);
     let (_, longer) = run("longer", &["--parameter", "samples", "--reference", "192"]);
@@ -86,8 +89,9 @@ fn a_proposal_is_tried_out() {
         serde_json::from_slice(&fs::read(folder.path().join("out/stage5-cost/cost.json")).unwrap()).unwrap();
     let advice = &json["advice"];
     assert!(advice["expected_error"].as_f64().unwrap() <= 0.03, "{advice}");
-    // Other random numbers make another error. That of 16 × 12 pixels is made by the few on edges, a dozen or so, and of so
-    // few the root of the mean of squares wobbles by a fifth; twice that is not reached by chance in a fixed pair of seeds.
+    // Other random numbers give another error. In 16 × 12 pixels it comes from about a dozen pixels on edges,
+    // so the root mean square varies by a fifth; twice that is not reached by chance with a fixed pair of
+    // seeds.
     assert!(advice["verified_error"].as_f64().unwrap() <= 0.03 * 1.5, "{advice}");
     assert!(said(&output).contains("rendered, with other random numbers"), "{}", said(&output));
 }
@@ -111,10 +115,10 @@ fn hits_are_judged_exactly() {
         (number("rays"), number("wrong"), number("leaks"))
     };
     let (rays, wrong, leaks) = judged("watertight");
-    // By rounding a ray may count for the neighbour; a leak would be a hole.
+    // Because of rounding a ray may hit the neighbour; a leak would be a hole.
     assert!(rays > 3000 && wrong <= 5 && leaks == 0, "{rays} {wrong} {leaks}");
     let (same, wrong, leaks) = judged("cramer");
-    // One in ten that is aimed at an edge slips through (stage 2).
+    // One in ten rays that are aimed at an edge leaks (stage 2).
     assert!(same == rays && wrong > leaks && leaks > 20, "{same} {wrong} {leaks}");
 }
 
@@ -123,7 +127,7 @@ fn what_buys_nothing_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let output = cost(folder.path(), &["scenes/stage1.toml", "--parameter", "depth"]);
     assert_eq!(output.status.code(), Some(1));
-    assert_eq!(said(&output), "error: depth buys nothing here: nothing mirrors or lets light through\n");
+    assert_eq!(said(&output), "error: depth changes nothing here: no surface reflects or transmits light\n");
     for (arguments, says) in [
         (&["scenes/stage1.toml", "--budget", "soon"][..], "a time is a number above 0"),
         (&["scenes/stage1.toml", "--budget", "1s", "--error", "0.1"], "cannot be used with"),
@@ -135,7 +139,7 @@ fn what_buys_nothing_is_said() {
     }
 }
 
-/// As when somebody presses Ctrl-C.
+/// Sends the signal of Ctrl-C.
 #[cfg(target_os = "linux")]
 #[test]
 fn what_is_stopped_leaves_a_report() {

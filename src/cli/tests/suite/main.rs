@@ -1,4 +1,4 @@
-//! The tests of `raykata` in one program, so that it is linked once and slow tests run beside each other.
+//! The tests of `raykata` in one program, so that it is linked once and slow tests run in parallel.
 
 mod compare;
 mod cost;

@@ -1,4 +1,4 @@
-//! The program as its users run it.
+//! Runs the program as its users do.
 
 use super::program_runs::{printed, raykata, root};
 use raykata::scene::load;
@@ -44,7 +44,7 @@ fn each_kind_of_picture_is_written_and_others_are_refused() {
         assert!(output.status.success(), "{}", printed(&output).1);
         assert!(std::fs::read(&picture).expect("a picture").starts_with(magic), "{name}");
     }
-    // OpenEXR takes longer to build than all other formats together, so it is built when somebody wants it.
+    // OpenEXR takes longer to build than all other formats together, so it is built only with the feature `exr`.
     let picture = out.path().join("a.exr");
     let output =
         raykata(&["render", "scenes/gamma.toml", "--size", "9x7", "--out", &picture.to_string_lossy()]);
@@ -112,7 +112,7 @@ fn checks_are_listed_by_stage() {
     assert_eq!(one, printed(&raykata(&["list", "stage3"])).0);
 }
 
-/// As `raykata list | head -1` does.
+/// The reader closes the pipe, as in `raykata list | head -1`.
 #[test]
 fn a_reader_that_goes_away_is_no_panic() {
     for arguments in [&["list"][..], &["hint", "picture_of_depth"], &["render", "--help"]] {
@@ -129,7 +129,7 @@ fn a_reader_that_goes_away_is_no_panic() {
 fn a_worker_that_is_up_to_date_is_not_mentioned() {
     let tree = || raykata(&["tree", "scenes/stage1.toml", "--pixel", "1,1"]);
     assert!(tree().status.success());
-    // Other tests ask cargo at the same time, and whoever has to wait is told so.
+    // Other tests run cargo at the same time, which prints a line if it has to wait.
     let said: Vec<String> =
         (0..100).map(|_| printed(&tree()).1).take_while(|said| !said.is_empty()).collect();
     assert!(said.len() < 100, "{}", said.concat());
@@ -198,13 +198,13 @@ fn a_scene_is_explained_and_predictions_hold() {
         "  shadows         light 1 (rectangle), light 2 (point)",
         "  mirrors         `mirror` (mirror ball), `brushed` (brass ball)",
         "  glossy          `brushed` (brass ball)",
-        "  lens            camera: opening 0.12, sharp at 7",
+        "  lens            camera: aperture 0.12, focal distance 7",
         "  motion          toy ball",
-        "  indirect light  [environment] does not ask for it",
+        "  indirect light  [environment] does not request it",
     ] {
         assert!(said.contains(line), "no `{line}` in\n{said}");
     }
-    // 24 × 15 pixels, 2 samples each: as predicted.
+    // 24 × 15 pixels with 2 samples each: predicted and counted.
     let primary =
         said.lines().find(|line| line.contains("from the camera")).expect("a line about the camera");
     assert_eq!(primary.split_whitespace().filter(|&word| word == "720").count(), 2, "{primary}");
@@ -215,7 +215,7 @@ fn every_set_of_effects_has_its_line() {
     let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
     let (said, complained) = printed(&output);
     assert!(output.status.success(), "{complained}");
-    // Shadows, mirrors and transmission: eight sets, each with its rays from the camera.
+    // Shadows, mirrors and transmission give eight sets, each with the same number of camera rays.
     assert_eq!(
         said.lines().filter(|line| line.split_whitespace().nth(1) == Some("360")).count(),
         8,

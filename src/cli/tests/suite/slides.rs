@@ -1,10 +1,10 @@
-//! Slides cite nothing that nobody can make again: who shows a figure says the command, and the command is one.
+//! Every slide with a figure names the command that makes it, and every command on a slide exists.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// A slide: where it is, and its text.
+/// All slides: the file and number of each, and its text.
 fn slides(root: &Path) -> Vec<(String, String)> {
     let mut slides = Vec::new();
     for file in fs::read_dir(root.join("slides")).unwrap().map(|file| file.unwrap().path()) {
@@ -19,12 +19,12 @@ fn slides(root: &Path) -> Vec<(String, String)> {
     slides
 }
 
-/// Commands in backticks.
+/// The commands in backticks.
 fn commands(slide: &str) -> Vec<&str> {
     slide.split('`').skip(1).step_by(2).filter(|code| code.starts_with("cargo run")).collect()
 }
 
-/// Files of pictures.
+/// The files of the pictures.
 fn pictures(slide: &str) -> Vec<&str> {
     slide.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect()
 }
@@ -47,7 +47,7 @@ fn whoever_shows_a_figure_says_how_to_make_it() {
         for picture in pictures(slide) {
             assert!(root.join("slides").join(picture).is_file(), "{place}: there is no {picture}");
         }
-        // A page of 16 : 9 at the size at which such decks are shown.
+        // A 16:9 page at the usual font size has room for 18 lines.
         let lines = slide.lines().filter(|line| !line.trim().is_empty()).count();
         assert!(lines <= 18, "{place}: {lines} lines do not fit");
     }
@@ -66,7 +66,7 @@ fn commands_are_understood() {
                 _ => panic!("{place}: {command}"),
             };
             let mut asked = Command::new(env!("CARGO_BIN_EXE_raykata"));
-            // Help comes in place of the work, once everything before it was understood.
+            // `--help` prints the help in place of the work, after all words before it were understood.
             let output = asked.args(words).arg("--help").current_dir(&root).output().unwrap();
             let said = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{place}: {command}: {said}");

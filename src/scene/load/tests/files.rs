@@ -1,4 +1,4 @@
-//! Textures and meshes: whatever needs a second file.
+//! Textures and meshes, which need a second file.
 
 use super::CAMERA;
 use crate::material::{Material, Wrap};
@@ -8,7 +8,7 @@ use crate::scene::load::parse;
 use glam::Vec3;
 use std::path::PathBuf;
 
-/// A folder that goes away with its value.
+/// A folder that is removed when the value is dropped.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -54,7 +54,8 @@ fn an_image_is_decoded_to_linear_light() {
         .expect("a scene");
     let texture = &scene.textures[0];
     assert_eq!((texture.width, texture.height, texture.wrap), (2, 1, Wrap::Mirror));
-    // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the line: 10/255/12.92.
+    // Code 188 is middle grey: ((188/255 + 0.055) / 1.055)^2.4 = 0.5029; code 10 lies on the linear part:
+    // 10/255/12.92.
     assert!((texture.pixels[0] - Vec3::new(0.0, 1.0, 0.502_886)).abs().max_element() < 1e-6);
     assert!((texture.pixels[1].x - 0.003_035_27).abs() < 1e-8);
     assert_eq!(scene.materials[1].texture, Some(0));
@@ -98,7 +99,7 @@ fn files_that_cannot_be_used_say_why() {
     let (_, message, help) = trouble(folder.parse("meshes.bunny.file = 'bunny.stl'"));
     assert_eq!(
         (message.as_str(), help.as_str()),
-        ("'bunny.stl' is no mesh that can be read", "meshes are `.ply` or `.obj` files")
+        ("'bunny.stl' is not a mesh that can be read", "meshes are `.ply` or `.obj` files")
     );
     let (_, message, _) = trouble(folder.parse("meshes.bunny.file = \"\\u0000\""));
     assert!(message.starts_with("cannot read `\\u{0}`: "), "{message}");
@@ -162,13 +163,13 @@ fn an_obj_material_brings_its_image() {
 #[test]
 fn mesh_materials_that_cannot_be_used_say_what_to_do() {
     let folder = Folder::new("mtl");
-    let remedy = "define `[materials.red]`, or write `materials = false` to have the whole mesh in the material of \
-        its node";
+    let remedy = "define `[materials.red]`, or write `materials = false` to give the whole mesh the material \
+        of its node";
     folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
     let text = "[meshes.o]\nfile = 'm.obj'\n";
     let (place, message, help) = trouble(folder.parse(text));
     assert_eq!((place, help.as_str()), (Some((2, 1)), remedy));
-    assert_eq!(message, "mesh `o` uses material `red`, and nothing defines it");
+    assert_eq!(message, "mesh `o` uses material `red`, which is not defined");
 
     folder.write("m.obj", OBJ);
     folder.write("m.mtl", "newmtl red\nd 1.5\n");

@@ -1,4 +1,4 @@
-//! Materials and lights, and the examples of the reference.
+//! Materials and lights, and the examples in `format.md`.
 
 use super::{check_refused_with, scene_with};
 use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
@@ -40,10 +40,10 @@ fn materials_have_limits() {
     let red = |rest: &str, message: &str| {
         check_refused_with(&format!("[materials.red]\n{rest}"), &format!("s.toml:{message}"));
     };
-    red("index_of_refraction = 0", "3:23: `index_of_refraction` must be above 0, and is 0");
-    red("roughness = 1.5", "3:13: `roughness` must be from 0 to 1, and is 1.5");
-    red("exponent = -1", "3:12: `exponent` must be at least 0, and is -1");
-    red("diffuse = [inf, 0, 0]", "3:12: entry 1 of `diffuse` must be a finite number, and is inf");
+    red("index_of_refraction = 0", "3:23: `index_of_refraction` must be above 0, but is 0");
+    red("roughness = 1.5", "3:13: `roughness` must be from 0 to 1, but is 1.5");
+    red("exponent = -1", "3:12: `exponent` must be at least 0, but is -1");
+    red("diffuse = [inf, 0, 0]", "3:12: entry 1 of `diffuse` must be a finite number, but is inf");
     red("texture = 'wood'", "3:11: unknown texture `wood`\nhelp: the scene defines none");
 }
 
@@ -75,27 +75,27 @@ fn lights_have_limits() {
     let light = |rest: &str, message: &str| {
         check_refused_with(&format!("[[lights]]\n{rest}"), &format!("s.toml:{message}"));
     };
-    light("", "2:1: entry 1 of `lights` needs one of `point`, `directional`, `area`, and has none");
+    light("", "2:1: entry 1 of `lights` needs one of `point`, `directional`, `area`, but has none");
     light(
         "point = { position = [0, 0, 0] }\narea = {}",
         "4:1: entry 1 of `lights` has both `point` and `area`\nhelp: delete one of the two",
     );
     light(
         "intensity = -1\npoint = { position = [0, 0, 0] }",
-        "3:13: `intensity` must be at least 0, and is -1",
+        "3:13: `intensity` must be at least 0, but is -1",
     );
     light("point = {}", "3:9: `point` lacks `position`\nhelp: add it, for example `position = [0, 5, 0]`");
     light(
         "area = { rectangle = { corner = [0, 0, 0], edges = [[1, 0, 0], [2, 0, 0]] } }",
-        "3:52: the edges run along one line, so the light has no area",
+        "3:52: the edges are parallel or zero, so the light has no area",
     );
     light(
         "area = { sphere = { center = [0, 0, 0], radius = 0 } }",
-        "3:50: `radius` must be above 0, and is 0",
+        "3:50: `radius` must be above 0, but is 0",
     );
     light(
         "point = { position = [0, 0, 0], falloff = 'linear' }",
-        "3:43: unknown value of `falloff`: `linear`\nhelp: known are `none`, `inverse_square`",
+        "3:43: unknown value of `falloff`: `linear`\nhelp: known names are `none`, `inverse_square`",
     );
 }
 

@@ -1,4 +1,4 @@
-//! Facts about scene files: what they say when they are right, and what is said of them when they are wrong.
+//! Tests of the scene reader: the scenes that valid files give, and the messages for invalid files.
 
 mod files;
 mod materials;
@@ -14,7 +14,7 @@ use std::path::Path;
 /// A camera on one line, so that whatever a test adds begins on line 2.
 const CAMERA: &str = "camera = { position = [0, 0, 5], look_at = [0, 0, 0] }\n";
 
-/// The scene in `text`, which is sound.
+/// The scene in `text`, which is valid.
 #[track_caller]
 fn scene(text: &str) -> Scene {
     parse(Path::new("s.toml"), text).unwrap_or_else(|error| panic!("{error}\nin\n{text}"))

@@ -1,11 +1,11 @@
-//! Whatever stands in a file, reading it ends, and an error points into the file.
+//! The reader ends without a panic on any text, and every error points into the file.
 
 use super::{CAMERA, parse};
 use std::ops::Range;
 use std::path::Path;
 use toml::de::DeTable;
 
-/// A scene with a little of everything that needs no other file.
+/// A scene with one example of everything that needs no other file.
 const SCENE: &str = "
 [film]
 width = 64
@@ -42,7 +42,7 @@ shape = { cone = { base = [0, 0, 0], apex = [0, 1, 0], radius = 1 } }
 shape = { box = { min = [0, 0, 0], max = [1, 1, 1] } }
 ";
 
-/// Scraps of which mistakes are made.
+/// Fragments from which mistakes are made.
 const SCRAPS: [&str; 36] = [
     "nan",
     "-inf",
@@ -107,7 +107,7 @@ fn word(text: &str, random: &mut Random) -> Range<usize> {
     start..end
 }
 
-/// Makes one mistake: a word in place of another, which often is good TOML, or a scrap anywhere, which seldom is.
+/// Makes one mistake: a word replaced by another, which is often valid TOML, or a fragment anywhere, which seldom is.
 fn mutate(text: &mut String, random: &mut Random) {
     let target = word(text, random);
     let other = text[word(text, random)].to_string();
@@ -143,8 +143,11 @@ fn no_text_makes_the_reader_panic() {
             }
         }
     }
-    // Mistakes that all end in the TOML parser would say nothing of the reader.
-    assert!(syntax < 15_000 && sound > 200, "{syntax} of 20000 mutants are no TOML, {sound} are sound");
+    // If all mistakes ended in the TOML parser, the test would not reach the reader.
+    assert!(
+        syntax < 15_000 && sound > 200,
+        "{syntax} of 20000 mutants are invalid TOML, {sound} are valid scenes"
+    );
 }
 
 #[test]

@@ -55,24 +55,25 @@ fn shapes_arrive_as_written() {
 #[test]
 fn shapes_that_no_ray_can_hit_are_refused() {
     let shape = |text: &str, message: &str| check_node(&format!("shape = {{ {text} }}"), message);
-    shape("sphere = { center = [0, 0, 0], radius = -1 }", "3:51: `radius` must be above 0, and is -1");
+    shape("sphere = { center = [0, 0, 0], radius = -1 }", "3:51: `radius` must be above 0, but is -1");
     shape("sphere = { center = [0, 0, 0], radus = 1 }", "3:42: unknown key `radus`; did you mean `radius`?");
     shape(
         "sphere = { center = [0, 0, 0] }",
         "3:20: `sphere` lacks `radius`\nhelp: add it, for example `radius = 1.0`",
     );
-    shape("sphere = { center = [0, 0], radius = 1 }", "3:31: `center` must be three numbers, and has 2");
+    shape("sphere = { center = [0, 0], radius = 1 }", "3:31: `center` must be three numbers, but has 2");
     shape(
         "sphere = { center = [0, 'x', 0], radius = 1 }",
-        "3:35: entry 2 of `center` must be a number, and is text",
+        "3:35: entry 2 of `center` must be a number, but is text",
     );
     shape(
         "sphere = { center = [3e38, 0, 0], radius = 3e38 }",
-        "3:20: `sphere` reaches beyond the largest number, 3.4e38",
+        "3:20: `sphere` exceeds the largest number, 3.4e38",
     );
     shape(
         "plane = { point = [0, 0, 0], normal = [0, 0, 0] }",
-        "3:49: `normal` has no length, so it points nowhere\nhelp: give a direction, for example `[0, 1, 0]`",
+        "3:49: `normal` has no length, so it gives no direction\nhelp: give a direction, for example `[0, 1, \
+         0]`",
     );
     shape(
         "triangle = { a = [0, 0, 0], b = [1, 1, 1], c = [3, 3, 3] }",
@@ -93,7 +94,7 @@ fn shapes_that_no_ray_can_hit_are_refused() {
     shape(
         "",
         "3:9: `shape` needs one of `sphere`, `plane`, `triangle`, `box`, `cylinder`, `cone`, `disk`, `polygon`, \
-         `bezier`, `mesh`, and has none",
+         `bezier`, `mesh`, but has none",
     );
     shape("mesh = 'bunny'", "3:18: unknown mesh `bunny`\nhelp: the scene defines none");
     shape(
@@ -123,12 +124,12 @@ fn polygons_are_flat_and_convex_and_go_around_once() {
         "[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]",
         &format!("56: the polygon is not convex at corner 3\n{convex}"),
     );
-    // A star of five points turns the same way at each of them, and goes around twice.
+    // A five-pointed star turns the same way at each corner, and goes around twice.
     polygon(
         "[0, 10, 0], [6, -8, 0], [-10, 3, 0], [10, 3, 0], [-6, -8, 0]",
         &format!("58: the polygon is not convex at corner 3\n{convex}"),
     );
-    // Written with five digits and far away, a slanted hexagon is not exactly flat; a straight corner is no fault.
+    // With five digits and far from the origin, a slanted hexagon is not exactly flat; a straight corner is allowed.
     let far = "[1e4, 1e4, 1e4], [10001.3, 1e4, 10000.7], [10002.6, 1e4, 10001.4], [1e4, 10001.1, 1e4]";
     one_node(&format!("shape = {{ polygon = {{ corners = [{far}] }} }}"));
 }
@@ -160,30 +161,30 @@ fn transforms_act_in_the_order_listed() {
 fn transforms_can_be_undone() {
     let steps =
         |steps: &str, message: &str| check_node(&format!("transform = [{steps}]"), &format!("3:{message}"));
-    steps("{ scale = [1, 0, 1] }", "28: entry 2 of `scale` must be other than 0, and is 0");
-    steps("{ scale = 0 }", "24: `scale` must be other than 0, and is 0");
-    steps(
-        "{ scale = 1e20 }, { scale = 1e20 }",
-        "13: `transform` is too extreme to be undone in single precision",
-    );
-    steps("{ scale = 1e-20 }", "13: `transform` is too extreme to be undone in single precision");
-    let singular = "`matrix` is singular: it squeezes space flat, so no ray can be carried back\n\
-         help: no column may be zero or a mixture of the other two";
+    steps("{ scale = [1, 0, 1] }", "28: entry 2 of `scale` must be other than 0, but is 0");
+    steps("{ scale = 0 }", "24: `scale` must be other than 0, but is 0");
+    steps("{ scale = 1e20 }, { scale = 1e20 }", "13: `transform` cannot be inverted in single precision");
+    steps("{ scale = 1e-20 }", "13: `transform` cannot be inverted in single precision");
+    let singular = "`matrix` is singular, so rays cannot be transformed back\n\
+         help: no column may be zero or a linear combination of the others";
     steps("{ matrix = [[1, 2, 3, 0], [4, 5, 6, 0], [7, 8, 9, 0]] }", &format!("25: {singular}"));
     steps(
         "{ matrix = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }",
-        "26: entry 1 of `matrix` must be four numbers, and has 3",
+        "26: entry 1 of `matrix` must be four numbers, but has 3",
     );
     steps(
         "{ rotate = { axis = [0, 0, 0], degrees = 1 } }",
-        "34: `axis` has no length, so it points nowhere\nhelp: give a direction, for example `[0, 1, 0]`",
+        "34: `axis` has no length, so it gives no direction\nhelp: give a direction, for example `[0, 1, 0]`",
     );
-    steps("{ turn = 3 }", "16: unknown key `turn`\nhelp: known are `scale`, `rotate`, `translate`, `matrix`");
+    steps(
+        "{ turn = 3 }",
+        "16: unknown key `turn`\nhelp: known names are `scale`, `rotate`, `translate`, `matrix`",
+    );
     steps(
         "{ scale = 2, translate = [1, 0, 0] }",
         "27: entry 1 of `transform` has both `scale` and `translate`\nhelp: delete one of the two",
     );
-    // Small, large and uneven scales are fine.
+    // Small, large and uneven scales are accepted.
     one_node("transform = [{ scale = 1e-9 }]");
     let turn = "{ rotate = { axis = [1, 2, 3], degrees = 40 } }";
     one_node(&format!("transform = [{turn}, {{ scale = [1e-3, 1, 1e3] }}, {turn}]"));
@@ -191,8 +192,8 @@ fn transforms_can_be_undone() {
 
 #[test]
 fn a_moving_node_keeps_its_volume() {
-    let flat = "between `transform` and `transform_end` the shape is squeezed flat\n\
-        help: do not mirror, and turn by less than half a turn";
+    let flat = "between `transform` and `transform_end` the shape becomes flat\n\
+        help: do not reflect the shape, and rotate it by less than 180 degrees";
     check_node("transform_end = [{ scale = -1 }]", &format!("3:17: {flat}"));
     let turn = |degrees: u32| {
         format!("transform_end = [{{ rotate = {{ axis = [0, 1, 0], degrees = {degrees} }} }}]")
@@ -222,17 +223,17 @@ fn names_lead_somewhere() {
         "[materials.red]\n[[nodes]]\nmaterial = 'rde'",
         "s.toml:4:12: unknown material `rde`; did you mean `red`?",
     );
-    check_node("name = 'a'\nchildren = ['b']", "4:13: unknown node `b`\nhelp: known are `a`");
+    check_node("name = 'a'\nchildren = ['b']", "4:13: unknown node `b`\nhelp: known names are `a`");
     check_node("children = ['node 1']", "3:13: unknown node `node 1`\nhelp: the scene defines none");
-    check_node("children = 'a'", "3:12: `children` must be a list of names, and is text");
+    check_node("children = 'a'", "3:12: `children` must be a list of names, but is text");
     check_node(
         "name = 'a'\n[[nodes]]\nname = 'a'",
         "5:8: two nodes are called `a`\nhelp: give one of them another name",
     );
     check_node(
         "name = 'a'\n[[nodes]]\nchildren = ['a', 'a']",
-        "5:18: 'a' is listed twice\nhelp: both would stand in the same place; for another place, add a node with a \
-         `transform` around it",
+        "5:18: 'a' is listed twice\nhelp: both would have the same place; for another place, add a parent \
+         node with a `transform` around it",
     );
 }
 
@@ -248,14 +249,14 @@ fn loops_and_endless_graphs_are_refused() {
         (0..length).map(node).collect::<String>() + &format!("[[nodes]]\nname = 'n{length}'\n")
     };
     scene_with(&chain(63, &|i| format!("'n{}'", i + 1)));
-    // The chain is added up from its far end, so its third node is the first with 65 levels.
+    // Levels are counted from the end of the chain, so its third node is the first with 65 levels.
     let deep = chain(66, &|i| format!("'n{}'", i + 1));
     check_refused_with(&deep, "s.toml:10:13: nodes are nested more than 64 deep");
     let around = chain(50_000, &|i| format!("'n{}'", (i + 1) % 50_000));
     let looped = "n0 -> n1 -> n2 -> n3 -> n4 -> n5 -> n6 -> n7 -> … -> n49999 -> n0";
     check_refused_with(&around, &format!("s.toml:150001:13: the nodes form a loop: {looped}"));
 
-    // Each level holds the next one twice, so that 25 of them stand in 2^25 places.
+    // Each level contains the next one twice, so that 25 levels have 2^25 instances.
     let mut doubled = String::new();
     for level in 0..25 {
         for side in ["l", "r"] {

@@ -1,4 +1,4 @@
-//! `film`, `camera`, `environment`, `quality`.
+//! Tests of `film`, `camera`, `environment` and `quality`.
 
 use super::{check_refused, check_refused_with, scene, scene_with};
 use crate::camera::{Lens, Shutter};
@@ -65,21 +65,22 @@ fn every_setting_arrives() {
 fn a_film_has_pixels_and_not_too_many() {
     check_refused(
         "film = { width = 0 }",
-        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is 0",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, but is 0",
     );
     check_refused(
         "film = { width = -1 }",
-        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is -1",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, but is -1",
     );
     check_refused(
         "film = { width = 99999999999999999999999999999999999999999 }",
-        "s.toml:1:18: `width` must be a whole number from 1 to 65536, and is 99999999999999999999999999999999999999999",
+        "s.toml:1:18: `width` must be a whole number from 1 to 65536, but is \
+         99999999999999999999999999999999999999999",
     );
-    check_refused("film = { width = 'wide' }", "s.toml:1:18: `width` must be a whole number, and is text");
-    check_refused("film = { width = 640.0 }", "s.toml:1:18: `width` must be a whole number, and is 640.0");
+    check_refused("film = { width = 'wide' }", "s.toml:1:18: `width` must be a whole number, but is text");
+    check_refused("film = { width = 640.0 }", "s.toml:1:18: `width` must be a whole number, but is 640.0");
     check_refused(
         "[film]\nwidth = 65536\nheight = 65536",
-        "s.toml:1:1: the picture has 4294967296 pixels, and the most is 268435456\n\
+        "s.toml:1:1: the picture has 4294967296 pixels; the maximum is 268435456\n\
          help: make `width` or `height` smaller",
     );
     check_refused(
@@ -101,7 +102,7 @@ fn a_camera_stands_somewhere_and_looks_somewhere() {
     );
     check_refused(
         "\n[camera]\nposition = [0, 0, 5]",
-        "s.toml:2:1: `camera` needs one of `look_at`, `direction`, and has none",
+        "s.toml:2:1: `camera` needs one of `look_at`, `direction`, but has none",
     );
     check_refused(
         "[camera]\nposition = [0, 0, 5]\ndirection = [0, 0, 1]\nlook_at = [0, 0, 0]",
@@ -109,24 +110,24 @@ fn a_camera_stands_somewhere_and_looks_somewhere() {
     );
     check_refused(
         "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 5]",
-        "s.toml:3:11: `look_at` and `position` are the same point, so the camera looks nowhere",
+        "s.toml:3:11: `look_at` and `position` are the same point, so the camera has no direction",
     );
     check_refused(
         "[camera]\nposition = [0, 0, 5]\ndirection = [0, 0, 0]",
-        "s.toml:3:13: `direction` has no length, so it points nowhere\n\
+        "s.toml:3:13: `direction` has no length, so it gives no direction\n\
          help: give a direction, for example `[0, 1, 0]`",
     );
     check_refused(
         "[camera]\nposition = [0, 9, 0]\nlook_at = [0, 0, 0]",
-        "s.toml:3:11: `up` runs along the view direction, so the picture could be turned any way\n\
-         help: write, for example, `up = [0, 0, -1]`",
+        "s.toml:3:11: `up` is parallel to the view direction, so the orientation of the picture is \
+         undefined\nhelp: write, for example, `up = [0, 0, -1]`",
     );
     check_refused(
         "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\nup = [0, 0, 1]",
-        "s.toml:4:6: `up` runs along the view direction, so the picture could be turned any way\n\
+        "s.toml:4:6: `up` is parallel to the view direction, so the orientation of the picture is undefined\n\
          help: write, for example, `up = [0, 1, 0]`",
     );
-    // Far apart, the difference of the points overflows single precision; close by, it is all that counts.
+    // The difference of far points overflows single precision; a tiny difference still gives a direction.
     scene("camera = { position = [-3e38, 0, 0], look_at = [3e38, 0, 0] }");
     scene("camera = { position = [1e-45, 0, 0], look_at = [0, 0, 0] }");
 }
@@ -136,7 +137,7 @@ fn lens_and_angle_and_shutter_have_limits() {
     let camera = |rest: &str| format!("[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{rest}");
     check_refused(
         &camera("vertical_fov = 180"),
-        "s.toml:4:16: `vertical_fov` must be above 0 and below 180 degrees, and is 180",
+        "s.toml:4:16: `vertical_fov` must be above 0 and below 180 degrees, but is 180",
     );
     check_refused(
         &camera("lens = { aperture = 0.1 }"),
@@ -144,37 +145,38 @@ fn lens_and_angle_and_shutter_have_limits() {
     );
     check_refused(
         &camera("lens = { aperture = -1, focal_distance = 0 }"),
-        "s.toml:4:21: `aperture` must be at least 0, and is -1",
+        "s.toml:4:21: `aperture` must be at least 0, but is -1",
     );
     check_refused(
         &camera("lens = { aperture = 1, focal_distance = 0 }"),
-        "s.toml:4:41: `focal_distance` must be above 0, and is 0",
+        "s.toml:4:41: `focal_distance` must be above 0, but is 0",
     );
     check_refused(
         &camera("shutter = { open = 0.5, close = 0.4 }"),
-        "s.toml:4:33: `close` must be from 0.5, where `open` is, to 1, and is 0.4",
+        "s.toml:4:33: `close` must be from 0.5, where `open` is, to 1, but is 0.4",
     );
-    check_refused(&camera("shutter = { open = 2 }"), "s.toml:4:20: `open` must be from 0 to 1, and is 2");
+    check_refused(&camera("shutter = { open = 2 }"), "s.toml:4:20: `open` must be from 0 to 1, but is 2");
 }
 
 #[test]
 fn qualities_have_limits() {
     check_refused_with(
         "[quality]\nsamples_per_pixel = 0",
-        "s.toml:3:21: `samples_per_pixel` must be a whole number from 1 to 1048576, and is 0",
+        "s.toml:3:21: `samples_per_pixel` must be a whole number from 1 to 1048576, but is 0",
     );
     check_refused_with(
         "[quality]\nleaf_size = 0",
-        "s.toml:3:13: `leaf_size` must be a whole number from 1 to 4294967295, and is 0",
+        "s.toml:3:13: `leaf_size` must be a whole number from 1 to 4294967295, but is 0",
     );
     check_refused_with(
         "[quality]\nmin_contribution = nan",
-        "s.toml:3:20: `min_contribution` must be a finite number, and is nan",
+        "s.toml:3:20: `min_contribution` must be a finite number, but is nan",
     );
     check_refused_with(
         "[quality]\naccelerator = 'magic'",
-        "s.toml:3:15: unknown value of `accelerator`: `magic`\n\
-         help: known are `brute_force`, `bounding_boxes`, `bounding_spheres`, `bvh`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, `octree_by_cells`, `kd_tree`, `bsp`",
+        "s.toml:3:15: unknown value of `accelerator`: `magic`\nhelp: known names are `brute_force`, \
+         `bounding_boxes`, `bounding_spheres`, `bvh`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, \
+         `octree_by_cells`, `kd_tree`, `bsp`",
     );
     check_refused_with(
         "[quality]\nmax_deph = 3",
@@ -186,15 +188,15 @@ fn qualities_have_limits() {
 fn an_environment_has_colours() {
     check_refused_with(
         "[environment]\nambient = [0.1, -0.5, 0]",
-        "s.toml:3:17: entry 2 of `ambient` must be at least 0, and is -0.5",
+        "s.toml:3:17: entry 2 of `ambient` must be at least 0, but is -0.5",
     );
-    check_refused_with("[environment]\nambient = -1", "s.toml:3:11: `ambient` must be at least 0, and is -1");
+    check_refused_with("[environment]\nambient = -1", "s.toml:3:11: `ambient` must be at least 0, but is -1");
     check_refused_with(
         "[environment]\nbackground = 'blue'",
-        "s.toml:3:14: `background` must be a colour, that is one number or three, and is text",
+        "s.toml:3:14: `background` must be a colour, that is one number or three, but is text",
     );
     check_refused_with(
         "[environment]\nindirect_light = 1",
-        "s.toml:3:18: `indirect_light` must be true or false, and is 1",
+        "s.toml:3:18: `indirect_light` must be true or false, but is 1",
     );
 }

@@ -1,4 +1,4 @@
-//! Text that is not quite TOML, or TOML that is not quite a scene.
+//! Text that is invalid TOML, or TOML that is not a scene.
 
 use super::{CAMERA, check_refused, check_refused_with, scene, scene_with};
 use crate::scene::load::load;
@@ -9,7 +9,7 @@ fn windows_writes_scenes_too() {
     let unix = format!("{CAMERA}[environment]\nambient = 1\n");
     let windows = format!("\u{feff}{}", unix.replace('\n', "\r\n"));
     assert_eq!(scene(&windows), scene(&unix));
-    // A byte order mark is no column.
+    // A byte order mark does not count as a column.
     check_refused("\u{feff}abmient = 1", &scene_error("abmient = 1"));
 }
 
@@ -34,11 +34,11 @@ fn what_is_not_toml_says_where() {
     );
     check_refused_with(
         "a = 0, 1, 5",
-        "s.toml:2:6: the line goes on after its value\nhelp: put lists between brackets, as in `[0, 1, 5]`",
+        "s.toml:2:6: the line continues after its value\nhelp: put lists between brackets, as in `[0, 1, 5]`",
     );
     check_refused_with(
         "a = red",
-        "s.toml:2:5: `red` stands without quotes\nhelp: put text between quotes, as in `\"red\"`",
+        "s.toml:2:5: `red` has no quotes\nhelp: put text between quotes, as in `\"red\"`",
     );
     check_refused_with(
         "a = .5",
@@ -65,21 +65,20 @@ fn tables_stand_where_they_belong() {
     check_refused_with("fim = { width = 3 }", "s.toml:2:1: unknown key `fim`; did you mean `film`?");
     check_refused_with(
         "weather = 'fine'",
-        "s.toml:2:1: unknown key `weather`\n\
-         help: known are `film`, `camera`, `environment`, `quality`, `materials`, `textures`, `meshes`, \
-         `lights`, `nodes`",
+        "s.toml:2:1: unknown key `weather`\nhelp: known names are `film`, `camera`, `environment`, \
+         `quality`, `materials`, `textures`, `meshes`, `lights`, `nodes`",
     );
-    check_refused_with("film = 3", "s.toml:2:8: `film` must be a table, and is 3");
-    check_refused_with("materials = 3", "s.toml:2:13: `materials` must be a table, and is 3");
-    check_refused_with("[materials]\nred = 1", "s.toml:3:7: `red` must be a table, and is 1");
+    check_refused_with("film = 3", "s.toml:2:8: `film` must be a table, but is 3");
+    check_refused_with("materials = 3", "s.toml:2:13: `materials` must be a table, but is 3");
+    check_refused_with("[materials]\nred = 1", "s.toml:3:7: `red` must be a table, but is 1");
     check_refused_with(
         "[nodes]",
-        "s.toml:2:1: `nodes` must be a list of tables, each under `[[nodes]]`, and is a table",
+        "s.toml:2:1: `nodes` must be a list of tables, each under `[[nodes]]`, but is a table",
     );
-    check_refused_with("nodes = [3]", "s.toml:2:10: entry 1 of `nodes` must be a table, and is 3");
+    check_refused_with("nodes = [3]", "s.toml:2:10: entry 1 of `nodes` must be a table, but is 3");
     check_refused_with(
         "lights = 1979-05-27",
-        "s.toml:2:10: `lights` must be a list of tables, each under `[[lights]]`, and is a date",
+        "s.toml:2:10: `lights` must be a list of tables, each under `[[lights]]`, but is a date",
     );
 }
 
@@ -88,8 +87,8 @@ fn numbers_are_finite_and_of_single_precision() {
     let ambient = |number: &str, message: &str| {
         check_refused_with(&format!("environment.ambient = {number}"), &format!("s.toml:2:23: {message}"));
     };
-    ambient("nan", "`ambient` must be a finite number, and is nan");
-    ambient("-inf", "`ambient` must be a finite number, and is -inf");
+    ambient("nan", "`ambient` must be a finite number, but is nan");
+    ambient("-inf", "`ambient` must be a finite number, but is -inf");
     ambient("1e999", "`ambient` is 1e999, which is too large: the largest number is 3.4e38");
     ambient("1e39", "`ambient` is 1e39, which is too large: the largest number is 3.4e38");
     ambient("1e-50", "`ambient` is 1e-50, which is too close to zero: the smallest number is 1.4e-45");
@@ -97,7 +96,7 @@ fn numbers_are_finite_and_of_single_precision() {
         &format!("0x{}", "f".repeat(40)),
         &format!("`ambient` is 0x{}, which is too large: the largest number is 3.4e38", "f".repeat(40)),
     );
-    ambient("[1, 2]", "`ambient` must be a colour, that is one number or three, and has 2");
+    ambient("[1, 2]", "`ambient` must be a colour, that is one number or three, but has 2");
     let sound = |number: &str| scene_with(&format!("environment.ambient = {number}")).ambient.x;
     assert_eq!(sound("+1_000"), 1000.0);
     assert_eq!(sound("0xff"), 255.0);

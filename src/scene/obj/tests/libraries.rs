@@ -1,4 +1,4 @@
-//! Facts about material libraries.
+//! Tests of the reader of material libraries.
 
 use super::super::library::parse;
 use super::super::{ObjMaterial, read};
@@ -17,7 +17,7 @@ fn check(line: &str, expected: &str) {
     assert_eq!(error.to_string(), format!("models/a.mtl:2:{expected}"));
 }
 
-/// A directory that goes away with its files.
+/// A directory that is removed when the value is dropped.
 struct Directory(PathBuf);
 
 impl Directory {
@@ -64,11 +64,11 @@ fn a_line_that_makes_no_sense_is_named() {
     check("Ns #", "1: `Ns` needs 1 number, but has 0\nhelp: write them on the same line");
     check(
         "Kd 1 0 x",
-        "8: `x` is no number\nhelp: replace it by a number, with a decimal point and not a comma",
+        "8: `x` is not a number\nhelp: replace it by a number, with a decimal point and not a comma",
     );
     check(
         "Ni inf",
-        "4: `inf` is no number\nhelp: replace it by a number, with a decimal point and not a comma",
+        "4: `inf` is not a number\nhelp: replace it by a number, with a decimal point and not a comma",
     );
     check(
         "Kd spectral red.rfl",
@@ -113,7 +113,7 @@ fn a_missing_library_is_named_with_the_place_where_it_was_looked_for() {
         error.to_string(),
         format!(
             "models/a.obj:1:8: there is no material library `no.mtl`\n\
-             help: it was looked for at {}: put it there, or remove the `mtllib` line",
+             help: looked for {}: put the library there, or remove the `mtllib` line",
             Path::new("models").join("no.mtl").display()
         )
     );

@@ -1,4 +1,4 @@
-//! What a PLY file may look like.
+//! Tests of accepted PLY files.
 
 use super::{CORNERS, PLAIN, mesh, plain_with};
 use glam::{Vec2, Vec3};
@@ -47,7 +47,7 @@ fn numbers_are_spelt_in_many_ways() {
     assert_eq!(mesh.positions, expected);
 }
 
-/// Decimals become the nearest `f32`, also where the nearest `f64` lies between two of them.
+/// Decimals become the nearest `f32`, also where the nearest `f64` lies half-way between two `f32`.
 #[test]
 fn a_float_is_rounded_once() {
     let decimal = "1.00000017881393432617187499";
@@ -80,7 +80,7 @@ fn polygons_become_fans() {
     assert_eq!(mesh(text).triangles, [[4, 3, 2], [4, 2, 1], [4, 1, 0]]);
 }
 
-/// Lecture "Additional Data".
+/// From the lecture "Additional Data".
 #[test]
 fn vertices_may_have_normals_and_texture_coordinates() {
     for [u, v] in [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]] {
@@ -186,7 +186,7 @@ fn bytes_after_a_binary_mesh_are_padding() {
     assert_eq!(mesh(bytes), plain());
 }
 
-/// The size of the bunny in the lecture.
+/// A mesh of the size of the bunny in the lecture.
 #[test]
 fn a_large_binary_mesh_is_read_whole() {
     let (vertices, faces) = (35_947_u32, 69_451_u32);

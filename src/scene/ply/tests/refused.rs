@@ -1,4 +1,4 @@
-//! What the reader refuses, and with which words.
+//! Tests of refused PLY files and of their messages.
 
 use super::{PLAIN, error, parsed, plain_with};
 
@@ -17,27 +17,28 @@ fn misspelt_words_of_the_header_are_named() {
     check(
         "float y",
         "flaot y",
-        &format!("5:10: `flaot` is no type of PLY files\nhelp: did you mean `float`? {types}"),
+        &format!("5:10: `flaot` is not a type of PLY files\nhelp: did you mean `float`? {types}"),
     );
-    check("uchar int", "uchar vec3f", &format!("8:21: `vec3f` is no type of PLY files\nhelp: {types}"));
+    check("uchar int", "uchar vec3f", &format!("8:21: `vec3f` is not a type of PLY files\nhelp: {types}"));
     check(
         "end_header",
         "end header",
-        &format!("9:1: `end` is no keyword of PLY headers\nhelp: did you mean `end_header`? {keywords}"),
+        &format!("9:1: `end` is not a keyword of PLY headers\nhelp: did you mean `end_header`? {keywords}"),
     );
     check(
         "element vertex",
         "elemnt vertex",
-        &format!("3:1: `elemnt` is no keyword of PLY headers\nhelp: did you mean `element`? {keywords}"),
+        &format!("3:1: `elemnt` is not a keyword of PLY headers\nhelp: did you mean `element`? {keywords}"),
     );
     check(
         "ascii",
         "binary_litle_endian",
         &format!(
-            "2:8: `binary_litle_endian` is no format of PLY files\nhelp: did you mean `binary_little_endian`? {formats}"
+            "2:8: `binary_litle_endian` is not a format of PLY files\nhelp: did you mean \
+             `binary_little_endian`? {formats}"
         ),
     );
-    check("ascii", "binary", &format!("2:8: `binary` is no format of PLY files\nhelp: {formats}"));
+    check("ascii", "binary", &format!("2:8: `binary` is not a format of PLY files\nhelp: {formats}"));
 }
 
 #[test]
@@ -45,7 +46,8 @@ fn a_header_has_rules() {
     check(
         "ascii 1.0",
         "ascii 1.1",
-        "2:14: version `1.1` of the format is unknown\nhelp: there is only version 1.0: write `1.0` if the file keeps to it",
+        "2:14: version `1.1` of the format is unknown\nhelp: the only version is 1.0: write `1.0` if the \
+         file follows it",
     );
     check(
         "ascii 1.0",
@@ -65,7 +67,7 @@ fn a_header_has_rules() {
     check(
         "vertex 3",
         "vertex -3",
-        "3:16: `-3` is no number of elements\nhelp: write how many there are, as in `element vertex 8`",
+        "3:16: `-3` is not a number of elements\nhelp: write how many there are, as in `element vertex 8`",
     );
     check(
         "list uchar int vertex_indices",
@@ -90,7 +92,8 @@ fn a_header_has_rules() {
     check(
         "end_header\n",
         "",
-        "9:1: numbers before the header has ended\nhelp: put a line `end_header` between the header and the numbers",
+        "9:1: numbers before the end of the header\nhelp: put a line `end_header` between the header and the \
+         numbers",
     );
     assert_eq!(
         error(PLAIN.replace("end_header\n", "")),
@@ -140,7 +143,8 @@ fn a_mesh_needs_vertices_with_a_place_and_faces_with_corners() {
     );
     assert_eq!(
         error(plain_with("face 1", "face 0").replace("3 0 1 2\n", "")),
-        "a.ply: the mesh has no triangles\nhelp: export the mesh with faces: without one there is nothing to see"
+        "a.ply: the mesh has no triangles\nhelp: export the mesh with faces: without faces there is nothing \
+         to render"
     );
 }
 
@@ -192,7 +196,7 @@ fn a_face_has_three_corners() {
 fn a_position_is_finite() {
     let help = "help: export the mesh again: each x, y and z has to be a number below 3e38";
     for (word, shown) in [("nan", "NaN"), ("-inf", "-inf"), ("1e39", "inf")] {
-        let expected = format!("a.ply: vertex 1 is at [{shown}, 0, 0], which is no place\n{help}");
+        let expected = format!("a.ply: vertex 1 is at [{shown}, 0, 0], which is not finite\n{help}");
         assert_eq!(error(plain_with("1 0 0", &format!("{word} 0 0"))), expected);
     }
 }
@@ -200,16 +204,18 @@ fn a_position_is_finite() {
 #[test]
 fn words_are_not_numbers() {
     let row = "help: replace it by a number, or look above it for a row with a number too few or too many";
-    check("1 0 0", "...", &format!("11:1: `...` is no number; `x` of vertex 1 should be here\n{row}"));
+    check("1 0 0", "...", &format!("11:1: `...` is not a number; `x` of vertex 1 should be here\n{row}"));
     check(
         "1 0 0",
         "1 0,5 0",
-        "11:3: `0,5` is no number; `y` of vertex 1 should be here\nhelp: write a decimal point, not a comma, and blanks between numbers",
+        "11:3: `0,5` is not a number; `y` of vertex 1 should be here\nhelp: write a decimal point, not a \
+         comma, and blanks between numbers",
     );
     check(
         "3 0 1 2",
         "3 0 1 2 0",
-        "13:9: the file goes on after its last element\nhelp: a count in the header is too small, or a row has a number too many",
+        "13:9: the file continues after its last element\nhelp: a count in the header is too small, or a row \
+         has a number too many",
     );
 }
 
@@ -223,25 +229,25 @@ fn a_file_that_is_no_ply_is_recognised() {
         (b"\x1f\x8b\x08\x00", "it is compressed: unpack it with `gunzip` first"),
         (
             b"<!DOCTYPE html>",
-            "it looks like a web page, perhaps an error page saved by a download: fetch the file again",
+            "it looks like a web page, perhaps an error page saved by a download: download the file again",
         ),
         (b"\xff\xd8\xff\xe0", "check that this is the file you meant, and export it as PLY"),
     ] {
         assert_eq!(error(bytes), format!("a.ply:1:1: {not}\nhelp: {help}"));
     }
-    assert_eq!(error(" \n"), "a.ply: the file is empty\nhelp: export or fetch it again");
+    assert_eq!(error(" \n"), "a.ply: the file is empty\nhelp: export or download it again");
     let missing = super::super::read(std::path::Path::new("no/such/file.ply")).unwrap_err().to_string();
     assert!(missing.starts_with("no/such/file.ply: there is no such file\nhelp: "), "{missing}");
 }
 
-/// Counts are promises: a short file that promises four billion vertices is refused before memory is set aside.
+/// A short file that announces four billion vertices is refused before memory is reserved.
 #[test]
 fn a_count_is_not_believed() {
     check(
         "vertex 3",
         "vertex 4000000000",
         "14:1: the file ends early: the header promises 4000000000 of element `vertex`, but `y` of vertex 4 is missing\n\
-         help: export or fetch the file again, or correct the line `element vertex 4000000000`",
+         help: export or download the file again, or correct the line `element vertex 4000000000`",
     );
     for (from, to) in [
         ("vertex 3", "vertex 18446744073709551615"),
@@ -282,8 +288,9 @@ fn trouble_in_a_binary_file_is_found_by_its_byte() {
     assert_eq!(
         error(&bytes[..faces - 2]),
         format!(
-            "a.ply: the file ends early: the header promises 3 of element `vertex`, but `z` of vertex 2 is missing \
-             at byte {}, the end\nhelp: export or fetch the file again, or correct the line `element vertex 3`",
+            "a.ply: the file ends early: the header promises 3 of element `vertex`, but `z` of vertex 2 is \
+             missing at byte {}, the end\nhelp: export or download the file again, or correct the line \
+             `element vertex 3`",
             faces - 2
         )
     );

@@ -1,8 +1,8 @@
-//! First hits of rays, judged exactly, for `raykata cost`: its scene comes through standard input, and rays go out; then
-//! what a kit finds comes in, setting by setting, and verdicts go out.
+//! Judges first hits exactly, for `raykata cost`. It reads a scene from standard input and answers with rays;
+//! then it reads the hits of a kit for each setting, and answers with verdicts.
 //!
-//! Rays go from the eye through the picture. From where one meets a triangle two more are aimed: one at an edge of that
-//! triangle, and one at a corner, if neighbours close the surface there.
+//! Rays go from the camera through the picture. If a ray hits a triangle, two more rays are aimed at an edge
+//! and at a corner of that triangle, if the neighbouring triangles close the surface there.
 
 mod search;
 mod surface;
@@ -21,13 +21,13 @@ use search::Search;
 use std::io::{ErrorKind, Read, Write};
 use surface::Surface;
 
-/// Rays through the picture: columns and rows. With those at edges and corners they are three times as many at most.
+/// The columns and rows of rays through the picture. Rays at edges and corners make at most three times as many.
 const THROUGH: (u32, u32) = (64, 36);
 
-/// For more bodies it takes minutes.
+/// The most bodies: with more, the exact search takes minutes.
 const MOST_BODIES: usize = 3_000_000;
 
-/// Answers until nobody asks any more.
+/// Answers requests until the pipe closes.
 pub fn serve(mut asked: impl Read, mut answers: impl Write) -> Result<()> {
     let scene: Scene = receive(&mut asked)?;
     let jury = Jury::new(&scene)?;
@@ -43,16 +43,16 @@ pub fn serve(mut asked: impl Read, mut answers: impl Write) -> Result<()> {
     }
 }
 
-/// A ray, and what it exactly meets.
+/// A ray and its exact first hit.
 struct Asked {
     ray: Ray,
-    /// The first `t`, correctly rounded.
+    /// The `t` of the first hit, correctly rounded; `None` if there is none.
     first: Option<f32>,
-    /// Whether it is met in a surface that is closed around there, so that no rounding lets a ray through.
+    /// Whether the surface is closed around the hit, so that a ray that passes through it is a leak.
     closed: bool,
 }
 
-/// All that rays can meet, and rays.
+/// The bodies of a scene, and the rays with their exact hits.
 struct Jury {
     bodies: Vec<Body>,
     asked: Vec<Asked>,
@@ -80,7 +80,7 @@ impl Jury {
                 let Some(Body::Triangle(_)) = index.map(|index| bodies[index as usize]) else { continue };
                 for aim in surface.aims(ray.origin, index.unwrap_or_default(), &mut random) {
                     let (index, one) = search.asked(Ray::new(ray.origin, aim.target - ray.origin));
-                    // Something else may stand before it.
+                    // Another body may occlude the target.
                     let closed = index.is_some_and(|index| aim.around.contains(&index));
                     asked.push(Asked { closed, ..one });
                 }
@@ -110,13 +110,13 @@ impl Jury {
     }
 }
 
-/// Single precision cannot tell the order of what is nearer to each other than its own few roundings of `t`.
+/// Whether two `t` differ by a few roundings only, so that single precision cannot tell which hit is first.
 fn is_same(t: f32, first: f32) -> bool {
     (t - first).abs() <= 4.0 * f32::EPSILON * first.abs()
 }
 
-/// Whether a ray has gone through what it meets first. A thousandth of the way is more than any test rounds that is not
-/// broken, and less than from one side of a thing to the other.
+/// Whether a ray has passed through its first hit. A thousandth of the distance is more than the rounding
+/// error of any sensible test, and less than the thickness of an object.
 fn is_beyond(first: Option<f32>, found: Option<PrimitiveHit>) -> bool {
     first.is_some_and(|first| found.is_none_or(|hit| hit.t > first + 1e-3 * first.abs()))
 }

@@ -1,4 +1,4 @@
-//! What a ray exactly meets first, among many bodies.
+//! Finds the exact first hit of a ray among many bodies.
 
 use super::Asked;
 use glam::Vec3;
@@ -9,13 +9,13 @@ use raykata::ray::Ray;
 use raykata::shape::Shape;
 use raykata::world::{Geometry, World};
 
-/// Bodies that are asked one by one if the box around all of them is met.
+/// The number of bodies in a group, which are tested one by one if the ray hits the box of the group.
 const GROUP: usize = 64;
 
-/// Around what has no end.
+/// The box of unbounded bodies.
 const EVERYWHERE: Aabb = Aabb { min: Vec3::NEG_INFINITY, max: Vec3::INFINITY };
 
-/// Primitives, and planes after them, as kits number them.
+/// The primitives followed by the planes, numbered as in a kit.
 pub fn bodies(world: &World) -> Vec<Body> {
     let primitives = world.primitives.iter().map(|primitive| match primitive.geometry {
         Geometry::Sphere(sphere) => Body::Sphere(sphere),
@@ -25,15 +25,15 @@ pub fn bodies(world: &World) -> Vec<Body> {
     primitives.chain(world.planes.iter().map(|plane| Body::Plane(plane.plane))).collect()
 }
 
-/// Finds what a ray exactly meets first.
+/// Finds the exact first hit of a ray.
 pub struct Search<'a> {
     bodies: &'a [Body],
-    /// Bodies side by side, and the box around them.
+    /// Groups of neighbouring bodies, each with its box.
     groups: Vec<(Aabb, Vec<u32>)>,
 }
 
 impl<'a> Search<'a> {
-    /// Over bodies of which so many are bounded; those after them have no end.
+    /// A search over `bodies`. The first `n_bounded` of them are bounded, the others are not.
     pub fn over(bodies: &'a [Body], n_bounded: usize) -> Search<'a> {
         let boxes: Vec<Aabb> = bodies[..n_bounded].iter().map(bounds).collect();
         let mut groups = Vec::new();
@@ -59,7 +59,7 @@ impl<'a> Search<'a> {
         Search { bodies, groups }
     }
 
-    /// What the ray meets first, and the ray with the `t` of that.
+    /// The index of the body that the ray hits first, and the ray with the `t` of that hit.
     pub fn asked(&self, ray: Ray) -> (Option<u32>, Asked) {
         let is_met = |around: &Aabb| {
             *around == EVERYWHERE
@@ -76,7 +76,8 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        // Well inside a triangle. The rim of a sphere is open to roundings, and how near it is nobody has measured.
+        // Count the surface as closed well inside a triangle only: near the rim of a sphere rounding decides,
+        // and the distance from the rim is not measured.
         let closed = best.is_some_and(|(_, index)| match self.bodies[index as usize] {
             Body::Triangle(triangle) => {
                 triangle::margin(&ray, &triangle).is_some_and(|margin| margin > STABLE)
@@ -87,13 +88,13 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A box that holds the body.
+/// A box that contains the body.
 fn bounds(body: &Body) -> Aabb {
     let around = match body {
         Body::Triangle(triangle) => Shape::Triangle(*triangle).bounds(&[]),
         Body::Sphere(sphere) => Shape::Sphere(*sphere).bounds(&[]),
         _ => None,
     };
-    // Rounded to nearest, so one step more.
+    // Enlarge the box by one float, because it is rounded to nearest.
     around.map_or(EVERYWHERE, |Aabb { min, max }| Aabb::new(min.map(f32::next_down), max.map(f32::next_up)))
 }

@@ -1,4 +1,4 @@
-//! Where a surface is closed, as it is seen from one place.
+//! Finds edges and corners at which a surface is closed as seen from one point.
 
 use glam::{DVec3, Vec3};
 use oracle::exact::Body;
@@ -6,19 +6,19 @@ use oracle::splitmix::Random;
 use raykata::shape::Triangle;
 use std::collections::HashMap;
 
-/// A place on the surface, and the triangles around it, which close the surface there as the eye sees it.
+/// A target on the surface, and the triangles around it, which close the surface there as seen from the camera.
 pub struct Aim {
     pub target: Vec3,
     pub around: Vec<u32>,
 }
 
-/// Which triangles share a corner.
+/// The triangles at each corner.
 pub struct Surface<'a> {
     bodies: &'a [Body],
     fans: HashMap<[u32; 3], Vec<u32>>,
 }
 
-/// Names a place; adding 0 makes -0 the same as 0.
+/// A key for a position; adding 0 makes -0 equal to 0.
 fn name(corner: Vec3) -> [u32; 3] {
     (corner + 0.0).to_array().map(f32::to_bits)
 }
@@ -42,7 +42,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// A place on an edge of this triangle and a corner of it, as far as the surface is closed there.
+    /// A target on an edge of this triangle and one at a corner, each if the surface is closed there.
     pub fn aims(&self, eye: Vec3, index: u32, random: &mut Random) -> Vec<Aim> {
         let corners = self.corners(index);
         let first = random.below(3) as usize;
@@ -57,7 +57,7 @@ impl<'a> Surface<'a> {
         at_edge.into_iter().chain(closed.then(|| Aim { target: p, around: fan.clone() })).collect()
     }
 
-    /// The two triangles at an edge, if the eye sees one on either side of it.
+    /// The two triangles at an edge, if the camera sees one on each side of it.
     fn closes(&self, eye: Vec3, p: Vec3, q: Vec3) -> Option<[u32; 2]> {
         let (at_p, at_q) = (self.fans.get(&name(p))?, self.fans.get(&name(q))?);
         let both: Vec<u32> = at_p.iter().copied().filter(|index| at_q.contains(index)).collect();
@@ -70,7 +70,7 @@ impl<'a> Surface<'a> {
             let far = third.map(|corner: DVec3| (corner - eye).normalize_or_zero().dot(across));
             far.fold(0.0, |most: f64, side| if side.abs() > most.abs() { side } else { most })
         };
-        // A triangle that is seen from its edge is on no side.
+        // A triangle that is seen edge-on lies on neither side.
         let (left, right) = (side(one), side(other));
         (left * right < 0.0 && left.abs().min(right.abs()) > 1e-6).then_some([one, other])
     }
@@ -80,7 +80,7 @@ impl<'a> Surface<'a> {
 mod tests {
     use super::*;
 
-    /// A square of four triangles around its middle, seen from above, in front of the eye.
+    /// A square of four triangles around its middle, seen from above, in front of the camera.
     fn square(middle: Vec3) -> Vec<Body> {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| Vec3::new(x, y, 0.0));
         let side = |n: usize| Triangle { a: middle, b: corners[n], c: corners[(n + 1) % 4] };
@@ -93,7 +93,7 @@ mod tests {
         let surface = Surface::of(&bodies);
         let [middle, one, next] = surface.corners(0);
         assert_eq!(surface.closes(eye, middle, one), Some([0, 3]));
-        assert_eq!(surface.closes(eye, one, next), None, "nothing is beyond the rim");
+        assert_eq!(surface.closes(eye, one, next), None, "there is no triangle beyond the rim");
         let mut random = Random::new(1, 1);
         let aims: Vec<Aim> = (0..40).flat_map(|_| surface.aims(eye, 0, &mut random)).collect();
         assert!(aims.iter().any(|aim| aim.target == middle && aim.around.len() == 4));

@@ -1,4 +1,4 @@
-//! Questions to the misbehaving worker: the radius says what it is to do.
+//! Requests to the misbehaving worker: the radius selects what it does.
 
 use glam::Vec3;
 use raykata::kit::{Door, KitError, Shapes, SphereQuery, kit_error};

@@ -1,4 +1,5 @@
-//! Inputs on which exact answers are hard: aimed at edges and corners, on lattices, slivers, far, tiny, of any exponent.
+//! Inputs with hard exact answers: rays at edges and corners, shapes on lattices, slivers, far, tiny, with
+//! any exponent.
 
 use super::Random;
 use glam::{Vec3, vec3};
@@ -40,16 +41,16 @@ impl Styled for Random {
     }
 }
 
-/// How large numbers are and how they share bits.
+/// The size of random numbers, and how many bits they have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Style {
     /// In `-1..1`.
     Unit,
-    /// Whole numbers: exact ties abound.
+    /// Whole numbers, which give many exact ties.
     Lattice,
-    /// Whole numbers up to a million: ties of more bits.
+    /// Whole numbers up to a million, whose ties have more bits.
     Fine,
-    /// Far from the origin, of size one.
+    /// Of size one, far from the origin.
     Far,
     /// A few ulps around one.
     Tiny,
@@ -81,7 +82,8 @@ pub fn typical(seed: u64, case: u64) -> Case {
     shapes(Ray::new(o, target - o), [a, b, c], q, 0.5 * random.unit())
 }
 
-/// Whole numbers: every ray hits its triangle exactly on an edge (unless that is degenerate), and much else is tied.
+/// Whole numbers: every ray hits its triangle exactly on an edge, unless the triangle is degenerate; other
+/// shapes have many ties as well.
 pub fn tied(seed: u64, case: u64) -> Case {
     tied_on(Style::Lattice, seed, case)
 }
@@ -99,11 +101,11 @@ pub fn of_all_scales(seed: u64, case: u64) -> Case {
 fn tied_on(lattice: Style, seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
     let [o, a, b, c, q] = [(); 5].map(|()| random.vector(lattice));
-    // The middle of an edge between even corners is on the lattice.
+    // The middle of an edge between corners with even coordinates is on the lattice.
     shapes(Ray::new(o, a + b - o), [2.0 * a, 2.0 * b, 2.0 * c], q, 2.0)
 }
 
-/// One of all kinds.
+/// A case of any kind.
 pub fn any(seed: u64, case: u64) -> Case {
     let mut random = Random::new(seed, case);
     let styles =
@@ -149,7 +151,7 @@ fn make(random: &mut Random, style: Style, aim: u64) -> Case {
             }
         }
     }
-    // In a plane of the box, now and then, or on the far side of the shape.
+    // Sometimes start in a plane of the box, or on the far side of the shape.
     let mut o = o;
     match random.below(10) {
         0 => o.x = a.x.min(b.x),

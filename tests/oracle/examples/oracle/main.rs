@@ -1,9 +1,10 @@
-//! The long run of the exact oracle against big integers, and how fast it is.
+//! Compares the exact oracle with big integers on many cases, and measures its speed.
 //!
-//! `cargo run --release -p oracle --example oracle -- --cases 1000000 --seed 1` compares, for every case, all tiers of
-//! the oracle with the plain implementation in `reference/`: verdict, rounding of `t`, and the order of two hits of
-//! triangles. With `--every K` the big integers see every K-th case only and the tiers are compared with each other on
-//! all. A disagreement prints its seed and case and ends with 1. `--bench` measures checks per second instead.
+//! `cargo run --release -p oracle --example oracle -- --cases 1000000 --seed 1` compares, for every case, all
+//! tiers of the oracle with the plain implementation in `reference/`: verdict, rounding of `t`, and the order
+//! of two hits of triangles. With `--every K` only every K-th case is compared with big integers, and the
+//! tiers are compared with each other on all cases. A disagreement prints its seed and case and ends with 1.
+//! `--bench` measures checks per second instead.
 
 mod cases;
 mod reference;
@@ -48,7 +49,7 @@ fn usage(argument: &str) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// How many comparisons were made, and with what.
+/// The number of comparisons, by kind.
 #[derive(Default)]
 struct Tally {
     answers: u64,
@@ -59,8 +60,8 @@ struct Tally {
 
 fn long_run(n_cases: u64, seed: u64, every: u64) -> ExitCode {
     println!(
-        "seed {seed}, 8 questions a case: tiers on every case (the widest forced on every {WIDEST_EVERY}.), big \
-         integers on every {every}."
+        "seed {seed}, 8 questions per case: tiers on every case (the widest forced in one of \
+         {WIDEST_EVERY}), big integers in one case of {every}."
     );
     let start = Instant::now();
     let mut tally = Tally::default();
@@ -75,7 +76,7 @@ fn long_run(n_cases: u64, seed: u64, every: u64) -> ExitCode {
         if (case + 1) % (1 << 16) == 0 || case + 1 == n_cases {
             let seconds = start.elapsed().as_secs_f64();
             let rate = (case + 1) as f64 / seconds;
-            print!("\r{}/{n_cases} cases, {rate:.0} a second, no disagreement ", case + 1);
+            print!("\r{}/{n_cases} cases, {rate:.0} per second, no disagreement ", case + 1);
             let _ = std::io::Write::flush(&mut std::io::stdout());
         }
     }
@@ -85,14 +86,14 @@ fn long_run(n_cases: u64, seed: u64, every: u64) -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// The widest integers are forced only now and then: they are slow, and every answer that needs them asks them.
+/// The widest integers are forced in some cases only, because they are slow; answers that need them use them anyway.
 const WIDEST_EVERY: u64 = 16;
 
 fn tiers(with_widest: bool) -> impl Iterator<Item = Tier> {
     Tier::ALL.into_iter().filter(move |&tier| with_widest || tier != Tier::Widest)
 }
 
-/// A shape and how big integers answer for it.
+/// A shape, and the function that answers for it with big integers.
 type Asked = (Body, fn(&Case) -> reference::Answer);
 
 fn compare(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) -> Result<(), String> {
@@ -196,7 +197,8 @@ fn compare_orders(case: &Case, tally: &mut Tally) -> Result<(), String> {
     Ok(())
 }
 
-/// Two shapes whose hits are roots of different quadratics; seldom, because the plain way to tell them apart is slow.
+/// Two shapes whose hits are roots of different quadratics. It runs in few cases, because the plain
+/// comparison is slow.
 fn compare_surds(case: &Case, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
     let hits = [reference::sphere(ray, &case.sphere).1, reference::cylinder(ray, &case.cylinder).1];
@@ -209,7 +211,7 @@ fn compare_surds(case: &Case, tally: &mut Tally) -> Result<(), String> {
     tally.big += 1;
     let (sphere, cylinder) = (Body::Sphere(case.sphere), Body::Cylinder(case.cylinder));
     match order(ray, sphere, cylinder) {
-        // The widest integers do not reach the order of two surds of extreme scales.
+        // The widest integers are too narrow for the order of two surds of extreme scales.
         None => tally.undecided += 1,
         Some(answer) if answer != one.cmp_any(two) => {
             return Err(format!("{sphere:?} and {cylinder:?}: {answer:?}"));
@@ -219,10 +221,11 @@ fn compare_surds(case: &Case, tally: &mut Tally) -> Result<(), String> {
     Ok(())
 }
 
-/// How the cases of a measurement are made.
+/// Makes the cases of a measurement.
 type Make = fn(u64, u64) -> Case;
 
-/// Checks a second of each predicate, on numbers of size one, on lattices full of ties, and on all scales.
+/// Measures the answers per second of each predicate, on numbers of size one, on lattices with many ties, and
+/// on all scales.
 fn measure(seed: u64) {
     let kinds: [(&str, Make); 4] = [
         ("typical", cases::typical),
@@ -238,7 +241,7 @@ fn measure(seed: u64) {
         rate("triangle, verdict", &all, |c| verdict(&c.ray, Body::Triangle(c.triangle)));
         rate("triangle, verdict and t", &all, |c| meet(&c.ray, Body::Triangle(c.triangle)));
         rate("triangle, margin", &all, |c| triangle::margin(&c.ray, &c.triangle));
-        rate("triangle, weights", &all, |c| triangle::weights(&c.ray, &c.triangle));
+        rate("triangle, barycentric", &all, |c| triangle::weights(&c.ray, &c.triangle));
         rate("box, verdict", &all, |c| aabb::verdict(&c.ray, &Aabb::new(c.cuboid.min, c.cuboid.max)));
         rate("plane, verdict and t", &all, |c| meet(&c.ray, Body::Plane(c.plane)));
         rate("disk, verdict", &all, |c| verdict(&c.ray, Body::Disk(c.disk)));
@@ -263,5 +266,5 @@ fn rate<A>(name: &str, all: &[Case], question: impl Fn(&Case) -> A) {
             start.elapsed().as_secs_f64()
         })
         .fold(f64::INFINITY, f64::min);
-    println!("  {name:26} {:8.2} million a second", all.len() as f64 / best / 1e6);
+    println!("  {name:26} {:8.2} million per second", all.len() as f64 / best / 1e6);
 }

@@ -10,7 +10,7 @@ use raykata::aabb::Aabb;
 use raykata::ray::Ray;
 use raykata::shape::Cuboid;
 
-/// Entries and exits of the three slabs; parallel to a slab the line is inside or not for all `t`.
+/// Entries and exits of the three slabs. A line parallel to a slab is inside for all `t` or for none.
 #[inline(always)]
 pub(super) fn span<R: Ring>(ray: &Ray, cuboid: &Cuboid, frame: &Frame) -> Option<Span<R>> {
     let (min, max, o) = (cuboid.min, cuboid.max, ray.origin);
@@ -42,15 +42,15 @@ pub(super) fn span<R: Ring>(ray: &Ray, cuboid: &Cuboid, frame: &Frame) -> Option
 /// How the segment `t_min <= t <= t_max` of a ray meets a closed box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
-    /// `On` if they have points in common, and some two slabs, or a slab and an end of the segment, only just.
+    /// `On` if they have common points, but two slabs, or a slab and an end of the segment, only touch.
     pub verdict: Verdict,
     /// The least `|difference| / (2^-24 * sum of absolute values of its terms)` over the comparisons that decide, to
     /// `1e-6` absolute; infinite if no comparison is rounded.
     pub margin: f64,
 }
 
-/// How the closed segment of a ray meets a closed box; flat boxes and points are boxes, empty ones are missed. `None`
-/// for other inputs that are not finite; the ends of the segment may be infinite.
+/// How the closed segment of a ray meets a closed box. Flat boxes and points are boxes; an empty box is
+/// missed. `None` for other inputs that are not finite; the ends of the segment may be infinite.
 pub fn overlap(ray: &Ray, bounds: &Aabb) -> Option<Overlap> {
     let question = match ask(ray, bounds)? {
         Some(question) => question,
@@ -73,7 +73,7 @@ pub fn verdict(ray: &Ray, bounds: &Aabb) -> Option<Verdict> {
     verdict_with(Tier::Auto, ray, bounds)
 }
 
-/// The question, or `Some(None)` if it is settled: the box or the segment is empty.
+/// The question, or `Some(None)` if the box or the segment is empty, which is a miss.
 #[inline(always)]
 fn ask<'a>(ray: &'a Ray, bounds: &Aabb) -> Option<Option<Segment<'a>>> {
     let numbers = is_ray_finite(ray) && !bounds.min.is_nan() && !bounds.max.is_nan();
@@ -157,7 +157,8 @@ impl Question for Segment<'_> {
         let Span::Lerp(entries, exits) = span::<R>(self.ray, &self.cuboid, frame)? else {
             return Some(Verdict::Out);
         };
-        // The sign of "later than": 1 is a miss, 0 a touch. A miss counts whatever else is undecided.
+        // The sign of "later than": 1 is a miss, 0 a touch. One miss decides, even if other comparisons are
+        // undecided.
         let (mut undecided, mut touches) = (false, false);
         let mut misses = |order: Option<i32>| {
             undecided |= order.is_none();

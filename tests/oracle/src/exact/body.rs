@@ -1,4 +1,4 @@
-//! The shapes that a ray can be asked about, and the questions.
+//! The shapes that the oracle knows, and the questions about them.
 
 use super::ring::{Ring, Vector, dot, minus};
 use super::root::{Root, RootBits, Rounded, in_range};
@@ -9,7 +9,7 @@ use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
 use std::cmp::Ordering;
 
-/// A shape whose first hit is known exactly. Solids are met where the ray enters or leaves them.
+/// A shape whose first hit can be computed exactly. A solid is hit where the ray enters or leaves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)] // the names are those of `raykata::shape`
 pub enum Body {
@@ -67,7 +67,7 @@ impl Body {
     /// The frame of a question about this shape alone.
     #[inline(always)]
     fn frame(&self, ray: &Ray, fine: bool) -> Frame {
-        // Of degree three, a triangle's polynomials can neither overflow nor underflow in doubles.
+        // The polynomials of a triangle have degree three, so they neither overflow nor underflow in doubles.
         if !fine && matches!(self, Body::Triangle(_)) {
             return Frame::UNSCALED;
         }
@@ -79,7 +79,7 @@ impl Body {
         joint_frame(ray, self, self, fine)
     }
 
-    /// Bits of the largest root, and of all other integers made on the way to it.
+    /// Bits of the largest root, and of all other integers that are computed for it.
     fn bits(&self, frame: &Frame) -> (RootBits, u32) {
         let (place, direction, normal) =
             (frame.place.bits() + 1, frame.direction.bits(), frame.normal.bits());
@@ -126,7 +126,7 @@ impl Body {
     }
 }
 
-/// One frame for two shapes, so that their `t` count the same unit.
+/// One frame for two shapes, so that their `t` have the same unit.
 fn joint_frame(ray: &Ray, one: &Body, other: &Body, fine: bool) -> Frame {
     let scale = |numbers: &[f32]| {
         let numbers = numbers.iter().copied();
@@ -146,7 +146,7 @@ fn joint_frame(ray: &Ray, one: &Body, other: &Body, fine: bool) -> Frame {
     }
 }
 
-/// A plane, or of it what lies within `radius` of its point.
+/// A plane, or the part of it within `radius` of its point.
 fn flat<R: Ring>(ray: &Ray, plane: &Plane, radius: Option<f32>, frame: &Frame) -> Option<Option<Hit<R>>> {
     let f = minus(frame.point::<R>(ray.origin), frame.point(plane.point));
     let d: Vector<R> = frame.direction(ray.direction);
@@ -171,7 +171,7 @@ fn flat<R: Ring>(ray: &Ray, plane: &Plane, radius: Option<f32>, frame: &Frame) -
     Some((outside <= 0).then_some(Hit { root, touches: outside == 0 }))
 }
 
-/// Only the verdict.
+/// Asks for the verdict only.
 pub(super) struct First<'a> {
     pub ray: &'a Ray,
     pub body: Body,
@@ -195,7 +195,7 @@ impl Question for First<'_> {
     }
 }
 
-/// Verdict and `t`.
+/// Asks for verdict and `t`.
 pub(super) struct Meet<'a> {
     pub ray: &'a Ray,
     pub body: Body,
@@ -222,7 +222,7 @@ impl Question for Meet<'_> {
     }
 }
 
-/// The first `t` as a double.
+/// Asks for the first `t` as a double.
 pub(super) struct InDouble<'a> {
     pub ray: &'a Ray,
     pub body: Body,
@@ -248,7 +248,7 @@ impl Question for InDouble<'_> {
     }
 }
 
-/// How the first `t`, of a ray that hits, compares with a number.
+/// Compares the first `t` of a ray that hits with a number.
 pub(super) struct Against<'a> {
     pub ray: &'a Ray,
     pub body: Body,
@@ -273,7 +273,7 @@ impl Question for Against<'_> {
     }
 }
 
-/// Which of two shapes is met first, `None` if not both are met.
+/// Asks which of two shapes is hit first; `None` if one is missed.
 pub(super) struct Order<'a> {
     pub ray: &'a Ray,
     pub one: Body,

@@ -1,10 +1,11 @@
-//! Exact answers: what a ray in single precision meets, decided by the signs of integer polynomials.
+//! Exact answers: the hits of a ray in single precision, decided by the signs of integer polynomials.
 //!
-//! Every finite `f32` is `m * 2^e`, so hit or miss, the order of hits and the two sides of a rounding are signs of
-//! polynomials with integer coefficients; square roots are compared by squaring. Each question is asked of doubles
-//! that know their error first ([`Tier::Filter`]), of `i64` and `i128` where a count of bits says that they suffice, and of wide
-//! integers last, which fit every finite input: adaptive predicates as in Shewchuk 1997, with integers in place of
-//! expansions. Inputs that are not finite have no answer (`None`), but the ends of a ray's range may be infinite.
+//! Every finite `f32` is `m * 2^e`, so hit or miss, the order of hits and the two sides of a rounding are
+//! signs of polynomials with integer coefficients; square roots are compared by squaring. Each question is
+//! first evaluated in doubles with an error bound ([`Tier::Filter`]), then in `i64` and `i128` where a count
+//! of bits shows that they suffice, and last in wide integers, which suffice for every finite input. These
+//! are adaptive predicates as in Shewchuk 1997, with integers in place of expansions. Inputs that are not
+//! finite have no answer (`None`), but the ends of a ray's range may be infinite.
 
 pub mod aabb;
 mod body;
@@ -33,11 +34,11 @@ use std::cmp::Ordering;
 /// How a ray meets a closed shape within the open range of the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Verdict {
-    /// Through the inside.
+    /// The ray passes through the inside.
     In,
-    /// It touches only: through an edge or corner of a triangle, along the rim, tangent to a sphere.
+    /// The ray only touches the shape: through an edge or corner of a triangle, along the rim, tangent to a sphere.
     On,
-    /// Not at all.
+    /// The ray misses the shape.
     Out,
 }
 
@@ -51,16 +52,16 @@ impl Verdict {
 /// The first point in which a ray meets a shape within its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
-    /// How it is met.
+    /// How the shape is met.
     pub verdict: Verdict,
     /// The exact `t` rounded to nearest, ties to even: the correctly rounded answer. `None` if missed.
     pub t: Option<f32>,
 }
 
-/// Which numbers a question is asked of. All agree where they answer; tests force each.
+/// The numbers in which a question is evaluated. All tiers agree where they answer; tests can force each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tier {
-    /// The cheapest that is certain.
+    /// The cheapest tier that is certain.
     Auto,
     /// Doubles with an error bound only; `None` when that is too little.
     Filter,
@@ -82,14 +83,14 @@ impl Tier {
         [Tier::Auto, Tier::Filter, Tier::Small, Tier::Narrow, Tier::Wide, Tier::Wider, Tier::Widest];
 }
 
-/// Something to decide that can be asked of any ring.
+/// A question that can be evaluated in any ring.
 trait Question {
     type Answer;
 
     /// The scales of the inputs; a filter needs the upper ends only.
     fn frame(&self, fine: bool) -> Frame;
 
-    /// How many bits the largest integer has, sign not counted, at most.
+    /// An upper bound on the bits of the largest integer, without its sign.
     fn bits(&self, frame: &Frame) -> u32;
 
     /// The answer, `None` if undecided; integers always decide.
@@ -98,8 +99,8 @@ trait Question {
 
 const WIDEST: usize = 96;
 
-/// Asks a tier. Integers of no more than `64 * WIDEST` bits answer all questions about one shape and all orders but
-/// some of cylinders and cones of extreme scales, which are `None`.
+/// Evaluates a question in a tier. Integers of `64 * WIDEST` bits answer all questions about one shape. They
+/// answer all orders except some of cylinders and cones of extreme scales, which are `None`.
 fn decide<Q: Question>(question: &Q, tier: Tier) -> Option<Q::Answer> {
     if matches!(tier, Tier::Auto | Tier::Filter) {
         let answer = question.ask::<Estimate>(&question.frame(false));
@@ -130,7 +131,7 @@ fn decide_exactly<Q: Question>(question: &Q, tier: Tier) -> Option<Q::Answer> {
     (bits < 64 * WIDEST as u32 && allowed(Tier::Widest)).then(|| ask_wide::<WIDEST, Q>(question, &frame))?
 }
 
-/// Kept apart, so that narrow integers do not pay for the stack of wide ones.
+/// A separate function, so that narrow integers do not need the stack space of wide ones.
 #[inline(never)]
 fn ask_wide<const N: usize, Q: Question>(question: &Q, frame: &Frame) -> Option<Q::Answer> {
     question.ask::<Wide<N>>(frame)
@@ -141,7 +142,7 @@ pub fn meet(ray: &Ray, body: Body) -> Option<Meeting> {
     meet_with(Tier::Auto, ray, body)
 }
 
-/// The same from one tier only; `None` also where it cannot tell.
+/// The same from one tier only; `None` also if the tier cannot decide.
 pub fn meet_with(tier: Tier, ray: &Ray, body: Body) -> Option<Meeting> {
     if !is_finite(ray, &body) {
         return None;
@@ -164,7 +165,7 @@ pub fn verdict(ray: &Ray, body: Body) -> Option<Verdict> {
     verdict_with(Tier::Auto, ray, body)
 }
 
-/// The same from one tier only; `None` also where it cannot tell.
+/// The same from one tier only; `None` also if the tier cannot decide.
 pub fn verdict_with(tier: Tier, ray: &Ray, body: Body) -> Option<Verdict> {
     if !is_finite(ray, &body) {
         return None;
@@ -192,7 +193,7 @@ pub fn order(ray: &Ray, one: Body, other: Body) -> Option<Ordering> {
     order_with(Tier::Auto, ray, one, other)
 }
 
-/// The same from one tier only; `None` also where it cannot tell.
+/// The same from one tier only; `None` also if the tier cannot decide.
 pub fn order_with(tier: Tier, ray: &Ray, one: Body, other: Body) -> Option<Ordering> {
     if !is_finite(ray, &one) || !is_finite(ray, &other) {
         return None;

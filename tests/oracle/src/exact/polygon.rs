@@ -1,5 +1,6 @@
-//! Ray and convex polygon, closed: the fan of triangles from its first corner. Corners in `f32` seldom lie in one plane
-//! exactly, so the fan is what a polygon means here, and its inner diagonals are part of the inside.
+//! Ray and closed convex polygon, as the fan of triangles around its first corner. Corners in `f32` seldom
+//! lie exactly in one plane, so a polygon is defined as its fan here, and the diagonals of the fan belong to
+//! the inside.
 
 use super::body::Body;
 use super::{Meeting, Tier, Verdict, meet, triangle, verdict_with};
@@ -25,7 +26,7 @@ pub fn meet_fan(ray: &Ray, polygon: &Polygon) -> Option<(Meeting, Option<usize>)
         return Some((Meeting { verdict: Verdict::Out, t: None }, None));
     };
     let t = meet(ray, Body::Triangle(triangles[index]))?.t;
-    // Inside one triangle, or on the diagonal that two share and not on its ends: those are corners.
+    // Inside means inside one triangle, or on a shared diagonal but not at its ends, which are corners.
     let inside_one =
         |&tie: &usize| verdict_with(Tier::Auto, ray, Body::Triangle(triangles[tie])) == Some(Verdict::In);
     let on_diagonal = || match ties[..] {

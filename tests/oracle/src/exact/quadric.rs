@@ -51,7 +51,7 @@ pub(super) fn cylinder<R: Ring>(ray: &Ray, cylinder: &Cylinder, frame: &Frame) -
     let (square, full) = (r * r, dot(w, w));
     let dw = cross(d, w);
     let a = dot(dw, dw);
-    // Most lines miss, and most that do pass the endless surface: that is known first.
+    // Test the discriminant first, because most lines miss, and most of these miss the infinite surface.
     let apart = dot(w, cross(d, f));
     let disc = full * (square * a - apart * apart);
     let along_axis = a.sign()? == 0;
@@ -94,7 +94,7 @@ pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Spa
     let slope = dot(d, w);
     let dw = cross(d, w);
     let a = full * dot(dw, dw) - square * slope * slope;
-    // As for the cylinder: a line that misses both nappes is told first.
+    // As for the cylinder, test first whether the line misses both nappes.
     let n = cross(d, q);
     let (across, apart) = (cross(w, n), dot(w, n));
     let disc = full * full * (square * dot(across, across) - full * apart * apart);
@@ -108,7 +108,7 @@ pub(super) fn cone<R: Ring>(ray: &Ray, cone: &Cone, frame: &Frame) -> Option<Spa
     let p = square * slope * height - full * dot(dw, qw);
     let c = full * dot(qw, qw) - square * height * height;
     if a_sign == 0 {
-        // Along a generator the square is gone: -2 p t + c <= 0.
+        // Along a generator the quadratic term is 0: -2 p t + c <= 0.
         return Some(match p.sign()? {
             0 if c.sign()? > 0 => Span::Empty,
             0 => joined(slab, None, None),

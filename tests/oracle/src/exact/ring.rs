@@ -1,5 +1,5 @@
-//! The numbers in which the oracle's polynomials are evaluated: the same code runs in doubles that know their error,
-//! in `i128`, and in wide integers. Doubles answer "undecided" when they cannot tell; integers always know.
+//! The numbers in which the oracle's polynomials are evaluated: the same code runs in doubles with an error bound, in
+//! `i128`, and in wide integers. Doubles may answer "undecided"; integers always decide.
 
 use super::scale::{Scale, over_power, split};
 use super::wide::Wide;
@@ -21,11 +21,11 @@ pub(super) trait Ring:
     /// The sign of the number, `None` if undecided.
     fn sign(&self) -> Option<i32>;
 
-    /// The number as a double; `None` if that says too little about it.
+    /// The number as a double; `None` if its error would be too large.
     fn approx(&self) -> Option<Approx>;
 }
 
-/// The number `m * 2^e`, but for a relative error of `error` at most.
+/// The number `m * 2^e` with a relative error of at most `error`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Approx {
     pub m: f64,
@@ -74,8 +74,8 @@ impl Approx {
         Approx { m: -self.m, ..self }
     }
 
-    /// The value times `2^unit` as a double: infinite or zero where no double reaches, which is what any `f32` is
-    /// rounded to there as well.
+    /// The value times `2^unit` as a double. It is infinite or zero outside of the range of doubles, where an
+    /// `f32` is rounded to the same.
     pub fn value(self, unit: i32) -> f64 {
         let a = self.tidy();
         let e = a.e + unit;
@@ -177,7 +177,7 @@ impl Ring for Estimate {
         if self.value.abs() > Estimate::ROUNDINGS * self.size + Estimate::UNDERFLOW {
             return Some(if self.value > 0.0 { 1 } else { -1 });
         }
-        // Zero is never certain: sizes underflow as well.
+        // Zero is never certain, because sizes underflow as well.
         None
     }
 
@@ -189,7 +189,7 @@ impl Ring for Estimate {
     }
 }
 
-/// Integers of the language; nothing overflows because bits are counted first.
+/// Built-in integers; nothing overflows, because bits are counted first.
 macro_rules! ring_of_integers {
     ($int:ty) => {
         impl Ring for $int {

@@ -1,4 +1,4 @@
-//! Values of `t` at which a ray meets something, kept as exact numbers `(p ± √D) / a`, and how they compare.
+//! Values of `t` at hits, kept as exact numbers `(p ± √D) / a`, and their comparison.
 
 use super::ring::{Approx, Ring};
 use super::scale::Frame;
@@ -64,7 +64,7 @@ fn surd_sign<R: Ring>(p: R, s: i32, d: R) -> Option<i32> {
     if p_sign == 0 {
         return Some(s);
     }
-    // They pull apart: the larger square wins.
+    // The terms have opposite signs: the one with the larger square decides.
     Some(p_sign * (p * p - d).sign()?)
 }
 
@@ -119,7 +119,7 @@ impl<R: Ring> Root<R> {
         };
         let root = surd.disc.approx()?.sqrt();
         let root = if surd.sign < 0 { root.negated() } else { root };
-        // Where p and the root have one sign they add up without cancelling. The other root is c / (a t).
+        // If p and the root have the same sign, add them, which cancels nothing. The other root is c / (a t).
         if p.m * root.m >= 0.0 {
             return Some(p.plus_alike(root).over(a));
         }
@@ -136,7 +136,7 @@ pub(super) enum Rounded {
 }
 
 impl Rounded {
-    /// Where a `t` with this double value and relative error goes; `None` if the error is too large to tell.
+    /// The rounding of a `t` with this double value and relative error; `None` if the error is too large to decide.
     pub fn new(approx: Approx, frame_unit: i32) -> Option<Self> {
         let t = approx.value(frame_unit);
         // One more rounding in each product and sum.
@@ -150,14 +150,14 @@ impl Rounded {
     }
 }
 
-/// The number half way between neighbouring `f32`: from there on, rounding goes to the other one.
+/// The number half-way between two neighbouring `f32`, where rounding changes from one to the other.
 pub(super) fn half_way(low: f32, high: f32) -> f64 {
-    // Beyond the largest number lies what would be 2^128.
+    // The neighbour of the largest number would be 2^128.
     let wide = |x: f32| if x.is_infinite() { x.signum() as f64 * 128f64.exp2() } else { f64::from(x) };
     (wide(low) + wide(high)) / 2.0
 }
 
-/// The neighbour to which a number is rounded that compares so with the half-way point; ties go to the even one.
+/// The neighbour to which a number is rounded, by its comparison with the half-way point; ties go to the even one.
 pub(super) fn nearest(low: f32, high: f32, to_half_way: Ordering) -> f32 {
     match to_half_way {
         Ordering::Less => low,

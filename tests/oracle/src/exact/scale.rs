@@ -24,9 +24,9 @@ pub(super) fn over_power(x: f32, low: i32) -> (i64, u32) {
     let (exponent, fraction) = ((bits >> 23 & 0xff) as i32, i64::from(bits & 0x7f_ffff));
     let normal = i32::from(exponent != 0);
     let m = fraction | i64::from(normal) << 23;
-    // Of a zero the exponent is the least of all, so it is shifted to the right.
+    // A zero has the smallest exponent, so it is shifted to the right.
     let shift = exponent - normal - 149 - low;
-    // Without branches, which could not be foretold: below low there are zeros only, and 31 clears what is one.
+    // Avoid branches, which are hard to predict: below `low` there are only zeros, and a shift by 31 clears them.
     let m = m >> (-shift).clamp(0, 31);
     let negative = -i64::from(bits >> 31);
     ((m ^ negative) - negative, shift.max(0) as u32)
@@ -40,13 +40,13 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// Of a group that holds nothing but zeros.
+    /// The scale of a group of zeros.
     pub const NONE: Scale = Scale { low: 0, high: 0 };
 
-    /// For groups that a filter need not scale.
+    /// The scale of groups that a filter need not scale.
     pub const ONE: Scale = Scale::NONE;
 
-    /// `high` alone, which is all that a filter asks for.
+    /// The upper end only, which is all that a filter needs.
     pub fn rough(numbers: impl IntoIterator<Item = f32>) -> Scale {
         let top = numbers.into_iter().fold(0, |top, x| top.max(x.to_bits() & 0x7fff_ffff));
         // Numbers whose exponent field is f lie below 2^(f - 126); denormals below 2^-126.
@@ -57,7 +57,7 @@ impl Scale {
     pub fn fine(numbers: impl IntoIterator<Item = f32>) -> Scale {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for x in numbers {
-            // Without branches, which could not be foretold.
+            // Avoid branches, which are hard to predict.
             let bits = x.to_bits() & 0x7fff_ffff;
             let exponent = (bits >> 23) as i32;
             let normal = i32::from(exponent != 0);
@@ -70,7 +70,7 @@ impl Scale {
         if low == i32::MAX { Scale::NONE } else { Scale { low, high } }
     }
 
-    /// How many bits the integers of the group have.
+    /// The number of bits of the integers in the group.
     pub fn bits(self) -> u32 {
         (self.high - self.low) as u32
     }
@@ -108,7 +108,7 @@ impl Frame {
         d.to_array().map(|x| R::input(x, self.direction))
     }
 
-    /// How many bits the two integers of [`Ring::fraction`] have for this `t`.
+    /// The numbers of bits of the two integers of [`Ring::fraction`] for this `t`.
     pub fn fraction_bits(&self, t: f64) -> (u32, u32) {
         let (m, e) = split(t);
         if m == 0 {

@@ -6,7 +6,7 @@ use super::root::{Root, beyond};
 use super::scale::Frame;
 use raykata::ray::Ray;
 
-/// Bounds of the part of a line that is inside, or that the line misses.
+/// The part of a line that is inside a solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Span<R> {
     /// No point is inside.
@@ -21,7 +21,8 @@ pub(super) fn first<R: Ring>(span: Span<R>, ray: &Ray, frame: &Frame) -> Option<
     let Span::Lerp(entries, exits) = span else {
         return Some(None);
     };
-    // Looked at pair by pair, since one pair in the wrong order is a miss whatever else is undecided.
+    // Compare the entries and exits pair by pair, because one pair in the wrong order is a miss, even if
+    // other pairs are undecided.
     let mut undecided = false;
     let mut touches = false;
     for entry in entries.iter().flatten() {

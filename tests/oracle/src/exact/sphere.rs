@@ -33,10 +33,10 @@ pub(super) fn bits(place: u32, direction: u32) -> (RootBits, u32) {
     (root, root.disc.max(2 * place + 3))
 }
 
-/// What is known of both roots.
+/// Facts about both roots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Roots {
-    /// The sign of the discriminant: -1 passes by, 0 touches, 1 goes through. -1 for a sphere without size.
+    /// The sign of the discriminant: -1 for a miss, 0 for a touch, 1 for a hit; -1 for a sphere without size.
     pub discriminant: i32,
     /// Whether the smaller root lies in the open range of the ray.
     pub near_counts: bool,

@@ -1,5 +1,6 @@
-//! Ray and triangle, closed: with the corners `A`, `B`, `C` seen from the origin of the ray, the point at `t` has the
-//! weights `U : V : W` with `U = d·(B × C)`, `V = d·(C × A)`, `W = d·(A × B)`, and `t = A·(B × C) / (U + V + W)`.
+//! Ray and closed triangle: with the corners `A`, `B`, `C` relative to the origin of the ray, the point at
+//! `t` has the barycentric coordinates `U : V : W` with `U = d·(B × C)`, `V = d·(C × A)`, `W = d·(A × B)`,
+//! and `t = A·(B × C) / (U + V + W)`.
 
 use super::body::{Body, Hit};
 use super::ring::{Estimate, Ring, cross, dot, minus};
@@ -24,12 +25,12 @@ fn forms<R: Ring>(ray: &Ray, triangle: &Triangle, frame: &Frame) -> ([R; 3], R) 
 pub(super) fn first<R: Ring>(ray: &Ray, triangle: &Triangle, frame: &Frame) -> Option<Option<Hit<R>>> {
     let ([u, v, w], volume) = forms::<R>(ray, triangle, frame);
     let signs = [u.sign(), v.sign(), w.sign()];
-    // Two weights of different signs are a miss whatever the third is.
+    // Two coordinates of different signs are a miss for any third one.
     if signs.contains(&Some(1)) && signs.contains(&Some(-1)) {
         return Some(None);
     }
     let [u_sign, v_sign, w_sign] = [signs[0]?, signs[1]?, signs[2]?];
-    // All have one sign or are zero, and so has their sum, the determinant.
+    // All have the same sign or are zero, and so has their sum, the determinant.
     let sign = (u_sign + v_sign + w_sign).signum();
     if sign == 0 {
         return Some(None);
@@ -47,8 +48,8 @@ pub(super) fn bits(place: u32, direction: u32) -> (RootBits, u32) {
 }
 
 /// How far the verdict is from flipping: the least `|form| / (2^-24 * sum of the absolute values of its terms)` over
-/// the three edge forms, to `1e-6` absolute; zero on an edge and for a form without terms. A method in single
-/// precision that is stable errs only where this is small. `None` for inputs that are not finite.
+/// the three edge forms, to `1e-6` absolute; zero on an edge and for a form without terms. A stable method in
+/// single precision is wrong only where this is small. `None` for inputs that are not finite.
 pub fn margin(ray: &Ray, triangle: &Triangle) -> Option<f64> {
     if !is_finite(ray, &Body::Triangle(*triangle)) {
         return None;
@@ -90,8 +91,9 @@ impl Question for Weights<'_> {
     }
 }
 
-/// The weights `(β, γ)` of `b` and `c` where the line of the ray meets the plane of the triangle, inside or not, each
-/// with a relative error below `1e-14`. `Some(None)` if the determinant is zero.
+/// The barycentric coordinates `(β, γ)` of `b` and `c` where the line of the ray hits the plane of the
+/// triangle, inside or not, each with a relative error below `1e-14`. `Some(None)` if the determinant is
+/// zero.
 pub fn weights(ray: &Ray, triangle: &Triangle) -> Option<Option<[f64; 2]>> {
     if !is_finite(ray, &Body::Triangle(*triangle)) {
         return None;
@@ -99,7 +101,8 @@ pub fn weights(ray: &Ray, triangle: &Triangle) -> Option<Option<[f64; 2]>> {
     decide(&Weights { ray, triangle }, Tier::Auto)
 }
 
-/// Whether exactly one weight is zero where the line of the ray meets the plane: on an edge, but not at a corner.
+/// Whether exactly one barycentric coordinate is zero where the line of the ray hits the plane: on an edge,
+/// but not at a corner.
 pub(super) fn is_within_edge(ray: &Ray, triangle: &Triangle) -> bool {
     let on = weights(ray, triangle).flatten().map(|[beta, gamma]| (beta == 0.0, gamma == 0.0, triangle));
     let first_zero = || {
@@ -109,8 +112,8 @@ pub(super) fn is_within_edge(ray: &Ray, triangle: &Triangle) -> bool {
     on.is_some_and(|(b, c, _)| usize::from(b) + usize::from(c) + usize::from(first_zero()) == 1)
 }
 
-/// The indices of all triangles that the ray hits at the smallest exact `t`, ascending: what a search may answer.
-/// Triangles that are not finite are never hit, and a ray that is not finite hits nothing.
+/// The indices of all triangles that the ray hits at the smallest exact `t`, ascending: the answers that a
+/// search may give. Triangles that are not finite are never hit, and a ray that is not finite hits nothing.
 pub fn tie_set(ray: &Ray, triangles: &[Triangle]) -> Vec<usize> {
     let mut nearest: Vec<usize> = Vec::new();
     for (index, triangle) in triangles.iter().enumerate() {

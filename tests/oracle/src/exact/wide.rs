@@ -5,7 +5,8 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A two's-complement integer of `64 * N` bits, the lowest limb first.
 ///
-/// Whoever picks `N` counts bits first: nothing may overflow. Debug builds check it, so the tests prove the counts.
+/// The caller counts bits before it chooses `N`, because nothing may overflow. Debug builds check that, so
+/// the tests prove the counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wide<const N: usize>([u64; N]);
 
@@ -39,12 +40,12 @@ impl<const N: usize> Wide<N> {
         }
     }
 
-    /// `(m, e)` with the number equal to `m * 2^e` but for a relative error below `2^-51`; `m` keeps the sign.
+    /// `(m, e)` such that `m * 2^e` is the number with a relative error below `2^-51`; `m` has the sign.
     pub fn rounded(&self) -> (f64, i32) {
         let magnitude = self.magnitude();
         let used = magnitude.used();
         let limb = |back: usize| if used >= back { magnitude.0[used - back] } else { 0 };
-        // The top two limbs hold 65 leading bits or more; what lies below is less than 2^-64 of them.
+        // The top two limbs hold 65 leading bits or more; the rest is less than 2^-64 of them.
         let top = (u128::from(limb(1)) << 64) | u128::from(limb(2));
         let value = top as f64;
         (if self.is_negative() { -value } else { value }, 64 * (used as i32 - 2))
@@ -54,7 +55,7 @@ impl<const N: usize> Wide<N> {
         if self.is_negative() { -self } else { self }
     }
 
-    /// How many limbs hold something, for a number that is not negative.
+    /// The number of limbs in use, for a number that is not negative.
     fn used(&self) -> usize {
         self.0.iter().rposition(|&limb| limb != 0).map_or(0, |top| top + 1)
     }
@@ -110,7 +111,7 @@ impl<const N: usize> Sub for Wide<N> {
 impl<const N: usize> Mul for Wide<N> {
     type Output = Self;
 
-    /// Long multiplication of the magnitudes, over the limbs that hold something.
+    /// Long multiplication of the magnitudes, over the limbs in use.
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self.magnitude(), other.magnitude());
         let (a_used, b_used) = (a.used(), b.used());

@@ -6,7 +6,8 @@ use raykata::aabb::Aabb;
 use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
 
-/// A ray at the corner of a box: small or large, near or far, flat now and then, with zeros in its direction.
+/// A ray at the corner of a box. The box is small or large, near or far, sometimes flat; the direction may
+/// have zeros.
 pub fn at_a_corner(random: &mut Random) -> Option<SlabQuery> {
     let place = [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e5)][random.below(3) as usize];
     let size = [1.0, 1e-3, 1e3][random.below(3) as usize];

@@ -1,4 +1,4 @@
-//! Where rays and triangles come from: each distribution has a weakness of some method in mind.
+//! Distributions of rays and triangles: each targets a weakness of some method.
 
 use crate::splitmix::Random;
 use glam::{Vec3, vec3};
@@ -6,19 +6,19 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use std::f32::consts::TAU;
 
-/// Named inputs without end.
+/// A distribution of inputs, with its name.
 pub struct Distribution {
-    /// For the head of a column.
+    /// The name, for the head of a column.
     pub name: &'static str,
-    /// What is hard about it.
+    /// A description, which says what is hard.
     pub what: &'static str,
-    /// One input.
+    /// Draws one input.
     pub draw: fn(&mut Random) -> (Ray, Triangle),
 }
 
-/// All of them.
+/// All distributions.
 pub const DISTRIBUTIONS: [Distribution; 12] = [
-    Distribution { name: "interior", what: "aimed well inside: nobody should miss", draw: interior },
+    Distribution { name: "interior", what: "aimed well inside: every method should hit", draw: interior },
     Distribution { name: "edge", what: "aimed at a rounded point of an edge", draw: edge },
     Distribution { name: "vertex", what: "aimed at a corner", draw: vertex },
     Distribution {
@@ -82,7 +82,7 @@ fn sliver(random: &mut Random) -> (Ray, Triangle) {
 }
 
 fn needle(random: &mut Random) -> (Ray, Triangle) {
-    // Two lines along z, a thousandth from the axis and from each other.
+    // Take two lines along z, a thousandth from the axis and from each other.
     let turn = TAU * random.unit();
     let side = |angle: f32, z: f32| vec3(1e-3 * angle.cos(), 1e-3 * angle.sin(), z);
     let triangle = Triangle { a: side(turn, -1000.0), b: side(turn, 1000.0), c: side(turn + 1.0, 1000.0) };
@@ -143,7 +143,7 @@ fn ties(random: &mut Random) -> (Ray, Triangle) {
     };
     loop {
         let [a, step, c, origin] = [(); 4].map(|()| whole(random));
-        // The edge has a whole point in its middle, and the ray goes there.
+        // The middle of the edge has whole coordinates, and the ray goes there.
         let triangle = Triangle { a, b: a + 2.0 * step, c };
         let direction = a + step - origin;
         if step.cross(c - a).dot(direction) != 0.0 {

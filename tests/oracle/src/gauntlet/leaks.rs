@@ -1,11 +1,11 @@
-//! Rays from inside closed meshes, aimed where neighbours meet. One that hits nothing has leaked.
+//! Rays from inside closed meshes, aimed at shared edges and vertices. A ray that hits nothing is a leak.
 
 use super::meshes::Closed;
 use crate::splitmix::Random;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// What a ray aims at.
+/// The target of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Aim {
     /// A rounded point of an edge.
@@ -15,11 +15,11 @@ pub enum Aim {
 }
 
 impl Aim {
-    /// Both.
+    /// Both targets.
     pub const ALL: [Aim; 2] = [Aim::Edge, Aim::Vertex];
 }
 
-/// A ray from inside, and a vertex near which it hits. Half of the directions are of unit length.
+/// A ray from inside, and a vertex near which it should hit. Half of the directions have unit length.
 pub fn aimed(mesh: &Closed, aim: Aim, random: &mut Random) -> (Ray, u32) {
     let corners = mesh.triangles[random.below(mesh.triangles.len() as u64) as usize];
     let side = random.below(3) as usize;
@@ -35,14 +35,15 @@ pub fn aimed(mesh: &Closed, aim: Aim, random: &mut Random) -> (Ray, u32) {
     (Ray::new(origin, direction), vertex)
 }
 
-/// Whether the ray hits no triangle of the mesh. The fan around `vertex` is tried first: that is where the ray goes.
+/// Whether the ray hits no triangle of the mesh. The triangles around `vertex` are tested first, because the
+/// ray goes there.
 pub fn leaks(mesh: &Closed, ray: &Ray, vertex: u32, hit: impl Fn(&Ray, &Triangle) -> Option<f32>) -> bool {
     let near = mesh.fans[vertex as usize].iter().copied();
     let any = 0..mesh.triangles.len() as u32;
     !near.chain(any).any(|index| hit(ray, &mesh.triangle(index)).is_some())
 }
 
-/// How many of `count` rays leak.
+/// The number of leaks among `count` rays.
 pub fn count(
     mesh: &Closed,
     aim: Aim,

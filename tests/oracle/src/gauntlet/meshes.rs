@@ -1,4 +1,4 @@
-//! Closed meshes: a ray from inside has to hit one, whatever it aims at.
+//! Closed meshes: every ray from inside must hit the mesh.
 
 use crate::splitmix::Random;
 use glam::{Vec3, vec3};
@@ -6,17 +6,17 @@ use raykata::shape::Triangle;
 use std::collections::HashMap;
 use std::f32::consts::TAU;
 
-/// A closed mesh around `inside`.
+/// A closed mesh around the point `inside`.
 pub struct Closed {
-    /// For tables.
+    /// The name in tables.
     pub name: &'static str,
-    /// Its corners.
+    /// The positions of its vertices.
     pub positions: Vec<Vec3>,
-    /// Three indices each.
+    /// Three vertex indices per triangle.
     pub triangles: Vec<[u32; 3]>,
     /// A point well inside.
     pub inside: Vec3,
-    /// How far rays may start from there.
+    /// How far from `inside` rays may start, along each axis.
     pub room: Vec3,
     /// For each vertex, the triangles around it.
     pub fans: Vec<Vec<u32>>,
@@ -37,7 +37,7 @@ impl Closed {
         Closed { name, positions, triangles, inside, room, fans }
     }
 
-    /// Every position moved, and the inside with them.
+    /// The mesh with every position, and `inside`, mapped by `place`.
     fn placed(mut self, name: &'static str, place: impl Fn(Vec3) -> Vec3) -> Self {
         let corner = place(self.inside + self.room);
         self.positions.iter_mut().for_each(|position| *position = place(*position));
@@ -46,7 +46,7 @@ impl Closed {
         Closed { name, ..self }
     }
 
-    /// Corners by index.
+    /// The triangle with this index.
     pub fn triangle(&self, index: u32) -> Triangle {
         let [a, b, c] = self.triangles[index as usize].map(|vertex| self.positions[vertex as usize]);
         Triangle { a, b, c }
@@ -58,7 +58,7 @@ impl Closed {
     }
 }
 
-/// Ten of them and more.
+/// All closed meshes.
 pub fn closed() -> Vec<Closed> {
     let far = vec3(148_376.0, 1234.0, -223_423.0);
     vec![
@@ -144,7 +144,7 @@ fn icosphere(levels: u32) -> Closed {
     Closed::new("icosphere", positions, triangles, Vec3::ZERO, Vec3::splat(0.3))
 }
 
-/// Longitudes and latitudes, each vertex at another distance.
+/// A sphere of longitudes and latitudes, with a different radius at each vertex.
 fn rough_sphere() -> Closed {
     const RINGS: u32 = 16;
     const AROUND: u32 = 32;
@@ -203,7 +203,7 @@ fn lattice_cube() -> Closed {
     Closed::new("lattice cube", positions, triangles, Vec3::ZERO, Vec3::splat(2.0))
 }
 
-/// A million times as long as wide.
+/// A prism that is a million times as long as wide.
 fn needle_prism() -> Closed {
     const SIDES: u32 = 300;
     let mut positions = vec![vec3(0.0, 0.0, -1000.0), vec3(0.0, 0.0, 1000.0)];
@@ -240,7 +240,8 @@ mod tests {
                 }
             }
             assert!(edges.values().all(|&sides| sides == 2), "{}", mesh.name);
-            // Exactly: from within the room every ray hits it, an odd number of times unless it meets an edge.
+            // By exact arithmetic, every ray from inside hits the mesh, and an odd number of times unless it
+            // hits an edge.
             let mut random = Random::new(1, 0);
             for _ in 0..20 {
                 let ray = Ray::new(mesh.inside + mesh.room * random.in_cube(), random.direction());

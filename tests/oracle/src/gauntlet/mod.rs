@@ -1,7 +1,7 @@
-//! The gauntlet: hard inputs for ways to intersect, judged by the exact oracle.
+//! The gauntlet: hard inputs for intersection methods, judged by the exact oracle.
 //!
-//! `distributions` (inputs) · `meshes` (closed ones) · `boxes` · `scenes` (hard to search) · `table` (wrong answers) ·
-//! `leaks` (rays that escape)
+//! `distributions` (rays and triangles) · `meshes` (closed meshes) · `boxes` · `scenes` (hard to search) ·
+//! `table` (wrong answers) · `leaks` (rays that leave a closed mesh)
 
 pub mod boxes;
 pub mod distributions;

@@ -1,4 +1,4 @@
-//! Scenes of triangles that are hard to search, and rays at them.
+//! Scenes of triangles that are hard to search, and rays for them.
 
 use super::meshes::closed;
 use crate::splitmix::Random;
@@ -6,19 +6,20 @@ use glam::{Vec3, vec3};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Triangles and where rays come from.
+/// The triangles of a scene, and the region in which rays start.
 pub struct HardScene {
-    /// For a table.
+    /// The name in tables.
     pub name: &'static str,
-    /// What is searched.
+    /// The triangles that are searched.
     pub triangles: Vec<Triangle>,
-    /// Rays start within this of `middle` along each axis.
+    /// The largest distance along each axis between `middle` and the origin of a ray.
     pub room: f32,
-    /// About where the triangles are.
+    /// A point near the middle of the triangles.
     pub middle: Vec3,
 }
 
-/// All of them: empty, of one, of copies, hair, hills, flat, in a line, on a lattice, small in large, far away, and broken.
+/// All scenes: empty, one triangle, copies, hair, hills, flat, in a line, on a lattice, small in large, far
+/// away, and with invalid numbers.
 pub fn hard_scenes() -> Vec<HardScene> {
     let mut random = Random::new(11, 0);
     let sphere: Vec<Triangle> = closed().get(1).map(|mesh| mesh.all()).unwrap_or_default();
@@ -33,7 +34,7 @@ pub fn hard_scenes() -> Vec<HardScene> {
     let scene = |name, triangles, room, middle| HardScene { name, triangles, room, middle };
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
 
-    // A floor of 100,000 and a pot of a thousandth on it.
+    // A floor of size 100,000, and on it a pot of size a thousandth.
     let mut stadium = square(Vec3::ZERO, 1e5 * Vec3::X, 1e5 * Vec3::Z).to_vec();
     stadium.extend(sphere.iter().map(|t| map(t, |v| 1e-3 * v + vec3(0.0, 2e-3, 0.0))));
     let mut broken = soup(100, 1.0, Vec3::ZERO);
@@ -64,7 +65,7 @@ pub fn hard_scenes() -> Vec<HardScene> {
         scene("small in large", stadium, 4e-3, vec3(0.0, 4e-3, 0.0)),
         scene("far away", soup(200, 1.0, vec3(1e5, 1e5, -1e5)), 6.0, vec3(1e5, 1e5, -1e5)),
         scene("huge", soup(200, 1e14, Vec3::ZERO), 6e14, Vec3::ZERO),
-        scene("with numbers that are none", broken, 6.0, Vec3::ZERO),
+        scene("with invalid numbers", broken, 6.0, Vec3::ZERO),
     ]
 }
 
@@ -127,7 +128,7 @@ impl HardScene {
             2 | 3 => (a + b + c) / 3.0,
             _ => return Ray::new(origin, anywhere),
         };
-        // Now and then straight along an axis, from a place that shares two coordinates with the target.
+        // Sometimes go straight along an axis, from a point that has two coordinates of the target.
         if random.below(8) == 0 && target.is_finite() {
             let axis = random.below(3) as usize;
             let mut from = target;

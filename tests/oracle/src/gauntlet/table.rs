@@ -1,4 +1,5 @@
-//! How often each method is wrong on each distribution, how close the worst of these calls was, and how far off `t` is.
+//! Measures how often each method is wrong on each distribution, the margin of its worst mistake, and the
+//! error of `t`.
 
 use super::distributions::Distribution;
 use crate::exact::{Body, meet, t_error_in_ulps, triangle};
@@ -26,19 +27,19 @@ pub fn judge(distribution: &Distribution, seed: u64, count: usize) -> Judged {
     Judged { inputs, hits }
 }
 
-/// How a method did on a distribution.
+/// The results of a method on a distribution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
-    /// Share of wrong verdicts, in percent.
+    /// The percentage of wrong verdicts.
     pub wrong: f64,
-    /// The largest distance from flipping at which it was wrong, in roundings; 0 if it never was. A stable method errs
-    /// below 64 only.
+    /// The largest margin of a wrong verdict, in roundings; 0 if none is wrong. A stable method is wrong only
+    /// below 64.
     pub margin: f64,
-    /// Error of `t` in ulps that 99 of 100 hits stay below.
+    /// The error of `t`, in ulps, that 99 of 100 hits stay below.
     pub ulps: f64,
 }
 
-/// Compares answers, the `t` of each hit, with the exact ones.
+/// Compares the answers, which are the `t` of the hits, with the exact ones.
 pub fn compare(judged: &Judged, answers: &[Option<f32>]) -> Cell {
     let (mut wrong, mut margin) = (0, 0.0f64);
     let mut errors = Vec::new();

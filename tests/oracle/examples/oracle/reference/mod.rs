@@ -1,5 +1,5 @@
-//! The same questions answered the slow and plain way, with big integers: dyadic rationals, textbook formulas, and the
-//! place of a root found from the sign of its polynomial. Nothing here is shared with the oracle.
+//! The same questions, answered slowly and simply with big integers: dyadic rationals and textbook formulas;
+//! roots are compared by the signs of their polynomials. This module shares no code with the oracle.
 
 mod dyadic;
 mod time;
@@ -38,7 +38,7 @@ fn cross(a: &Vector, b: &Vector) -> Vector {
     [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &(&a[i] * &b[j]) - &(&a[j] * &b[i]))
 }
 
-/// 0 for a miss, 1 for a touch, 2 for a hit; and where.
+/// 0 for a miss, 1 for a touch, 2 for a hit; and the `t` of the hit.
 pub type Answer = (u8, Option<Time>);
 
 const MISS: Answer = (0, None);
@@ -110,7 +110,7 @@ fn roots(a: Dyadic, b: Dyadic, c: Dyadic) -> Option<[Time; 2]> {
         .then(|| [false, true].map(|larger| Time::Root(a.clone(), b.clone(), c.clone(), larger)))
 }
 
-/// The sphere, `b² - a c` as it stands.
+/// The sphere, by the discriminant `b² - a c`.
 pub fn sphere(ray: &Ray, sphere: &Sphere) -> Answer {
     let [center, o, d] = [sphere.center, ray.origin, ray.direction].map(vector);
     let f = minus(&o, &center);
@@ -124,7 +124,7 @@ pub fn sphere(ray: &Ray, sphere: &Sphere) -> Answer {
     solid(ray, vec![near], vec![far])
 }
 
-/// Entries and exits of the slabs of a box, `None` if the line passes by.
+/// Entries and exits of the slabs of a box; `None` if the line misses it.
 fn slabs(ray: &Ray, min: Vec3, max: Vec3) -> Option<(Vec<Time>, Vec<Time>)> {
     let (mut entries, mut exits) = (Vec::new(), Vec::new());
     for axis in 0..3 {
@@ -162,7 +162,7 @@ pub fn overlaps(ray: &Ray, bounds: &Aabb) -> bool {
         && exits.iter().all(|exit| exit.cmp_double(f64::from(ray.t_min)).is_ge())
 }
 
-/// Adds the ends of `0 <= height + slope t <= full` and meets what is left.
+/// Adds the ends of `0 <= height + slope t <= full`, and intersects the result.
 fn between_planes(
     ray: &Ray,
     (slope, height, full): (Dyadic, Dyadic, Dyadic),

@@ -18,14 +18,14 @@ impl Time {
         if d.sign() < 0 { Time::Ratio(-&n, -&d) } else { Time::Ratio(n, d) }
     }
 
-    /// How it compares with the fraction `n / d`, `d > 0`.
+    /// Compares the value with the fraction `n / d`, `d > 0`.
     fn cmp_ratio(&self, n: &Dyadic, d: &Dyadic) -> Ordering {
         match self {
             Time::Ratio(p, q) => (&(p * d) - &(n * q)).sign().cmp(&0),
             Time::Root(a, b, c, larger) => {
                 let two_b = b + b;
                 let value = &(&(a * &(n * n)) + &(&two_b * &(n * d))) + &(c * &(d * d));
-                // On which side of the vertex -b / a the fraction lies.
+                // Find the side of the vertex -b / a on which the fraction lies.
                 let side = (&(n * a) + &(b * d)).sign();
                 match (value.sign(), larger) {
                     (-1, false) => Ordering::Less,
@@ -51,7 +51,7 @@ impl Time {
         }
     }
 
-    /// How it compares with another; two roots must be of one polynomial.
+    /// Compares two values; two roots must be roots of the same polynomial.
     pub fn cmp(&self, other: &Time) -> Ordering {
         match (self, other) {
             (_, Time::Ratio(n, d)) => self.cmp_ratio(n, d),
@@ -63,8 +63,8 @@ impl Time {
         }
     }
 
-    /// How it compares with any other: two roots of different polynomials are equal if those share a root, which is
-    /// rational then, and differ otherwise, so that halving an interval tells them apart in the end.
+    /// Compares any two values. Two roots of different polynomials are equal if the polynomials share this
+    /// root, which is then rational. Otherwise they differ, so that bisection separates them.
     pub fn cmp_any(&self, other: &Time) -> Ordering {
         let (Time::Root(a, b, c, _), Time::Root(d, e, f, _)) = (self, other) else {
             return self.cmp(other);
@@ -95,7 +95,7 @@ impl Time {
         }
     }
 
-    /// How it compares with a double.
+    /// Compares the value with a double.
     pub fn cmp_double(&self, t: f64) -> Ordering {
         if t.is_infinite() {
             return if t > 0.0 { Ordering::Less } else { Ordering::Greater };

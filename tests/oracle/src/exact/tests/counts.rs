@@ -1,4 +1,4 @@
-//! The counts that the tiers rest on: roundings of the filter, and bits of the integers.
+//! Verifies the counts on which the tiers rely: roundings of the filter, and bits of the integers.
 
 use super::cases;
 use crate::exact::body::{Against, First, Meet, Order};
@@ -13,8 +13,8 @@ thread_local! {
     static LARGEST: Cell<u32> = const { Cell::new(0) };
 }
 
-/// An exact integer that knows how many roundings a double would have met on the way to it, and how many bits any
-/// integer has at most that is made in the same way: a bound for all inputs of these scales, not for these alone.
+/// An exact integer with the number of roundings that a double would have had, and with a bound on the bits
+/// of any integer that is computed in the same way: a bound for all inputs of these scales.
 #[derive(Clone, Copy)]
 struct Counted {
     value: Wide<WIDEST>,

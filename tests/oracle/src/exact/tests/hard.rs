@@ -40,7 +40,7 @@ fn triangles_edges_corners_and_slivers() {
     ] {
         assert_eq!(met(&ray([x, y, 2.0], [0.0, 0.0, -4.0]), Body::Triangle(UNIT)).0, verdict, "{x} {y}");
     }
-    // The determinant of the slides is wrong for this one.
+    // The determinant of the slides is wrong for this triangle.
     let steep = triangle([0.0, 0.0, 0.0], [-1.0, -1.0, 0.0], [-1.0, -1.0, -1.0]);
     assert_eq!(met(&ray([-2.5, -4.5, -6.25], [1.0, 2.0, 3.0]), steep), (Verdict::In, Some(2.0)));
     // tri/needle, tri/tiny, tri/scale: the same triangle at any scale.
@@ -82,7 +82,7 @@ fn triangles_missed() {
 #[test]
 fn no_special_value_panics() {
     let values = [0.0, -0.0, f32::from_bits(1), f32::MAX, f32::INFINITY, f32::NAN];
-    // Points and directions from a walk through all pairs of values.
+    // Points and directions go through all pairs of values.
     for i in 0..6usize.pow(4) {
         let value = |k: u32| values[i / 6usize.pow(k % 4) % 6];
         let vector = |k| vec3(value(k), value(k + 1), value(k + 3));

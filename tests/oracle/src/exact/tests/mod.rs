@@ -1,4 +1,4 @@
-//! The tiers against big integers, and what they promise about themselves.
+//! Compares the tiers with big integers, and verifies the bounds that they rely on.
 
 mod boxes;
 #[path = "../../../examples/oracle/cases.rs"]
@@ -90,7 +90,7 @@ fn orders_of_surds_agree_with_big_integers() {
         for (one, first) in &asked {
             for (two, second) in &asked {
                 let (Some(first), Some(second)) = (&first.1, &second.1) else { continue };
-                // Beyond that the plain way to tell roots apart takes too long.
+                // Beyond that the plain comparison of roots takes too long.
                 if [first, second]
                     .iter()
                     .any(|time| time.cmp_double(1e30).is_gt() || time.cmp_double(-1e30).is_lt())
