@@ -28,7 +28,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--force", "--check")?;
         Ok(Options { check: given.has("--check"), force: given.has("--force") })

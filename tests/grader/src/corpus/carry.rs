@@ -50,7 +50,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             from: given.required(0)?.to_string_lossy().into_owned(),

@@ -55,7 +55,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--bless", "--check")?;
         given.exclude("--seed", "--check")?;

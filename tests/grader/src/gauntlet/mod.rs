@@ -65,7 +65,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),

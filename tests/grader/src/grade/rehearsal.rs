@@ -44,7 +44,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),

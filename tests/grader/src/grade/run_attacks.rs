@@ -31,7 +31,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Options {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
         Options { names: names.collect(), table: given.has("--table") }

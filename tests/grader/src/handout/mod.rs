@@ -27,7 +27,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options { folder: given.required(0)?.into() })
     }

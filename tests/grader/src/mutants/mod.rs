@@ -54,7 +54,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--again", "--resume")?;
         Ok(Options {

@@ -127,7 +127,7 @@ fn what_breaks_in_the_grader_is_an_answer_too() {
     let results = json(&gradescope);
     assert_eq!(results["score"], 0);
     let said = results["output"].as_str().expect("text");
-    assert!(said.contains("the grader broke, tell your instructor: "), "{said}");
+    assert!(said.contains("the grader failed, tell your instructor: "), "{said}");
     let result = json(&classroom);
     assert_eq!((&result["version"], &result["status"]), (&1.into(), &"error".into()));
     assert_eq!(result["tests"][0]["score"], 0);
