@@ -221,8 +221,7 @@ fn died(ended: &Ended) -> String {
         }
         How::Signalled(signal) => format!("the compiler was ended by signal {signal}"),
         How::TookTooLong | How::UsedUpCpu => {
-            "the compiler exceeded its time limit: the compilation of some code here never ends"
-                .into()
+            "the compiler exceeded its time limit: the compilation of some code here never ends".into()
         }
         How::TooManyProcesses => "the compiler started more processes than it needs".into(),
         How::WroteTooMuch => "the compiler printed too many messages".into(),

@@ -126,7 +126,9 @@ impl Grader {
     fn broken(&self, mut graded: Graded, error: &anyhow::Error) -> Graded {
         graded.content.clear();
         graded.trouble = format!("could not be graded: {error:#}");
-        graded.checks = self.judge.all(Outcome::NotTried, "grading itself failed; the instructor's report has the reason");
+        graded.checks = self
+            .judge
+            .all(Outcome::NotTried, "grading itself failed; the instructor's report has the reason");
         graded
     }
 
@@ -139,8 +141,7 @@ impl Grader {
             let reading = match self.reading(text)? {
                 Some(reading) => reading,
                 None => {
-                    let why =
-                        "the syntax check failed: the code is nested too deeply".to_owned();
+                    let why = "the syntax check failed: the code is nested too deeply".to_owned();
                     let broke = Finding { rule: "nesting".into(), line: 1, why };
                     Reading { findings: vec![broke], may_remember: true }
                 }

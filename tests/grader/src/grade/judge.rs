@@ -87,7 +87,12 @@ impl Judge {
         let hides = |reference: &Arc<Worker>, check: &&'static Check| {
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed));
-            ensure!(passes, "the reference fails {} of stage {}: is the kit complete?", check.name, check.stage);
+            ensure!(
+                passes,
+                "the reference fails {} of stage {}: is the kit complete?",
+                check.name,
+                check.stage
+            );
             if !passes_hidden {
                 eprintln!("warning: {} of stage {} uses only the public inputs", check.name, check.stage);
             }

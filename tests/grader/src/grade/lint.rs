@@ -67,7 +67,11 @@ const ATTRIBUTES: [(&str, &str, &str); 14] = [
     ("linkage", "export_name", "an exercise must not change how programs are linked"),
     ("linkage", "used", "an exercise must not change how programs are linked"),
     ("linkage", "global_allocator", "an exercise needs no allocator of its own"),
-    ("linkage", "panic_handler", "an exercise may panic, and the kit reports it; it must not catch or hide a panic"),
+    (
+        "linkage",
+        "panic_handler",
+        "an exercise may panic, and the kit reports it; it must not catch or hide a panic",
+    ),
     ("linkage", "no_std", "an exercise must not change how it is built"),
     ("linkage", "no_main", "an exercise must not change how it is built"),
     ("linkage", "feature", "exercises are built with a stable compiler"),

@@ -51,7 +51,11 @@ pub static SPEC: Spec = Spec {
                 "The folder for the grades: tables, reports, and the database that `--resume` continues.",
             )
             .required(),
-            Opt::value("--jobs", "N", "How many submissions to grade at the same time [default: one per core]."),
+            Opt::value(
+                "--jobs",
+                "N",
+                "How many submissions to grade at the same time [default: one per core].",
+            ),
             Opt::value(
                 "--shard",
                 "I/N",

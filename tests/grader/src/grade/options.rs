@@ -39,10 +39,7 @@ impl GradingOptions {
             "Rules of the syntax check to switch off, by the names in its messages.",
         )
         .many(),
-        Opt::flag(
-            "--insecure",
-            "Grade even if there is no sandbox. Submissions then have all your rights.",
-        ),
+        Opt::flag("--insecure", "Grade even if there is no sandbox. Submissions then have all your rights."),
     ];
 
     /// Reads the options from the command line.
@@ -96,7 +93,7 @@ pub(crate) struct Stages(pub(super) Vec<u8>);
 /// Reads a list of stages such as `1-4,10`.
 pub(crate) fn stages(text: &str) -> Result<Stages> {
     let number =
-        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is not the number of a stage"));
+        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is not a stage number"));
     let mut stages = Vec::new();
     for part in text.split(',') {
         let (first, last) = part.split_once('-').unwrap_or((part, part));

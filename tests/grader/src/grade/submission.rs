@@ -117,9 +117,7 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
     gathering.ignored.truncate(MOST_REMARKS);
     taken.remarks.extend(gathering.ignored);
     if more > 0 {
-        taken
-            .remarks
-            .push(Remark { file: "…".into(), what: format!("{more} more files were ignored") });
+        taken.remarks.push(Remark { file: "…".into(), what: format!("{more} more files were ignored") });
     }
     taken.trouble = match trouble {
         Err(error) => Some(error.to_string()),

@@ -60,8 +60,7 @@ fn offer(path: &str, regular: bool, content: impl Read, gathering: &mut Gatherin
     if !gathering.wants(&plain) {
         gathering.ignore(&plain);
     } else if path.starts_with('/') || plain.split('/').any(|part| part == "..") {
-        gathering
-            .offer(&plain, Err::<io::Empty, _>("was ignored: its path leads out of the archive".into()));
+        gathering.offer(&plain, Err::<io::Empty, _>("was ignored: its path leads out of the archive".into()));
     } else if !regular {
         gathering.offer(&plain, Err::<io::Empty, _>("was ignored: it is not a regular file".into()));
     } else {
