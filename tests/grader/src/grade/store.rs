@@ -35,9 +35,8 @@ impl Store {
             connection.busy_timeout(std::time::Duration::from_secs(10))?;
             connection.execute_batch(TABLES)
         };
-        make().with_context(|| {
-            format!("{} is not a database of grades; choose another folder", path.display())
-        })?;
+        make()
+            .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
         Ok(Store { connection: Mutex::new(connection) })
     }
 
@@ -45,10 +44,8 @@ impl Store {
     pub fn session(&self) -> Result<Option<Session>> {
         let json: Option<String> =
             self.lock().query_row("SELECT json FROM session", [], |row| row.get(0)).optional()?;
-        json.map(|json| {
-            serde_json::from_str(&json).context("the stored session cannot be read by this version")
-        })
-        .transpose()
+        json.map(|json| serde_json::from_str(&json).context("the session is from another version"))
+            .transpose()
     }
 
     /// Stores the session. If it differs from the stored one, all grades are deleted.
@@ -74,8 +71,7 @@ impl Store {
                 |row| row.get(0),
             )
             .optional()?;
-        json.map(|json| serde_json::from_str(&json).context("a stored grade cannot be read by this version"))
-            .transpose()
+        json.map(|json| serde_json::from_str(&json).context("a grade is from another version")).transpose()
     }
 
     /// Stores a grade durably.
@@ -218,7 +214,7 @@ mod tests {
         std::fs::write(folder.path().join(FILE), "my notes, which are longer than a header of a database is")
             .unwrap();
         let error = Store::open(folder.path()).err().unwrap();
-        assert!(format!("{error:#}").contains("not a database of grades"), "{error:#}");
+        assert!(format!("{error:#}").contains("not a grade database"), "{error:#}");
         assert!(std::fs::read_to_string(folder.path().join(FILE)).unwrap().starts_with("my notes"));
     }
 }

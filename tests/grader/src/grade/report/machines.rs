@@ -87,7 +87,7 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
         "stdout_visibility": "hidden",
         "tests": tests,
     });
-    // Gradescope adds up the tests; only where there are none does it want to be told.
+    // Gradescope adds up the points of the tests. It needs a score only if there are no tests.
     if graded.checks.is_empty() {
         results["score"] = json!(0);
     }

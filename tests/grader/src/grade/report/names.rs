@@ -23,7 +23,7 @@ fn free_name(student: &str, taken: &mut BTreeSet<String>) -> String {
     let numbered = (2..).map(|n: usize| format!("{marked}-{n}"));
     let unchanged = (plain == student).then(|| plain.clone());
     let name = unchanged.into_iter().chain([marked.clone()]).chain(numbered);
-    // There are more numbers than students, so one of the names is free.
+    // There are more numbers than students, so one of these names is free.
     let name = name.into_iter().find(|name| taken.insert(name.to_lowercase()));
     name.unwrap_or_default()
 }
