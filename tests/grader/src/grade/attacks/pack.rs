@@ -112,7 +112,7 @@ impl Header {
 
 fn zip(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
     const DEFLATED: u16 = 8;
-    // Without a time: midnight of the first day of 1980.
+    // Midnight of 1 January 1980, the date of zip entries without a time.
     const DATE: u16 = 0x21;
     let (mut offset, mut directory) = (0u32, Vec::new());
     for entry in entries {
