@@ -77,7 +77,7 @@ fn what_is_not_understood_ends_with_2() {
     for (line, complaint) in [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
-        ("export", "known are gradescope, classroom"),
+        ("export", "the commands are gradescope, classroom"),
         ("export gradescop", "did you mean `gradescope`?"),
         ("export classroom", "`--out` is missing"),
         ("export gradescope --stages 12", "there is no stage 12"),
