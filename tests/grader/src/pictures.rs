@@ -111,7 +111,7 @@ fn primitives_of(scene: &Scene, reference: &dyn Kit) -> Result<u64> {
     (scene.film.width, scene.film.height) = (1, 1);
     let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
     let frame = kit_error::catch(|| reference.render(&job, &Unwatched))?;
-    Ok(frame.context("nobody cancels")?.primitives)
+    Ok(frame.context("the frame is not cancelled")?.primitives)
 }
 
 /// Returns the scene with each other accelerator.
@@ -138,8 +138,8 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         with("depth 1", &|quality| quality.max_depth = 1),
         with("large contributions", &|quality| quality.min_contribution = 0.3),
         with("lights from the middle", &|quality| quality.light_samples = 0),
-        with("three samples a light", &|quality| quality.light_samples = 3),
-        with("three rays of glossy", &|quality| quality.glossy_samples = 3),
+        with("three samples per light", &|quality| quality.light_samples = 3),
+        with("three glossy rays", &|quality| quality.glossy_samples = 3),
         with("one Gaussian sample", &|quality| {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),

@@ -145,7 +145,7 @@ pub fn without_lines(message: &str) -> String {
         text.push_str(".rs");
         let rest = part.trim_start_matches(|c: char| c.is_ascii_digit());
         if rest.len() == part.len() {
-            text.push(':'); // No line follows.
+            text.push(':'); // There is no line number.
         }
         text.push_str(rest);
     }

@@ -164,7 +164,7 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
         let quality = Quality { grid_resolution, ..with(Accelerator::Grid, 1) };
         structures.push((format!("grid {name}"), quality));
     }
-    // With smaller leaves copies of a triangle would be divided down to the deepest level.
+    // With smaller leaves the structure would split copies of a triangle down to the deepest level.
     for leaf_size in [4, 8] {
         for (how, accelerator) in
             [("by cells", Accelerator::OctreeByCells), ("from the root", Accelerator::Octree)]

@@ -40,8 +40,8 @@ pub static SPEC: Spec = Spec {
         Opt::value(
             "--rays",
             "N",
-            "Instead of the table: so many rays at edges and as many at vertices for each structure of the reference, \
-             and so many at boxes. Goes on where it was stopped.",
+            "Instead of the tables: trace N rays at edges and N at vertices per structure of the reference, and N per \
+             other trial. Continues a stopped run.",
         ),
         Opt::value(
             "--state",

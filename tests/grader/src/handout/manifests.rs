@@ -82,7 +82,7 @@ fn with_settings_of(built: &BTreeSet<String>, text: &str) -> String {
             kept.push('\n');
         }
     }
-    // A comment about nothing.
+    // Remove a comment without settings.
     let stood_alone = |part: &str| text.split("\n\n").any(|one| one.trim_end() == part.trim_end());
     let parts = kept.split("\n\n").filter(|part| !is_comment(part) || stood_alone(part));
     parts.collect::<Vec<_>>().join("\n\n")

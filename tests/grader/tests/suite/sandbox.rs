@@ -162,7 +162,7 @@ fn what_cannot_be_sandboxed_does_not_run() {
         said(&ended)
     );
     let writes = Sandbox { writable: vec!["/tmp".into()], ..Sandbox::new(Purpose::Worker) };
-    assert!(said(&probe(&writes, "environment")).contains("a worker writes nothing"));
+    assert!(said(&probe(&writes, "environment")).contains("a worker must not write"));
     let command = Sandbox::new(Purpose::Worker).command(Path::new("/no/such/program"));
     let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
     assert!(said(&ended).contains("the sandbox: /no/such/program"), "{}", said(&ended));
