@@ -149,7 +149,7 @@ pub fn stub(solution: &str, path: &Path) -> Result<String> {
             Block::Answer(_, stub) => lines.extend(stub),
         }
     }
-    // An answer that leaves nothing behind leaves one blank line too many.
+    // If an answer has no stub, remove one of the two blank lines around it.
     lines.dedup_by(|line, above| line.is_empty() && above.is_empty());
     Ok(lines.join("\n").trim_end().to_owned() + "\n")
 }

@@ -1,4 +1,4 @@
-//! Every command explains itself, and a command line that is not understood ends the program with code 2.
+//! Every command has a help text, and a wrong command line ends the program with code 2.
 use super::program_runs::{grader, printed};
 use std::process::Command;
 
@@ -110,7 +110,7 @@ fn what_is_not_understood_ends_with_2() {
     }
 }
 
-/// The command line is looked at first: what is wrong with it is the same wherever the program is started.
+/// The command line is checked first, so its errors are the same in every working folder.
 #[test]
 fn outside_of_a_kit_the_same_is_wrong() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! What is written for Gradescope and GitHub Classroom, and that grading one submission always ends in an answer.
+//! Tests the files for Gradescope and GitHub Classroom, and that grading one submission always writes a result.
 
 use super::program_runs::{grader, printed, root};
 use serde_json::Value;
@@ -112,7 +112,7 @@ fn gradescope_is_told_even_by_a_grader_that_dies() {
 fn what_breaks_in_the_grader_is_an_answer_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let (gradescope, classroom) = (folder.path().join("g.json"), folder.path().join("c.json"));
-    // No kit is here, nor above the program.
+    // There is no kit in this folder or above the program.
     let program = folder.path().join("grader");
     fs::copy(env!("CARGO_BIN_EXE_grader"), &program).expect("copied");
     let output = Command::new(&program)
