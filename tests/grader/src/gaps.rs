@@ -1,7 +1,7 @@
 //! `grader gaps`: shows, for each function of the exercises, what pictures lack while that function is not written yet.
 //!
-//! The renderer must make a picture from the functions that are written, and name what is left out and why. The reference has
-//! no unwritten functions, so this command removes each function in turn.
+//! The renderer must make a picture from the functions that are written, and name what is left out and why. The reference
+//! has no unwritten functions, so this command removes each function in turn.
 
 use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
@@ -127,8 +127,8 @@ pub fn lacks(
     Ok(said.iter().map(line).collect())
 }
 
-/// Returns the gaps with which a picture is still made but differs, and what each lacks. These are computed and not read from
-/// the stored file: if that file were from other solutions, every change would seem to show.
+/// Returns the gaps with which a picture is still made but differs, and what each lacks. These are computed and not read
+/// from the stored file: if that file were from other solutions, every change would seem to show.
 pub fn that_show(
     root: &Path,
     workshops: &[Workshop],

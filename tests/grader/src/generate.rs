@@ -1,5 +1,5 @@
-//! `grader generate`: makes the mesh of the showcase (a ribbed torus knot of 57,600 triangles), a tree, and the images of the
-//! scenes. So the repository contains no foreign meshes or images.
+//! `grader generate`: makes the mesh of the showcase (a ribbed torus knot of 57,600 triangles), a tree, and the images of
+//! the scenes. So the repository contains no foreign meshes or images.
 
 mod images;
 mod tree;

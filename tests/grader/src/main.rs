@@ -64,7 +64,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a command in the kit around the working folder. Errors of the command line are reported first, even outside of a kit.
+/// Runs a command in the kit around the working folder. Errors of the command line are reported first, even outside of a
+/// kit.
 fn in_kit<T, R>(options: Result<T, Misuse>, work: impl FnOnce(&Path, &T) -> Result<R>) -> Result<R> {
     let options = options?;
     work(&root()?, &options)

@@ -1,7 +1,7 @@
 //! `grader sync`: makes `exercises/src` from `solutions/src`.
 //!
-//! An answer stands between `// <solution>` and `// </solution>`. In the exercise, the lines marked `// <stub>` inside replace
-//! it, without that mark. The marks are removed as well. All other lines are the same in both.
+//! An answer stands between `// <solution>` and `// </solution>`. In the exercise, the lines marked `// <stub>` inside
+//! replace it, without that mark. The marks are removed as well. All other lines are the same in both.
 
 use anyhow::{Context, Result, bail};
 use raykata_cli::args::{Given, Misuse, Opt, Spec};

@@ -1,5 +1,5 @@
-//! `grader corpus`: tests the checks. Each entry is the reference with one difference. It is either a mistake, which a named
-//! check must catch and diagnose, or another right solution, which every check must accept.
+//! `grader corpus`: tests the checks. Each entry is the reference with one difference. It is either a mistake, which a
+//! named check must catch and diagnose, or another right solution, which every check must accept.
 //!
 //! `carry` (updates patches) · `entry` (reads `tests/corpus`) · `workshop` (builds an entry) · `verdict` (its result) ·
 //! `records` (the stored results)

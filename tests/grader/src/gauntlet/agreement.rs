@@ -47,8 +47,8 @@ struct Asked {
     brute: Option<PrimitiveHit>,
 }
 
-/// A margin below this counts as on the edge. Double precision knows an edge to a few rounding errors of 2⁻⁵³, which is less
-/// than a millionth of a rounding error of single precision.
+/// A margin below this counts as on the edge. Double precision knows an edge to a few rounding errors of 2⁻⁵³, which is
+/// less than a millionth of a rounding error of single precision.
 const ON_AN_EDGE: f64 = 1e-6;
 
 impl Asked {

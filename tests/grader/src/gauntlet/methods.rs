@@ -154,7 +154,8 @@ macro_rules! precision {
             pub(crate) fn edge_forms(ray: &Ray, triangle: &Triangle) -> [$Float; 3] {
                 let [o, d, a, b, c] = numbers(ray, triangle);
                 let [a, b, c] = [a, b, c].map(|corner| corner - o);
-                // Use differences and sums, so that neighbours compute the same value for their shared edge, up to the sign.
+                // Use differences and sums, so that neighbours compute the same value for their shared edge, up to the
+                // sign.
                 let form = |p: $Vector, q: $Vector| (q - p).cross(q + p).dot(d);
                 [form(b, c), form(c, a), form(a, b)]
             }

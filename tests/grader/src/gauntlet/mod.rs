@@ -1,5 +1,5 @@
-//! `grader gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges them
-//! by exact arithmetic. With `--rays` it starts the long run, which searches for leaks in the reference.
+//! `grader gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
+//! them by exact arithmetic. With `--rays` it starts the long run, which searches for leaks in the reference.
 
 pub mod agreement;
 mod long;

@@ -1,5 +1,5 @@
-//! Intersection methods with errors that are printed in lectures or commonly used. They stay unchanged, so that the gauntlet
-//! can show their cost.
+//! Intersection methods with errors that are printed in lectures or commonly used. They stay unchanged, so that the
+//! gauntlet can show their cost.
 
 use super::methods::single::{
     edge_forms, gram_weights, in_range, moeller_trumbore, numbers, on_plane, plane_sides, t_of_plane,

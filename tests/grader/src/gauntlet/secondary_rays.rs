@@ -53,7 +53,8 @@ impl Pane {
         };
         let away = if (self.eye - self.middle).dot(self.normal) > 0.0 { -self.normal } else { self.normal };
         let wall = if with_wall { polygon(self.gap() * away) } else { String::new() };
-        // A fifth of the pane's half side fills half of the film, so that every ray hits the pane, even at an oblique angle.
+        // A fifth of the pane's half side fills half of the film, so that every ray hits the pane, even at an oblique
+        // angle.
         let half_side = 0.5 * (self.corners[1] - self.corners[0]).length();
         let fov = 2.0 * (0.2 * half_side / (self.eye - self.middle).length()).atan().to_degrees();
         format!(

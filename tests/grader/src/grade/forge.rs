@@ -72,8 +72,8 @@ impl Forge {
         hex(&hash.finalize())
     }
 
-    /// Compiles these files in the empty folder `scratch`. While the build fails, the empty exercise replaces the files that
-    /// cause the errors.
+    /// Compiles these files in the empty folder `scratch`. While the build fails, the empty exercise replaces the files
+    /// that cause the errors.
     pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
         let mut cpu = Duration::ZERO;
         let mut replaced = BTreeMap::new();

@@ -1,8 +1,8 @@
 //! `grader grade`: grades each submission of a class. The verdicts are made outside of the students' processes.
 //!
 //! The steps for a submission: `submission` reads the exercise files and nothing else, `lint` refuses constructs that no
-//! exercise needs, `forge` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store` saves
-//! the grade, `report` writes the reports.
+//! exercise needs, `forge` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store`
+//! saves the grade, `report` writes the reports.
 
 pub mod attacks;
 mod forge;

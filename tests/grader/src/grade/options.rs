@@ -52,8 +52,8 @@ impl GradingOptions {
         })
     }
 
-    /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of `begun`,
-    /// the earlier run.
+    /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of
+    /// `begun`, the earlier run.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {
         let (confinement, isolation) = self.confinement()?;
         let forge = Forge::prepare(root, confinement)?;

@@ -1,5 +1,5 @@
-//! `grader rehearse`: generates a class of submissions with known grades (right solutions and mistakes of the corpus, attacks,
-//! untouched files), grades it, and compares every grade with the known one.
+//! `grader rehearse`: generates a class of submissions with known grades (right solutions and mistakes of the corpus,
+//! attacks, untouched files), grades it, and compares every grade with the known one.
 
 use super::Options as GradeOptions;
 use super::attacks::{self, Attack, Place};

@@ -1,13 +1,13 @@
-//! Rejects malformed structures in the answers of a worker. The checks traverse trees with loops and recursion. A tree whose
-//! root is its own child would make them loop for ever or overflow the judge's stack.
+//! Rejects malformed structures in the answers of a worker. The checks traverse trees with loops and recursion. A tree
+//! whose root is its own child would make them loop for ever or overflow the judge's stack.
 
 use raykata::bvh::Contents;
 use raykata::count::Counts;
 use raykata::kit::{Answer, SearchAnswer};
 use raykata::partition::{BspNode, Grid, KdNode, OctreeNode};
 
-/// Deepest allowed tree, in levels. The checks recurse over trees and print them with one indent per level. The deepest tree
-/// that a check needs has 24 levels. A builder that splits off one primitive per level makes up to 512.
+/// Deepest allowed tree, in levels. The checks recurse over trees and print them with one indent per level. The deepest
+/// tree that a check needs has 24 levels. A builder that splits off one primitive per level makes up to 512.
 const DEEPEST: usize = 2_000;
 
 /// A node of any kind of tree.
@@ -86,8 +86,8 @@ fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -
     None
 }
 
-/// Checks the cost counters of a search. They are counted in the student's process, where code may reset them. A hit without
-/// any visited node or tested primitive shows that.
+/// Checks the cost counters of a search. They are counted in the student's process, where code may reset them. A hit
+/// without any visited node or tested primitive shows that.
 fn fault_of_search(search: &SearchAnswer) -> Option<String> {
     let Counts { node_visits, primitive_tests, .. } = search.counts;
     let nothing = search.hit.is_some() && (node_visits == 0 || primitive_tests == 0);

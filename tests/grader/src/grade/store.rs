@@ -1,5 +1,5 @@
-//! Stores the grades of a class in an SQLite database beside the reports. Each grade is written in one transaction when it is
-//! complete, so a killed run loses only the submissions that were in progress.
+//! Stores the grades of a class in an SQLite database beside the reports. Each grade is written in one transaction when it
+//! is complete, so a killed run loses only the submissions that were in progress.
 
 use super::result::{Class, Graded, Session};
 use anyhow::{Context, Result, bail, ensure};

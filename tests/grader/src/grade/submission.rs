@@ -214,8 +214,8 @@ impl Gathering<'_> {
         }
     }
 
-    /// Adds a remark that a file was ignored. Only Rust files, tests and cargo's files get one; other files, such as slides,
-    /// are expected in a working copy.
+    /// Adds a remark that a file was ignored. Only Rust files, tests and cargo's files get one; other files, such as
+    /// slides, are expected in a working copy.
     fn ignore(&mut self, path: &str) {
         let what = match path.rsplit('/').next().unwrap_or(path) {
             "build.rs" | "Cargo.toml" | "Cargo.lock" | "rust-toolchain" | "rust-toolchain.toml" => {

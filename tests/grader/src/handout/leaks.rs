@@ -13,8 +13,8 @@ pub const CANARY: &str = "canary-answers-9b1f6c52";
 /// Shortest line that is searched for, in bytes. Shorter lines, such as `}`, occur in any code.
 const SHORTEST: usize = 30;
 
-/// Returns the lines that identify answers, per file of `solutions/src`: long lines that occur neither in the exercises nor in
-/// the scaffold, the checks or the hints.
+/// Returns the lines that identify answers, per file of `solutions/src`: long lines that occur neither in the exercises nor
+/// in the scaffold, the checks or the hints.
 pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
     let exercises = sync::exercises(root)?;
     let mut public: String = exercises.iter().map(|exercise| exercise.stub.as_str()).collect();

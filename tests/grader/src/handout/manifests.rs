@@ -1,5 +1,5 @@
-//! Removes from the workspace's manifest the parts that are not handed out. The manifest is cut as text, so that its comments
-//! stay.
+//! Removes from the workspace's manifest the parts that are not handed out. The manifest is cut as text, so that its
+//! comments stay.
 
 use anyhow::{Context, Result};
 use std::collections::{BTreeMap, BTreeSet};

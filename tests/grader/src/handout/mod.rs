@@ -1,5 +1,5 @@
-//! `grader handout`: makes the student's repository, without the answers and without files that only authors and instructors
-//! need. Folders are copied unchanged. Only manifests that name missing parts are changed.
+//! `grader handout`: makes the student's repository, without the answers and without files that only authors and
+//! instructors need. Folders are copied unchanged. Only manifests that name missing parts are changed.
 
 mod leaks;
 mod manifests;
@@ -33,7 +33,8 @@ impl Options {
     }
 }
 
-/// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left out.
+/// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
+/// out.
 const FOLDERS: [(&str, &[&str]); 8] = [
     ("src", &["css", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
@@ -45,8 +46,8 @@ const FOLDERS: [(&str, &[&str]); 8] = [
     ("slides", &["md", "svg"]),
 ];
 
-/// Parts of those folders that are not handed out: tests of the kit itself. They need the solutions, or fail after an exercise
-/// was begun.
+/// Parts of those folders that are not handed out: tests of the kit itself. They need the solutions, or fail after an
+/// exercise was begun.
 const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
 
 /// Files that are handed out unchanged.

@@ -1,8 +1,8 @@
 //! `grader mutants`: mutation testing. Small automatic changes of the solutions, each of which the checks must notice.
 //!
 //! The tool cargo-mutants lists the changes. A workshop of the corpus builds each change, runs all checks against it and
-//! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent changes
-//! are listed in tests/corpus/equivalent.toml, each with a reason.
+//! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
+//! changes are listed in tests/corpus/equivalent.toml, each with a reason.
 //!
 //! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes)
 
@@ -159,8 +159,8 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
-/// Tests a change: for an exercise by the checks of its stage, then by pictures, then by the other stages; for other files by
-/// pictures.
+/// Tests a change: for an exercise by the checks of its stage, then by pictures, then by the other stages; for other files
+/// by pictures.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
     let source = Source { which: Which::Solutions, program: worker.to_owned() };
@@ -187,8 +187,8 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     noticed.unwrap_or(Fate::Survived)
 }
 
-/// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a function
-/// is not written.
+/// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a
+/// function is not written.
 fn judge_by_gaps(
     mutant: &Mutant,
     workshop: &Workshop,

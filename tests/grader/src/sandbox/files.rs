@@ -25,8 +25,8 @@ const LIBRARY_FOLDERS: [&str; 9] = [
     "/usr/local/lib",
 ];
 
-/// The shared libraries of a Rust program and of rustc. They are listed one by one, because their folders contain other files
-/// that a submission must not read.
+/// The shared libraries of a Rust program and of rustc. They are listed one by one, because their folders contain other
+/// files that a submission must not read.
 const LIBRARIES: [&str; 9] = [
     "libc.so.6",
     "libm.so.6",

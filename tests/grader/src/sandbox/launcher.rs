@@ -1,5 +1,5 @@
-//! Restricts this process and then replaces it by the program. The process has one thread and runs no code between a fork and
-//! an exec, so safe code is enough.
+//! Restricts this process and then replaces it by the program. The process has one thread and runs no code between a fork
+//! and an exec, so safe code is enough.
 
 use super::{Confinement, Limits, Purpose, files, filter};
 use anyhow::{Context, Result, bail, ensure};
@@ -13,12 +13,12 @@ use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Extra stack for the program's first frames and its arguments, in bytes. A worker outside of a sandbox answers on a thread
-/// without these.
+/// Extra stack for the program's first frames and its arguments, in bytes. A worker outside of a sandbox answers on a
+/// thread without these.
 const STACK_ROOM: u64 = 8 << 20;
 
-/// Seconds between the soft and the hard limit of processor time. The soft limit sends a specific signal. The hard limit kills
-/// the process like a lack of memory does, so it must come later.
+/// Seconds between the soft and the hard limit of processor time. The soft limit sends a specific signal. The hard limit
+/// kills the process like a lack of memory does, so it must come later.
 const CPU_GRACE_SECONDS: u64 = 2;
 
 pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {

@@ -1,8 +1,9 @@
 //! The sandbox around every program that handles a submission: the syntax check, the compiler, the linker, the worker.
 //!
 //! The launcher is this same program, started with a special first argument. It restricts itself and then becomes the
-//! sandboxed program. The restrictions are resource limits, no new privileges, Landlock for files and seccomp for other system
-//! calls. They need no privileges and cannot be removed. If one of them cannot be set up, the launcher ends and runs nothing.
+//! sandboxed program. The restrictions are resource limits, no new privileges, Landlock for files and seccomp for other
+//! system calls. They need no privileges and cannot be removed. If one of them cannot be set up, the launcher ends and runs
+//! nothing.
 
 mod ended;
 #[cfg(target_os = "linux")]
@@ -176,8 +177,8 @@ impl Sandbox {
         Sandbox { purpose, confinement, limits: purpose.limits(), readable: vec![], writable: vec![] }
     }
 
-    /// Returns the command that runs `program` in this sandbox. Its environment contains only the search path of a linker and
-    /// the folder for temporary files. You may add arguments; do not change the environment.
+    /// Returns the command that runs `program` in this sandbox. Its environment contains only the search path of a linker
+    /// and the folder for temporary files. You may add arguments; do not change the environment.
     pub fn command(&self, program: &Path) -> Command {
         let limits = &self.limits;
         let mut command = Command::new(launcher());
@@ -261,8 +262,8 @@ pub fn this_program() -> PathBuf {
     launcher.canonicalize().unwrap_or(launcher)
 }
 
-/// Runs the launcher or the sandbox test if this process was started for it, and does not return then. Call this at the start
-/// of `main`.
+/// Runs the launcher or the sandbox test if this process was started for it, and does not return then. Call this at the
+/// start of `main`.
 pub fn launch_if_asked() {
     let mut arguments = std::env::args_os().skip(1);
     let word = arguments.next().unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Tests the sandbox: tries actions that a sandboxed program must not be able to do. This program runs the tests itself, so no
-//! compiler is needed.
+//! Tests the sandbox: tries actions that a sandboxed program must not be able to do. This program runs the tests itself, so
+//! no compiler is needed.
 
 use super::{Ended, How, PROBE, Purpose, Sandbox, run, this_program};
 use anyhow::{Context, Result, bail, ensure};
@@ -118,8 +118,8 @@ pub(super) fn act(what: &str) {
     }
 }
 
-/// Returns whether the action was refused or found nothing. Any other error, such as no answer from the other end, means that
-/// the kernel allowed the attempt.
+/// Returns whether the action was refused or found nothing. Any other error, such as no answer from the other end, means
+/// that the kernel allowed the attempt.
 fn is_contained(outcome: &io::Result<()>) -> bool {
     use io::ErrorKind::{NotFound, OutOfMemory, PermissionDenied};
     matches!(outcome, Err(error) if [NotFound, OutOfMemory, PermissionDenied].contains(&error.kind()))

@@ -59,10 +59,11 @@ pub fn count(group: u32) -> usize {
     members(group as i32).map_or(0, |members| members.len())
 }
 
-/// Ends the remaining processes of a group and waits for them. The leader must have ended and must not have been waited for.
+/// Ends the remaining processes of a group and waits for them. The leader must have ended and must not have been waited
+/// for.
 ///
-/// This process is the reaper of orphans, so the topmost remaining processes are its children. The kernel does not reuse the
-/// id of a child before it was waited for. The children of an ended process then become children of this process.
+/// This process is the reaper of orphans, so the topmost remaining processes are its children. The kernel does not reuse
+/// the id of a child before it was waited for. The children of an ended process then become children of this process.
 pub fn end_group(leader: u32) -> io::Result<()> {
     let until = Instant::now() + END_PATIENCE;
     let myself = std::process::id() as i32;

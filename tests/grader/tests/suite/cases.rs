@@ -1,5 +1,5 @@
-//! Tests the catalogue of hard cases: there are 81, each with an existing check or test, or with a stage that does not exist
-//! yet.
+//! Tests the catalogue of hard cases: there are 81, each with an existing check or test, or with a stage that does not
+//! exist yet.
 
 use grader::cases::read;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Packages that were built for the first picture and the first check are not built again for the tests of the workspace.
 //!
 //! Cargo builds a package once per set of features. The features add up over all packages that are built together. So one
-//! more dependency of the grader can make cargo build serde, and every package that depends on it, twice. If this test fails,
-//! name the feature in the workspace's manifest, as for `serde_core`.
+//! more dependency of the grader can make cargo build serde, and every package that depends on it, twice. If this test
+//! fails, name the feature in the workspace's manifest, as for `serde_core`.
 
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! Tests that the hand-out contains no function that answers an exercise. Every function with fitting types is pasted into the
-//! exercise, and the checks of that stage must reject it. `paste/candidates.snap` records which functions fit. The long run
-//! builds them in and runs the checks.
+//! Tests that the hand-out contains no function that answers an exercise. Every function with fitting types is pasted into
+//! the exercise, and the checks of that stage must reject it. `paste/candidates.snap` records which functions fit. The long
+//! run builds them in and runs the checks.
 
 mod call;
 mod collect;

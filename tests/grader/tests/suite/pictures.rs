@@ -1,5 +1,5 @@
-//! Compares small pictures of the kit's scenes bit by bit, with their cost. If your change is meant to alter a picture, look at
-//! the picture and accept it with `INSTA_UPDATE=always cargo test -p grader --test suite pictures`.
+//! Compares small pictures of the kit's scenes bit by bit, with their cost. If your change is meant to alter a picture,
+//! look at the picture and accept it with `INSTA_UPDATE=always cargo test -p grader --test suite pictures`.
 
 use grader::kits::{Need, Source, Which};
 use grader::pictures::Scenes;

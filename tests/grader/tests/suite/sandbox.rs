@@ -72,7 +72,8 @@ fn without_walls_limits_still_hold() {
 
 #[test]
 fn an_open_file_of_the_judge_is_not_inherited() {
-    // A file opened by a shell redirection stays open on exec, unlike files that Rust opens. The shell is the launcher's parent.
+    // A file opened by a shell redirection stays open on exec, unlike files that Rust opens. The shell is the launcher's
+    // parent.
     let script = "exec 7</etc/passwd 9</etc/passwd
         launcher=$1 word=$2 walls=$3 purpose=$4; shift 5
         \"$launcher\" \"$word\" \"$walls\" \"$purpose\" $$ \"$@\"; exit $?";

@@ -1,4 +1,5 @@
-//! Tests the judge with sandboxed workers that misbehave: each bad call gives one error, and the judge never waits for ever.
+//! Tests the judge with sandboxed workers that misbehave: each bad call gives one error, and the judge never waits for
+//! ever.
 
 #[path = "../../../misbehaving/tests/asking/mod.rs"]
 mod asking;

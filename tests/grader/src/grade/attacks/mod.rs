@@ -1,5 +1,6 @@
 //! The attack corpus: submissions that try to get points without earning them or to do harm, and honest ones that look
-//! suspicious. `tests/corpus/attack/NAME/attack.toml` says how one is made and what result it must get; see `README.md` there.
+//! suspicious. `tests/corpus/attack/NAME/attack.toml` says how one is made and what result it must get; see `README.md`
+//! there.
 //!
 //! `step` (what attack.toml says) · `make` (the folder or archive) · `source` (changes of a source file) · `pack` (archives
 //! that no archiver makes) · `remember` (memorised answers) · `verdict` (compares the result) · `run` (runs all attacks)

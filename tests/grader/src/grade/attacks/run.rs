@@ -21,8 +21,9 @@ pub struct Tried {
     pub complaints: Vec<String>,
 }
 
-/// Makes these attacks and grades each by `grade(submission, stages, rules of the syntax check to switch off)`. Calls `done`
-/// after each. An attack with an expected result without the syntax check is graded twice. The result is sorted by name.
+/// Makes these attacks and grades each by `grade(submission, stages, rules of the syntax check to switch off)`. Calls
+/// `done` after each. An attack with an expected result without the syntax check is graded twice. The result is sorted by
+/// name.
 pub fn run_all(
     root: &Path,
     mut attacks: Vec<Attack>,

@@ -55,8 +55,8 @@ pub(super) enum Encoding {
     Utf16,
 }
 
-/// Text or bytes: one of `text`, `fragment` (a file beside attack.toml), `solution` (a file of the reference) and `hex`. It is
-/// repeated `times` times, between `before` and `after`. `@n@` counts from 0.
+/// Text or bytes: one of `text`, `fragment` (a file beside attack.toml), `solution` (a file of the reference) and `hex`. It
+/// is repeated `times` times, between `before` and `after`. `@n@` counts from 0.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Content {

@@ -41,7 +41,8 @@ pub struct Expectation {
     pub outcomes: Vec<Outcome>,
     /// Whether grading as a whole must fail with a reason. Without a value both are allowed.
     pub trouble: Option<bool>,
-    /// Words that must appear in the message of a check, a remark, the compiler's messages or the reason for failed grading.
+    /// Words that must appear in the message of a check, a remark, the compiler's messages or the reason for failed
+    /// grading.
     #[serde(default)]
     pub says: Vec<String>,
     /// Words that must not appear there.

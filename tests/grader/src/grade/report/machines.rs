@@ -94,8 +94,8 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
     results
 }
 
-/// Returns the result that GitHub Classroom reads from a runner, before base64. Classroom adds up the scores of `tests`. The
-/// share of tests that it prints does not weight them by points.
+/// Returns the result that GitHub Classroom reads from a runner, before base64. Classroom adds up the scores of `tests`.
+/// The share of tests that it prints does not weight them by points.
 pub fn classroom(graded: &Graded) -> Value {
     let graded = &presentable(graded);
     let (earned, of) = graded.points();

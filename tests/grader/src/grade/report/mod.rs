@@ -1,7 +1,7 @@
 //! Reports of a graded class: tables, files for other programs, and pages to read.
 //!
-//! Much of their text comes from students. `presentable` cleans each text once, before it goes into any format. The libraries
-//! that write CSV, JSON, XML and HTML do the escaping.
+//! Much of their text comes from students. `presentable` cleans each text once, before it goes into any format. The
+//! libraries that write CSV, JSON, XML and HTML do the escaping.
 
 mod chart;
 mod class_page;
@@ -43,8 +43,8 @@ const REMARKS: usize = 50;
 /// Writes all reports of a class into `folder`: `grades.csv`, `checks.csv`, `timings.csv`, `results.json`, `junit.xml`,
 /// `index.html`, and for each student a file in `students`, `gradescope` and `classroom`.
 ///
-/// The same results give the same bytes in any order of the students. Only `timings.csv` and `index.html` contain times. Each
-/// file is replaced atomically.
+/// The same results give the same bytes in any order of the students. Only `timings.csv` and `index.html` contain times.
+/// Each file is replaced atomically.
 pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     let mut students: Vec<&Graded> = class.students.iter().collect();
     // Two submissions may have the same name. Sort these by their content.

@@ -10,8 +10,8 @@ const LONGEST: usize = 60;
 /// Reserved names: device names of some systems, and the page of the class.
 const RESERVED: [&str; 5] = ["con", "prn", "aux", "nul", "index"];
 
-/// Returns a file name for each student, in the order of `students`. It contains only letters, digits, `-`, `_` and `.`. The
-/// names also differ on file systems that ignore case. A changed name ends in a fingerprint of the old one.
+/// Returns a file name for each student, in the order of `students`. It contains only letters, digits, `-`, `_` and `.`.
+/// The names also differ on file systems that ignore case. A changed name ends in a fingerprint of the old one.
 pub fn file_names(students: &[Graded]) -> Vec<String> {
     let mut taken = BTreeSet::new();
     students.iter().map(|student| free_name(&student.student, &mut taken)).collect()

@@ -1,5 +1,5 @@
-//! Reads submissions in archives. The grader does not trust stated sizes: it counts bytes while it unpacks. Names only decide
-//! which file is which exercise; nothing is written to the disk.
+//! Reads submissions in archives. The grader does not trust stated sizes: it counts bytes while it unpacks. Names only
+//! decide which file is which exercise; nothing is written to the disk.
 
 use super::Gathering;
 use std::io::{self, BufReader, Read, Seek};

@@ -1,5 +1,5 @@
-//! Makes system calls as native code can that ignores Rust's rules, for `sandbox.rs`. A test compiles this file; cargo does not.
-//! It prints the calls that were not refused.
+//! Makes system calls as native code can that ignores Rust's rules, for `sandbox.rs`. A test compiles this file; cargo does
+//! not. It prints the calls that were not refused.
 
 use std::arch::asm;
 

@@ -57,8 +57,8 @@ pub fn build(folder: &Path) -> String {
     program.and_then(|program| program["executable"].as_str()).expect("a program").to_owned()
 }
 
-/// Returns whether the checks whose names contain `filter` pass with function number `paste` in place of an exercise; 0 means
-/// no function.
+/// Returns whether the checks whose names contain `filter` pass with function number `paste` in place of an exercise; 0
+/// means no function.
 pub fn passes(program: &str, folder: &Path, filter: &str, paste: usize) -> bool {
     let status = Command::new(program)
         .current_dir(folder.join("solutions"))
