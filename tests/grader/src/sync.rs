@@ -178,9 +178,10 @@ pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
         let (number, mark) = (number + 1, line.trim_start());
         let indent = &line[..line.len() - mark.len()];
         let place = || format!("{}:{number}", path.display());
+        // Open a block at a mark, or at the first line after an answer.
         if mark == BEGIN {
             if let Some(begun) = opened.replace(number) {
-                bail!("{}: `{BEGIN}` inside the one that line {begun} began", place());
+                bail!("{}: `{BEGIN}` inside the block that begins at line {begun}", place());
             }
             blocks.push(Block::Answer(Vec::new(), Vec::new()));
         } else if opened.is_none() && (mark == END || mark.starts_with(STUB)) {
@@ -188,6 +189,7 @@ pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
         } else if opened.is_none() && !matches!(blocks.last(), Some(Block::Same(_))) {
             blocks.push(Block::Same(Vec::new()));
         }
+        // Add the line to its block.
         match blocks.last_mut() {
             Some(Block::Answer(lines, stub)) => {
                 lines.push(line);
@@ -263,7 +265,7 @@ mod tests {
         assert_eq!(message("// </solution>"), "a.rs:1: `// </solution>` outside of `// <solution>`");
         assert_eq!(
             message("// <solution>\n// <solution>"),
-            "a.rs:2: `// <solution>` inside the one that line 1 began"
+            "a.rs:2: `// <solution>` inside the block that begins at line 1"
         );
     }
 

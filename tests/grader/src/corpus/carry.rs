@@ -160,6 +160,7 @@ fn carry(
     let named = diff.lines().find_map(|line| line.strip_prefix("+++ b/"));
     let path = named.context("the patch has no line `+++ b/…`")?.trim();
 
+    // Apply the patch to the old version of its file.
     let before = old(path)?;
     let after = apply(path, diff, &before).context("the patch does not fit the old version of the file")?;
     let mut places: Vec<&str> =
@@ -170,6 +171,7 @@ fn carry(
     if places == [path] && new(path).as_ref() == Some(&before) {
         return Ok(Carried::Same);
     }
+    // Rename identifiers, then merge the change into the first place where it fits.
     let (before, after) = (spelled(&before, words), spelled(&after, words));
     let mut why = Vec::new();
     for place in places {

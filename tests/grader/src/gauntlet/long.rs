@@ -152,6 +152,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         );
     }
     state.seed = seed;
+    // List the pieces of work that are not done.
     let pieces = rays.div_ceil(PIECE);
     let open = |trial: &Trial, piece: &u64| {
         state.done.get(&trial.name()).is_none_or(|done| !done.pieces.contains(piece))
@@ -161,6 +162,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         .flat_map(|trial| (0..pieces).map(move |piece| (trial, piece)))
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
+    // Run them on all cores and store the progress regularly.
     let meshes = closed();
     let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
     let bar = bar_of_steps(work.len());

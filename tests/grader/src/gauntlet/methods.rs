@@ -173,6 +173,7 @@ macro_rules! precision {
 
             /// Returns Woop's edge functions, the sheared z of the corners, and the direction's z.
             fn sheared(ray: &Ray, triangle: &Triangle) -> ([$Float; 3], [$Float; 3], $Float) {
+                // Choose the direction's largest component as the z axis.
                 let [o, d, a, b, c] = numbers(ray, triangle);
                 let size = d.abs();
                 let z = if size.x >= size.y && size.x >= size.z {
@@ -182,6 +183,7 @@ macro_rules! precision {
                 } else {
                     2
                 };
+                // Shear the corners so that the ray runs along z.
                 let (x, y) = ((z + 1) % 3, (z + 2) % 3);
                 let shear = [d[x] / d[z], d[y] / d[z]];
                 let project = |corner: $Vector| {

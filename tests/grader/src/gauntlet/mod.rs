@@ -51,7 +51,7 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// `grader cost`: the same line as `raykata cost`.
+/// `grader cost`, with the same options as `raykata cost`.
 pub static COST: Spec = Spec {
     name: "grader cost",
     about: "The same as `raykata cost`, with a chapter about triangle tests.",

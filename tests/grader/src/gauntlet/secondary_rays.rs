@@ -26,12 +26,14 @@ impl Pane {
     /// Draws a random pane. Its size is 0.001 to 100,000, it lies up to 100 sizes away from the origin, and the camera is
     /// 1 to 10 sizes away from it along the normal.
     fn draw(random: &mut Random) -> Pane {
+        // Draw size, position and orientation of the pane.
         let size = 10f32.powf(1.0 + 4.0 * random.signed());
         let middle = size * 10f32.powf(3.0 * random.unit() - 1.0) * random.in_cube();
         let normal = random.in_cube().try_normalize().unwrap_or(Vec3::Y);
         let (side, up) = normal.any_orthonormal_pair();
         let corner = |x: f32, y: f32| middle + size * (x * side + y * up);
         let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        // Draw the position of the camera.
         let lean = 0.9 * random.signed() * side + 0.9 * random.signed() * up;
         let eye = middle + size * (1.0 + 9.0 * random.unit()) * (normal + lean);
         Pane { corners, normal, middle, eye }

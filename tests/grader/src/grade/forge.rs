@@ -77,6 +77,7 @@ impl Forge {
     pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
         let mut cpu = Duration::ZERO;
         let mut replaced = BTreeMap::new();
+        // Compile the exercises. Replace the files with errors until the rest compiles.
         loop {
             self.lay_out(scratch, files, &replaced)?;
             let ended = self.compile_exercises(scratch)?;
@@ -107,6 +108,7 @@ impl Forge {
             }
             replaced.extend(verdict.into_iter().map(|(name, why)| (name, (Outcome::DoesNotCompile, why))));
         }
+        // Link the worker.
         let ended = self.link_worker(scratch)?;
         cpu += ended.cpu;
         let worker = scratch.join("out/worker");

@@ -88,11 +88,13 @@ impl Grader {
         }
         // Compile in a temporary folder outside of the kit and of the submission.
         let scratch = tempfile::tempdir().context("cannot make a temporary folder for the compiler")?;
+        // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
             files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
         let forged = self.forge.build(scratch.path(), &kept)?;
         graded.cpu_ms = forged.cpu.as_millis() as u64;
+        // Report the files that do not compile.
         for (name, (_, messages)) in &forged.replaced {
             let what =
                 "does not compile; the empty exercise replaces it, so that the other files can be graded";
@@ -100,6 +102,7 @@ impl Grader {
             graded.compiler += messages;
         }
         graded.compiler = clean(&graded.compiler, MOST_FROM_COMPILER);
+        // Run the checks.
         let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
         let started = Instant::now();
         graded.checks = self.judge.judge(&forged.worker, &lost, may_remember);
@@ -147,12 +150,14 @@ impl Grader {
                 }
             };
             may_remember |= reading.may_remember;
+            // Drop the findings of rules that are switched off.
             let against: Vec<String> = reading
                 .findings
                 .iter()
                 .filter(|finding| !self.allowed.contains(&finding.rule))
                 .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
                 .collect();
+            // Refuse the file if findings remain, and report the first ones.
             if !against.is_empty() {
                 let more = against.len().saturating_sub(MOST_FINDINGS);
                 let mut told = against[..against.len() - more].join("\n");

@@ -41,7 +41,7 @@ const MOST_SAID: usize = 2048;
 
 /// Checks, seed and sandbox with which submissions are judged.
 pub struct Judge {
-    /// In the order of the lecture.
+    /// The checks, in the order of the lecture.
     checks: Vec<Put>,
     /// Picks the hidden inputs.
     seed: u64,
@@ -80,10 +80,12 @@ impl Judge {
     /// the seed runs only once per submission. If the reference itself fails a check with this seed, the check uses only
     /// the public inputs, and a warning is printed.
     pub fn of(root: &Path, stages: &[u8], seed: u64, confinement: Confinement) -> Result<Judge> {
+        // Collect the checks of the stages, and build the reference.
         checks::golden::seal();
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
+        // Compare the questions of each check with the public seed and with the hidden one.
         let hides = |reference: &Arc<Worker>, check: &&'static Check| {
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed));
@@ -125,6 +127,7 @@ impl Judge {
             .checks
             .iter()
             .map(|put| {
+                // Use the process of the check before if it may be used again, otherwise a new one.
                 let asked = seasoned.take().map(|worker| (self.ask(put, worker.clone(), until), worker));
                 // Earlier questions cannot cause these outcomes.
                 let settled = |asked: &(Answered, Arc<Worker>)| {
@@ -177,10 +180,12 @@ impl Judge {
         // Use the public inputs first, so that students can reproduce the message.
         let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
         let known = examine(0);
+        // If these pass, use the hidden inputs.
         let answered = match outcome(&known) {
             Outcome::Passed if !put.hides => Answered::new(Outcome::Passed, ""),
             Outcome::Passed => match outcome(&examine(self.seed)) {
                 Outcome::Wrong | Outcome::NotWritten => {
+                    // Try further seeds to detect memorised answers.
                     let mut seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
                     let special = seeds.all(|seed| {
                         let again = outcome(&checks::examine(check, &kit, seed));

@@ -130,6 +130,7 @@ impl Shard {
 
 /// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    // Find the submissions of this part of the class.
     let (submissions, others) = submission::find(&options.submissions)
         .with_context(|| format!("cannot read the folder {}", options.submissions.display()))?;
     for other in others {
@@ -138,6 +139,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let mine = |one: &Submission| options.shard.is_none_or(|shard| shard.holds(&one.student));
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
+    // Open the database and begin or continue the session.
     crate::report::make_folder(&options.out)?;
     let store = Store::open(&options.out)?;
     let begun = store.session()?;
@@ -150,6 +152,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     store.begin(&session)?;
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     store.retain(&names)?;
+    // Grade all submissions and write the reports.
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;

@@ -64,6 +64,7 @@ impl GradingOptions {
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
         };
+        // Run the checks against the reference to prepare the judge.
         let judge = Judge::of(root, &session.stages, session.seed, confinement)?;
         let allowed = self.allow.clone();
         Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), confinement, allowed }, session))
@@ -122,6 +123,7 @@ fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     let mut hash = Sha256::new();
     hash.update(forge.fingerprint());
     hash.update(allow.join(","));
+    // Add all files that decide a grade to the fingerprint.
     let decide = ["tests/checks", "tests/golden", "tests/oracle", "tests/rubric.toml"];
     let mut waiting: Vec<PathBuf> =
         decide.iter().map(|path| root.join(path)).filter(|path| path.exists()).collect();

@@ -78,17 +78,20 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let place = tempfile::tempdir()?;
     let class = place.path().join("class");
     fs::create_dir(&class)?;
+    // Generate the submissions.
     let roles = roles(root, options)?;
     let mut students: BTreeMap<String, Role> = BTreeMap::new();
     for (number, role) in roles.into_iter().enumerate() {
         let student = hand_in(root, &class, number, &role)?;
         students.insert(student, role);
     }
+    // Grade the class and measure the time.
     let temporary = tempfile::tempdir()?;
     let out = options.out.as_deref().unwrap_or(temporary.path());
     let started = Instant::now();
     super::run(root, &grade_options(&class, out, options))?;
     let seconds = started.elapsed().as_secs_f64();
+    // Compare the grades with the known ones.
     let graded = Store::open(out)?.class()?;
     let complaints = compare(root, &students, &graded);
     complaints.iter().for_each(|complaint| println!("{complaint}"));

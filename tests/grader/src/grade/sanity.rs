@@ -62,6 +62,7 @@ pub fn fault(answer: &Answer) -> Option<String> {
 fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -> Option<String> {
     let mut reached = vec![false; n_nodes];
     let mut waiting = if n_nodes > 0 { vec![(0, 1)] } else { Vec::new() };
+    // Traverse the tree without recursion. Each node must be reached once, within the depth limit.
     while let Some((index, depth)) = waiting.pop() {
         match reached.get_mut(index) {
             None => return Some(format!("a child has index {index}, but there are {n_nodes} nodes")),

@@ -124,6 +124,7 @@ impl Store {
                 session.words()
             ),
         }
+        // Copy the grades. A student may be in only one part.
         let names = self.names()?;
         for graded in &other.students {
             ensure!(

@@ -98,6 +98,7 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
 pub fn take(path: &Path, wanted: &[String]) -> Taken {
     let mut gathering = Gathering { wanted, best: BTreeMap::new(), entries: 0, ignored: Vec::new() };
     let trouble = if path.is_dir() { gathering.folder(path) } else { archive::gather(path, &mut gathering) };
+    // Keep the best file of each name.
     let mut taken = Taken::default();
     for (name, candidate) in gathering.best {
         match candidate.text {
@@ -108,6 +109,7 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
             Err(what) => taken.remarks.push(Remark { file: candidate.path, what }),
         }
     }
+    // Add remarks about missing and ignored files.
     for name in wanted.iter().filter(|name| !taken.files.contains_key(*name)) {
         let what = "is missing; the empty exercise replaces it";
         taken.remarks.push(Remark { file: name.clone(), what: what.into() });
@@ -119,6 +121,7 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
     if more > 0 {
         taken.remarks.push(Remark { file: "…".into(), what: format!("{more} more files were ignored") });
     }
+    // Name the reason if there is no file at all.
     taken.trouble = match trouble {
         Err(error) => Some(error.to_string()),
         Ok(()) if taken.files.is_empty() => Some(format!(
@@ -192,6 +195,7 @@ impl Gathering<'_> {
 
     /// Keeps a wanted file unless a file with the same name and a better rank is known.
     fn offer(&mut self, path: &str, content: Result<impl Read, String>) {
+        // Rank the file by its folder and its depth.
         let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
         let place = match folder {
             _ if folder == "exercises/src" || folder.ends_with("/exercises/src") => 0,
@@ -200,6 +204,7 @@ impl Gathering<'_> {
             _ => 3,
         };
         let rank = (place, path.split('/').count());
+        // Ignore it if a better file is known.
         if let Some(other) = self.best.get(name)
             && (other.rank, &other.path) <= (rank, &path.to_owned())
         {
@@ -207,6 +212,7 @@ impl Gathering<'_> {
             self.ignored.push(Remark { file: path.to_owned(), what });
             return;
         }
+        // Otherwise keep it, and ignore the earlier one.
         let candidate = Candidate { path: path.to_owned(), rank, text: content.and_then(text) };
         if let Some(other) = self.best.insert(name.to_owned(), candidate) {
             let what = format!("was ignored: {path} is graded");
@@ -271,6 +277,7 @@ fn text(content: impl Read) -> Result<(String, Option<String>), String> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
         return Err("was ignored: it is in UTF-16; save it as UTF-8".into());
     }
+    // Remove the byte order mark, decode the text and convert line ends.
     let without_mark = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let text = std::str::from_utf8(without_mark).map_err(|error| {
         format!("was ignored: byte {} is not valid UTF-8; save it as UTF-8", error.valid_up_to())

@@ -16,6 +16,7 @@ const SHORTEST: usize = 30;
 /// Returns the lines that identify answers, per file of `solutions/src`: long lines that occur neither in the exercises nor
 /// in the scaffold, the checks or the hints.
 pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
+    // Collect all text that students may read.
     let exercises = sync::exercises(root)?;
     let mut public: String = exercises.iter().map(|exercise| exercise.stub.as_str()).collect();
     let of_code = FOLDERS.iter().filter(|(_, endings)| endings.contains(&"rs"));
@@ -23,6 +24,7 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         public.extend(texts(&root.join(known))?.into_iter().map(|(_, text)| text));
     }
     public += &super::text(root, "tests/rubric.toml")?;
+    // Keep the lines of each answer that do not occur there.
     let mut answers = BTreeMap::new();
     for exercise in &exercises {
         let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();

@@ -74,6 +74,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     }
     let parent = folder.parent().context("a hand-out needs a new or empty folder")?;
     crate::report::make_folder(parent)?;
+    // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
     let files = files(root)?;
     for (path, bytes) in &files {
@@ -81,6 +82,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         fs::create_dir_all(file.parent().unwrap_or(parent))?;
         fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
     }
+    // Stop if the draft contains an answer.
     let found = leaks(root, draft.path())?;
     ensure!(
         found.is_empty(),

@@ -89,6 +89,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
+    // Choose the changes to test.
     let mut journal = Journal::open(root, options.resume || options.again)?;
     if options.again {
         mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
@@ -97,6 +98,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     if mutants.is_empty() {
         bail!("there is no change to test");
     }
+    // Test them, and report the survivors that were not reviewed.
     try_all(root, &mutants, &mut journal, options.jobs.clamp(1, mutants.len()))?;
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
@@ -110,6 +112,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
+    // Report the reviewed changes that were noticed.
     let is_noticed = |fate: &Fate| !matches!(fate, Fate::Equivalent | Fate::DoesNotCompile);
     let noticed = tried.iter().filter(|(mutant, fate)| reviewed.has(mutant) && is_noticed(fate));
     let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();

@@ -25,9 +25,11 @@ pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
     let mut arguments = arguments.into_iter();
     let asked = Asked::from(&mut arguments)?;
     close_inherited()?;
+    // Make the kernel end this process together with the judge.
     prctl::set_pdeathsig(Signal::SIGKILL).context("the process cannot be made to end with its judge")?;
     // The judge may have ended before this took effect.
     ensure!(nix::unistd::getppid().as_raw() == asked.judge, "the judge has ended");
+    // Set all restrictions, then become the program.
     restrict_resources(asked.purpose, &asked.limits)?;
     prctl::set_no_new_privs().context("privileges cannot be dropped")?;
     if asked.confinement == Confinement::Full {

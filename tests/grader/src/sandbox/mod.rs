@@ -50,8 +50,8 @@ pub const NOT_LAUNCHED_BECAUSE: &str = "the sandbox: ";
 /// The purpose of a sandboxed program, which decides its rights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Answers calls over the socket that is its standard input: no files to write, no threads, no processes, no
-    /// sockets of its own. It reads itself and the shared libraries of the system.
+    /// A worker: answers calls over the socket that is its standard input. It may not write files, start threads or
+    /// processes, or open sockets. It may read only itself and the system's shared libraries.
     Worker,
     /// The syntax check: reads text and writes its findings. It has the rights of a worker.
     Reader,
@@ -180,6 +180,7 @@ impl Sandbox {
     /// Returns the command that runs `program` in this sandbox. Its environment contains only the search path of a linker
     /// and the folder for temporary files. You may add arguments; do not change the environment.
     pub fn command(&self, program: &Path) -> Command {
+        // Pass strictness, purpose, parent, limits, paths and program to the launcher.
         let limits = &self.limits;
         let mut command = Command::new(launcher());
         command
@@ -194,6 +195,7 @@ impl Sandbox {
             command.arg(paths.len().to_string()).args(paths.iter().map(|path| absolute(path)));
         }
         command.arg(absolute(program)).env_clear();
+        // Set the working folder and the environment.
         let start = self.writable.first().map_or_else(|| PathBuf::from("/"), |folder| absolute(folder));
         if self.purpose.writes() {
             command.env("TMPDIR", &start);

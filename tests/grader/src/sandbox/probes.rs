@@ -32,11 +32,13 @@ pub fn self_test() -> Result<Level> {
     );
     let sandbox = Sandbox::new(Purpose::Worker);
     let brief = Sandbox { limits: super::Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
+    // Run all tests at the same time.
     let (through, spun, flooded) = std::thread::scope(|scope| {
         let spun = scope.spawn(|| act_in(&brief, "spin", PATIENCE));
         let flooded = scope.spawn(|| act_in(&sandbox, "flood", PATIENCE));
         (got_through(&sandbox), spun.join(), flooded.join())
     });
+    // Collect the actions that succeeded.
     let mut through = through.context("the sandbox does not work on this machine")?;
     let how = |ended: std::thread::Result<Result<Ended>>| match ended {
         Ok(Ok(ended)) => Some(ended.how),

@@ -38,6 +38,7 @@ pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -
         scope.spawn(move || to_it.map(|mut pipe| pipe.write_all(stdin)));
         let stdout = scope.spawn(|| keep(stdout, cap, &flooded));
         let stderr = scope.spawn(|| keep(stderr, cap, &flooded));
+        // Wait for the end of the process, or for a reason to end it.
         let verdict = wait(&child, patience, &flooded);
         // End the processes even after an error, because otherwise the threads above never end.
         let ended = end(&mut child);
@@ -150,9 +151,11 @@ fn has_ended(child: &Child, flag: WaitPidFlag) -> io::Result<bool> {
 
 /// Ends a process and all processes that it has started.
 fn end(child: &mut Child) -> io::Result<(ExitStatus, Duration)> {
+    // Kill the leader and wait for its end, but do not reap it, so that its id stays that of the group.
     child.kill()?;
     has_ended(child, WaitPidFlag::empty())?;
     let cpu = processes::cpu_time(child.id()).unwrap_or_default();
+    // End the rest of the group, then reap the leader.
     let group_ended = processes::end_group(child.id());
     let status = child.wait()?;
     group_ended?;

@@ -49,6 +49,7 @@ fn try_one(
 ) -> Result<Tried> {
     let folder = tempfile::tempdir()?;
     let submission = make(attack, &Place { root, folder: folder.path() })?;
+    // Grade the submission, with and without the syntax check.
     let before = fingerprints(folder.path())?;
     let try_it = |expected: &Expectation| {
         let begin = Instant::now();
@@ -68,6 +69,7 @@ fn try_one(
         let (_, found) = try_it(expected);
         all.extend(found.into_iter().map(|what| format!("without the syntax check: {what}")));
     }
+    // Report changed files.
     let changed = changes(&before, &fingerprints(folder.path())?);
     all.extend(changed.into_iter().map(|path| format!("the attack changed {}", path.display())));
     Ok(Tried { attack: attack.clone(), graded, complaints: all })

@@ -24,6 +24,7 @@ pub fn build(root: &Path) -> Result<PathBuf> {
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
         .filter(|message| message["reason"] == "compiler-artifact")
         .collect();
+    // Collect the compiled libraries and compute their fingerprint.
     let files: BTreeSet<(String, PathBuf)> = artifacts
         .iter()
         .flat_map(|artifact| {

@@ -100,7 +100,7 @@ fn cut(text: String, cap: usize, before_mark: &str) -> String {
     if text.len() <= cap {
         return text;
     }
-    let mark = |n: usize| format!("{before_mark}[… {n} bytes more were cut]");
+    let mark = |n: usize| format!("{before_mark}[… {n} more bytes were cut]");
     // The note for the whole text is the longest possible one. If even that does not fit, cut the text without a note.
     let room = cap.checked_sub(mark(text.len()).len());
     let kept = upto(&text, room.unwrap_or(cap)).trim_end();
@@ -140,9 +140,9 @@ mod tests {
 
     #[test]
     fn what_is_cut_is_told() {
-        assert_eq!(clean(&"é".repeat(50), 60), format!("{}\n[… 70 bytes more were cut]", "é".repeat(15)));
+        assert_eq!(clean(&"é".repeat(50), 60), format!("{}\n[… 70 more bytes were cut]", "é".repeat(15)));
         assert_eq!(clean("äöü", 3), "ä");
-        assert_eq!(clean_line(&"x".repeat(100), 30), "[… 100 bytes more were cut]");
+        assert_eq!(clean_line(&"x".repeat(100), 30), "[… 100 more bytes were cut]");
         assert_eq!(clean_line("  two\n\twords ", 100), "two words");
     }
 

@@ -51,6 +51,7 @@ pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     students.sort_by_key(|&graded| (&graded.student, &graded.content, &graded.trouble));
     let students: Vec<Graded> = students.into_iter().cloned().collect();
     let pages = names::file_names(&students);
+    // Clean all texts.
     let session = Session {
         kit: clean_line(&class.session.kit, LINE),
         isolation: clean_line(&class.session.isolation, LINE),
@@ -59,11 +60,13 @@ pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     let class = &Class { session, students: students.iter().map(presentable).collect() };
     let tallies = tally::tallies(class);
 
+    // Write the tables and the files for programs.
     write(folder, "grades.csv", &tables::grades(class, &tallies, &pages)?)?;
     write(folder, "checks.csv", &tables::checks(class)?)?;
     write(folder, "timings.csv", &tables::timings(class, &pages)?)?;
     write(folder, "results.json", &machines::results(class)?)?;
     write(folder, "junit.xml", &junit::junit(class)?)?;
+    // Write the files of each student.
     for (graded, name) in class.students.iter().zip(&pages) {
         let page = student_page::student_page(graded, &class.session);
         write(folder, &format!("students/{name}.html"), page.as_bytes())?;
