@@ -109,7 +109,8 @@ impl Judge {
     /// Runs all checks against the program `worker`. Checks of the files in `replaced` get the outcome given there.
     ///
     /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets a new
-    /// process. Otherwise one process answers until a check fails; that check is repeated in a new process.
+    /// process. Otherwise one process answers until a check fails. A check with a wrong answer or a crash is then repeated
+    /// in a new process.
     pub fn judge(
         &self,
         worker: &Path,

@@ -140,7 +140,7 @@ pub fn sum<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> (u32, u32) {
     checks.fold((0, 0), |(earned, points), check| (earned + check.earned, points + check.points))
 }
 
-/// How a class was graded: the same for every submission of it.
+/// Kit, stages, seed and sandbox of the grading, the same for every submission of a class.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Session {
     /// Version of the kit and fingerprint of its checks and rubric.
