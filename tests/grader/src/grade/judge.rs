@@ -1,4 +1,4 @@
-//! The judge: runs the checks against the worker of a submission, over a pipe. The judge's process contains no code of the
+//! The judge: runs the checks against the worker of a submission, over a socket. The judge's process contains no code of the
 //! submission.
 
 use super::result::{CheckResult, Outcome, Picture};

@@ -48,7 +48,7 @@ pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Opti
         libc::SIGSYS => crashed("it made a system call that no exercise needs"),
         // Rust distinguishes the two by the process's memory map, which a sandbox hides.
         libc::SIGSEGV => crashed(
-            "the stack overflowed, or memory was touched that it does not own: look for an infinite recursion",
+            "the stack overflowed, or memory was touched outside of the program: look for infinite recursion",
         ),
         _ => return None,
     })

@@ -155,7 +155,7 @@ fn slowest(students: &[(&Graded, &str)]) -> Markup {
     html! {
         section #slowest {
             h2 { "Slowest" }
-            p.note { "Time of the build and the checks. It differs from run to run; everything else on this page stays the same." }
+            p.note { "Time of the build and the checks. Only this part of the page differs from run to run." }
             table.plain {
                 thead { tr { th { "student" } th.number { "seconds" } } }
                 tbody {
