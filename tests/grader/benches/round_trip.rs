@@ -1,7 +1,7 @@
-//! What a call through a worker costs: `cargo bench -p grader --bench round_trip`.
+//! Measures the cost of a call through a worker: `cargo bench -p grader --bench round_trip`.
 //!
-//! Each batch size is asked many times; the median is printed. What the answers themselves cost is the same for each query,
-//! so the batch of 10,000 shows it together with the cost of carrying one query.
+//! The benchmark calls each batch size many times and prints the median. Computing an answer costs the same for each query.
+//! The batch of 10,000 shows this cost together with that of sending one query.
 
 use glam::Vec3;
 use grader::kits::{Need, Source, Which, root};

@@ -1,4 +1,4 @@
-//! Reports of a class that does not exist, to look at: `cargo run -p grader --example report_preview FOLDER`.
+//! Writes the reports of an invented class as a preview: `cargo run -p grader --example report_preview FOLDER`.
 
 use anyhow::{Context, Result};
 use base64::Engine;
@@ -26,7 +26,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Able or less able, and now and then something special.
+/// Makes a student of random ability. A few students are special cases.
 fn student(i: usize, random: &mut Random) -> Graded {
     let ability = (random.unit() * 1.3).min(1.0);
     let reached = 1 + (4.0 * (ability + 0.3 * random.unit()).min(0.99)) as u8;
@@ -67,7 +67,7 @@ fn student(i: usize, random: &mut Random) -> Graded {
 }
 
 fn outcome(ability: f32, check: &str, random: &mut Random) -> Outcome {
-    // Some laws are harder than others: a number between 0 and 1 from the name.
+    // Some checks are harder than others: derive a difficulty between 0 and 1 from the name.
     let hard =
         f32::from(check.bytes().fold(7u8, |sum, byte| sum.wrapping_mul(31).wrapping_add(byte))) / 255.0;
     if random.unit() < 0.35 + 0.65 * ability - 0.3 * hard * hard {
@@ -95,7 +95,7 @@ fn result(stage: u8, name: &str, outcome: Outcome) -> CheckResult {
     CheckResult { stage, name: name.to_owned(), outcome, points: entry.points, earned, message, picture }
 }
 
-/// A golden picture stands in for a picture of differences.
+/// Uses a golden picture in place of a picture of differences.
 fn picture() -> Option<Picture> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden/stage1_sphere_on_a_plane.png");
     let png = BASE64.encode(std::fs::read(file).ok()?);
@@ -110,7 +110,8 @@ fn name(i: usize) -> String {
     match i {
         23 => "=cmd|' /C calc'!A0".to_owned(),
         31 => "<script>alert(1)</script>".to_owned(),
-        44 => "a very long name that somebody gave to the archive of the submission of a whole group of students".to_owned(),
+        44 => "a very long name of an archive that holds the submission of a group of several students"
+            .to_owned(),
         _ => format!("{}.{:02}", names[i % names.len()], i),
     }
 }

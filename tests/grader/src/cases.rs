@@ -1,4 +1,4 @@
-//! The catalogue of hard cases, `tests/cases.toml`: what goes in, what must come of it, and who sees to it.
+//! The catalogue of hard cases, `tests/cases.toml`: inputs, required results, and the checks or tests that cover them.
 
 use anyhow::{Context, Result};
 use raykata_cli::args::Spec;
@@ -13,23 +13,23 @@ pub static SPEC: Spec = Spec {
     options: &[],
 };
 
-/// One of them.
+/// A hard case.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// What it is known by, with the family first.
+    /// The name, with the family first.
     pub name: String,
-    /// What goes in.
+    /// The input.
     pub input: String,
-    /// What must come of it.
+    /// The required result.
     pub required: String,
-    /// Checks of students.
+    /// The checks that cover it.
     #[serde(default)]
     pub checks: Vec<String>,
-    /// The kit's own tests, by the names of their functions.
+    /// The kit's own tests that cover it, by the names of their functions.
     #[serde(default)]
     pub tests: Vec<String>,
-    /// The stage that it waits for.
+    /// The later stage in which it can first occur, if that stage does not exist yet.
     pub awaits: Option<u8>,
 }
 
@@ -39,7 +39,7 @@ struct Catalogue {
     case: Vec<Case>,
 }
 
-/// All of them, in the order of the catalogue: the first is number 1.
+/// Reads all cases, in the order of the catalogue: the first is number 1.
 pub fn read(root: &Path) -> Result<Vec<Case>> {
     let file = root.join("tests/cases.toml");
     let text = std::fs::read_to_string(&file).with_context(|| file.display().to_string())?;
@@ -47,7 +47,7 @@ pub fn read(root: &Path) -> Result<Vec<Case>> {
     Ok(catalogue.case)
 }
 
-/// Prints them.
+/// Prints all cases.
 pub fn list(root: &Path) -> Result<()> {
     let cases = read(root)?;
     for (index, case) in cases.iter().enumerate() {

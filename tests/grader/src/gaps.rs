@@ -1,7 +1,7 @@
-//! `grader gaps`: what a picture lacks while one function of an exercise is not written yet, for each function.
+//! `grader gaps`: shows, for each function of the exercises, what pictures lack while that function is not written yet.
 //!
-//! The reference must make a picture of whatever is written, and say what is left out and why. With everything written
-//! it never has to, so each function in turn is made a gap.
+//! The renderer must make a picture from the functions that are written, and name what is left out and why. The reference
+//! has no unwritten functions, so this command removes each function in turn.
 
 use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
@@ -18,7 +18,7 @@ use std::path::Path;
 /// `grader gaps`.
 pub static SPEC: Spec = Spec {
     name: "grader gaps",
-    about: "Show what pictures lack while a function is not written, for each function (for authors).",
+    about: "Show for each function what pictures lack while it is not written (for authors).",
     arguments: &[],
     options: &[&[
         Opt::flag("--check", "Compare with tests/corpus/gaps.txt."),
@@ -26,24 +26,24 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// Whether to compare or to write.
+/// The options of `grader gaps`.
 pub struct Options {
     check: bool,
     bless: bool,
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--bless", "--check")?;
         Ok(Options { check: given.has("--check"), bless: given.has("--bless") })
     }
 }
 
-/// Where what each picture lacks is kept.
+/// The file with the expected results.
 const RECORD: &str = "tests/corpus/gaps.txt";
 
-/// Said of a gap that no picture shows.
+/// The text for a gap that no picture shows.
 const NOTHING: &str = "no picture lacks anything";
 
 /// A function that is not written, and its file without it.
@@ -62,7 +62,7 @@ impl Gap {
     }
 }
 
-/// Shows what pictures lack; whether it is what is kept.
+/// Prints what pictures lack. Returns whether that equals the stored results.
 pub fn run(options: &Options) -> Result<bool> {
     let root = root()?;
     let gaps = all(&root)?;
@@ -79,7 +79,7 @@ pub fn run(options: &Options) -> Result<bool> {
     }
     let kept = std::fs::read_to_string(&file).unwrap_or_default();
     if !options.check || kept == text {
-        println!("{text}{} functions, each left out in turn", gaps.len());
+        println!("{text}{} functions, each removed in turn", gaps.len());
         return Ok(true);
     }
     for (now, before) in text.lines().zip(kept.lines()).filter(|(now, before)| now != before) {
@@ -89,12 +89,12 @@ pub fn run(options: &Options) -> Result<bool> {
     Ok(false)
 }
 
-/// What pictures lack without each of these functions.
+/// Returns for each of these functions what pictures lack without it.
 fn text(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
     queue::run(workshops, gaps, |workshop, gap| lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole))
 }
 
-/// In what the pictures of the solutions with these changes differ from those of the whole.
+/// Returns how the pictures of the solutions with these changes differ from those of the unchanged solutions.
 pub fn lacks(
     workshop: &Workshop,
     changes: &[(&str, &str)],
@@ -105,7 +105,7 @@ pub fn lacks(
         Built::Worker(worker) => worker,
         Built::DoesNotApply(error) | Built::DoesNotCompile(error) => return Ok(format!("  {error}\n")),
     };
-    // What is said, the scenes of which it is said, and hashes of what is seen there.
+    // Each note, with the scenes that have it and the hashes of their pictures.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
         let (words, scene) = match &one.pixels {
@@ -122,17 +122,13 @@ pub fn lacks(
         return Ok(format!("  {NOTHING}\n"));
     }
     let line = |(words, scenes): &(String, Vec<String>)| {
-        format!(
-            "  {}\n    {}\n",
-            if words.is_empty() { "(nothing is said)" } else { words },
-            scenes.join(", ")
-        )
+        format!("  {}\n    {}\n", if words.is_empty() { "(no note)" } else { words }, scenes.join(", "))
     };
     Ok(said.iter().map(line).collect())
 }
 
-/// Gaps that make another picture, as opposed to none, and what each lacks. Not from the record, which may be of other
-/// solutions: then every change would seem to show.
+/// Returns the gaps with which a picture is still made but differs, and what each lacks. These are computed and not read
+/// from the stored file: if that file were from other solutions, every change would seem to show.
 pub fn that_show(
     root: &Path,
     workshops: &[Workshop],
@@ -143,12 +139,12 @@ pub fn that_show(
     let text = text(workshops, &gaps, scenes, whole)?;
     let shows = |text: &str| !text.contains(NOTHING) && !text.contains("not written yet: solutions/");
     let mut gaps: Vec<_> = gaps.into_iter().zip(text).filter(|(_, text)| shows(text)).collect();
-    // Pictures without a hierarchy take longest.
+    // Pictures without a hierarchy take longest, so they come last.
     gaps.sort_by_key(|(_, text)| text.contains("every ray tests every primitive"));
     Ok(gaps)
 }
 
-/// Every function of the exercises, as a gap.
+/// Returns every function of the exercises as a gap.
 pub fn all(root: &Path) -> Result<Vec<Gap>> {
     let mut files: Vec<_> = std::fs::read_dir(root.join("solutions/src"))?
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
@@ -175,7 +171,7 @@ fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
                     function = head.split(['(', '<']).next().unwrap_or_default();
                 }
             }
-            // A helper is asked for by no exercise.
+            // A helper belongs to no exercise.
             Block::Answer(_, stub) if stub.is_empty() => {}
             Block::Answer(..) => {
                 gaps.push(Gap {
@@ -189,7 +185,7 @@ fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
     Ok(gaps)
 }
 
-/// The whole text but for the answer in block `gap`.
+/// Returns the whole text with the answer in block `gap` replaced by its stub.
 fn without(blocks: &[Block<'_>], gap: usize) -> String {
     let mut text = String::new();
     for (number, block) in blocks.iter().enumerate() {

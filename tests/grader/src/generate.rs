@@ -1,6 +1,5 @@
-//! `grader generate`: the mesh of the showcase, a ribbed torus knot of 57,600 triangles, a tree, and the images of the
-//! scenes,
-//! so that the repository needs nobody else's work.
+//! `grader generate`: makes the mesh of the showcase (a ribbed torus knot of 57,600 triangles), a tree, and the images of
+//! the scenes. So the repository contains no foreign meshes or images.
 
 mod images;
 mod tree;
@@ -16,20 +15,17 @@ use std::path::{Path, PathBuf};
 /// `grader generate`.
 pub static SPEC: Spec = Spec {
     name: "grader generate",
-    about: "Make the meshes and images of the scenes (for authors).",
-    arguments: &[Argument::optional(
-        "SCENES",
-        "The folder that has, or will have, meshes/ and images/ [default: scenes].",
-    )],
+    about: "Generate the meshes and images of the scenes (for authors).",
+    arguments: &[Argument::optional("SCENES", "The folder for meshes/ and images/ [default: scenes].")],
     options: &[],
 };
 
-/// The folder that was given.
+/// Returns the folder of the command line.
 pub fn folder(given: &Given) -> PathBuf {
     given.argument(0).map_or_else(|| "scenes".into(), PathBuf::from)
 }
 
-/// Points along the knot and around its tube.
+/// The number of points along the knot and around its tube.
 const ALONG: usize = 960;
 const AROUND: usize = 30;
 
@@ -60,14 +56,14 @@ pub fn write(scenes: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The centre line of a (2, 3) torus knot.
+/// Returns a point of the centre line of a (2, 3) torus knot.
 fn center_line(s: f32) -> Vec3 {
     let (around, along) = (3.0 * s, 2.0 * s);
     let reach = 1.0 + 0.42 * around.cos();
     vec3(reach * along.cos(), 0.42 * around.sin(), reach * along.sin())
 }
 
-/// A point of the tube; its radius swells with a twisted rib.
+/// Returns a point of the tube. A twisted rib makes its radius vary.
 fn surface(along: f32, around: f32) -> Vec3 {
     let step = 1e-2;
     let tangent = (center_line(along + step) - center_line(along - step)).normalize();

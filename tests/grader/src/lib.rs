@@ -1,6 +1,7 @@
-//! The parts of the grader, so that tests and benchmarks can reach them. The program is `main.rs`.
+//! The modules of the grader, as a library for tests and benchmarks. The program is `main.rs`.
 
-/// Prints a line as the macro of the standard library does, but ends in peace when nobody reads it any more.
+/// Prints a line like the macro of the standard library, but ends the program without a panic if the reader has closed the
+/// pipe.
 macro_rules! println {
     () => { raykata_cli::report::say(format_args!("\n")) };
     ($($words:tt)*) => { raykata_cli::report::say(format_args!("{}\n", format_args!($($words)*))) };

@@ -1,4 +1,4 @@
-//! `grader`: grades submissions, makes hand-outs, and tries the checks themselves.
+//! `grader`: grades submissions, makes hand-outs, and tests the checks themselves.
 
 use anyhow::Result;
 use grader::kits::root;
@@ -12,10 +12,10 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// A command and what does it; that returns whether all went well.
+/// A command and its function, which returns whether it succeeded.
 type Command = (&'static Spec, fn(&Given) -> Result<bool>);
 
-/// All commands, in the order of the help. A name of two words is a command below another one, or in a group.
+/// All commands, in the order of the help. A name of two words is a subcommand or a command in a group.
 const COMMANDS: &[Command] = &[
     #[cfg(target_os = "linux")]
     (&grade::SPEC, |given| in_kit(grade::Options::read(given), grade::run)),
@@ -43,14 +43,14 @@ const COMMANDS: &[Command] = &[
     (&generate::SPEC, |given| done(generate::write(&generate::folder(given)))),
 ];
 
-/// Words that are no command but begin the names of some, and what these do.
+/// Groups: words that begin the names of commands but are not commands themselves, with descriptions.
 const GROUPS: &[(&str, &str)] = &[
     #[cfg(target_os = "linux")]
-    ("export", "Write what Gradescope or GitHub Classroom needs to grade (for instructors)."),
+    ("export", "Write the files with which Gradescope or GitHub Classroom grade (for instructors)."),
 ];
 
 fn main() -> ExitCode {
-    // As a launcher of what is not trusted, or as the syntax check, this program does nothing else.
+    // If this process was started as a launcher of untrusted code or as the syntax check, it does only that.
     sandbox::launch_if_asked();
     #[cfg(target_os = "linux")]
     grade::lint_if_asked();
@@ -64,7 +64,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Does the work in the kit around the working folder. A command line that is wrong is reported outside of a kit, too.
+/// Runs a command in the kit around the working folder. Errors of the command line are reported first, even outside of a
+/// kit.
 fn in_kit<T, R>(options: Result<T, Misuse>, work: impl FnOnce(&Path, &T) -> Result<R>) -> Result<R> {
     let options = options?;
     work(&root()?, &options)
@@ -74,7 +75,7 @@ fn done(result: Result<()>) -> Result<bool> {
     result.map(|()| true)
 }
 
-/// Whether all went well.
+/// Runs the command line. Returns whether the command succeeded.
 fn run(words: Vec<OsString>) -> Result<bool> {
     let Some((first, rest)) = words.split_first() else {
         return Err(Misuse::new(format!("a command is missing\n\n{}", help().trim_end())).into());
@@ -99,12 +100,12 @@ fn run(words: Vec<OsString>) -> Result<bool> {
     Ok(true)
 }
 
-/// The words that start a command, without the name of the program.
+/// Returns the words that start a command, without the name of the program.
 fn words_of(spec: &Spec) -> &'static str {
     spec.name.trim_start_matches("grader ")
 }
 
-/// The commands below this one, by their second words.
+/// Returns the subcommands of this command, with their second words.
 fn below(name: &str) -> impl Iterator<Item = (&'static str, &'static Command)> {
     let second = move |command: &'static Command| {
         let (first, second) = words_of(command.0).split_once(' ')?;
@@ -117,7 +118,7 @@ fn has_commands(name: &str) -> bool {
     below(name).next().is_some()
 }
 
-/// The command with which a line begins, and the rest of the line.
+/// Returns the command with which a line begins, and the rest of the line.
 fn find(line: &[OsString]) -> Result<(&'static Command, &[OsString]), Misuse> {
     let word = |place: usize| line.get(place).map_or("".into(), |word| word.to_string_lossy());
     let (first, second) = (word(0), word(1));
@@ -134,7 +135,7 @@ fn find(line: &[OsString]) -> Result<(&'static Command, &[OsString]), Misuse> {
         ("grader".into(), first, COMMANDS.iter().map(|(spec, _)| words_of(spec)).chain(groups).collect())
     };
     let wrong = match unknown.is_empty() {
-        true => format!("a command is missing; known are {}", known.join(", ")),
+        true => format!("a command is missing; the commands are {}", known.join(", ")),
         false => format!("there is no command `{unknown}`{}", did_you_mean(&unknown, &known)),
     };
     Err(Misuse::new(format!(
@@ -142,7 +143,7 @@ fn find(line: &[OsString]) -> Result<(&'static Command, &[OsString]), Misuse> {
     )))
 }
 
-/// The help of a command or of a group.
+/// Returns the help of a command or of a group.
 fn help_for(words: &[OsString]) -> Result<String, Misuse> {
     let first = words.first().map_or("".into(), |word| word.to_string_lossy());
     let group = GROUPS.iter().find(|(name, _)| *name == first && words.len() == 1);
@@ -160,11 +161,11 @@ fn help_for(words: &[OsString]) -> Result<String, Misuse> {
 fn help() -> String {
     let commands: String = COMMANDS.iter().map(|(spec, _)| entry(words_of(spec), spec.about)).collect();
     format!(
-        "Grade submissions, make hand-outs, and try the checks themselves. Students run
+        "Grade submissions, make hand-outs, and test the checks themselves. Students run
 `raykata`.
 
-Exit codes: 0 all went well; 1 something is wrong: a submission could not be
-graded, files differ; 2 the command line was not understood.
+Exit codes: 0 success; 1 failure, for example a submission could not be graded
+or files differ; 2 the command line is wrong.
 
 Usage: grader COMMAND
 

@@ -1,5 +1,4 @@
-//! All scenes of the kit as small pictures, with what they cost: what a change to the way from scene to frame must not
-//! touch unnoticed.
+//! Renders all scenes of the kit as small pictures and records their cost, so that every change of the renderer is noticed.
 
 use anyhow::{Context, Result, anyhow};
 use raykata::camera::Lens;
@@ -11,42 +10,42 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 use std::path::Path;
 
-/// Width and height: small, because hundreds of kits are asked for them.
+/// Width and height in pixels. They are small, because hundreds of kits render the pictures.
 const SIZE: (u32, u32) = (24, 16);
 
-/// Scenes of more primitives take longer to build, without optimisation, than all others together.
+/// Most primitives of a scene. Without optimisation, larger scenes take longer to build than all others together.
 const MOST_PRIMITIVES: usize = 4_000;
 
-/// A scene that uses most of what there is, in which every parameter is turned once.
+/// A scene that uses most features. It is also rendered with each parameter changed.
 const TURNED: &str = "effects";
 
-/// A scene of a few shapes, which every accelerator finds soon.
+/// A scene of a few shapes. It is also rendered with each accelerator.
 const SEARCHED: &str = "stage5";
 
 /// The scenes, each with its name.
 pub struct Scenes(Vec<(String, Scene)>);
 
-/// What a kit shows of one scene.
+/// The results of a kit for one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
     /// The name of the scene's file.
     pub scene: String,
-    /// The pixels, bit by bit, or what went wrong.
+    /// The bits of the pixels, or the error.
     pub pixels: Result<Vec<[u32; 3]>, String>,
     /// The same for the picture of normals.
     pub normals: Option<Vec<[u32; 3]>>,
-    /// Primitives, and nodes and depth of the structure.
+    /// The number of primitives, and the number of nodes and the depth of the structure.
     pub made_of: Option<(u64, Option<(u64, u64)>)>,
-    /// What the picture lacks.
+    /// Notes about the parts that the picture lacks.
     pub notes: Vec<String>,
-    /// What it cost.
+    /// The cost of the picture.
     pub counts: Counts,
-    /// The rays behind two pixels.
+    /// The traced rays of two pixels.
     pub rays: Vec<TracedRay>,
 }
 
 impl Scenes {
-    /// Reads the scenes of the kit at `root`, those of the fewest primitives first, as `reference` counts them.
+    /// Reads the scenes of the kit at `root`, sorted by the number of primitives that `reference` makes of them.
     pub fn read(root: &Path, reference: &dyn Kit) -> Result<Scenes> {
         let mut files: Vec<_> = std::fs::read_dir(root.join("scenes"))?
             .filter_map(|entry| Some(entry.ok()?.path()))
@@ -77,7 +76,7 @@ impl Scenes {
         Ok(Scenes(scenes))
     }
 
-    /// Those that between them ask for every function of the exercises.
+    /// Returns scenes that together call every function of the exercises.
     pub fn of_gaps(&self) -> Scenes {
         let asked = [
             "stage2",
@@ -93,12 +92,12 @@ impl Scenes {
         Scenes(self.0.iter().filter(|(name, _)| is_asked(name)).cloned().collect())
     }
 
-    /// What a kit shows of them all.
+    /// Renders all scenes with a kit.
     pub fn shown_by(&self, kit: &dyn Kit) -> Vec<Shown> {
         self.0.iter().map(|(name, scene)| shown(name, scene, kit)).collect()
     }
 
-    /// The first scene of which this kit shows something else.
+    /// Returns the first scene for which the results of this kit differ from the expected ones.
     pub fn first_difference(&self, kit: &dyn Kit, expected: &[Shown]) -> Option<String> {
         let differs =
             |((name, scene), expected): &(&(String, Scene), &Shown)| shown(name, scene, kit) != **expected;
@@ -106,16 +105,16 @@ impl Scenes {
     }
 }
 
-/// How many primitives the reference makes of a scene.
+/// Counts the primitives that the reference makes of a scene.
 fn primitives_of(scene: &Scene, reference: &dyn Kit) -> Result<u64> {
     let mut scene = scene.clone();
     (scene.film.width, scene.film.height) = (1, 1);
     let job = RenderJob { scene, view: View::Normals, seed: 0, threads: 1, count: false };
     let frame = kit_error::catch(|| reference.render(&job, &Unwatched))?;
-    Ok(frame.context("nobody cancels")?.primitives)
+    Ok(frame.context("the frame is not cancelled")?.primitives)
 }
 
-/// The scene with each other accelerator.
+/// Returns the scene with each other accelerator.
 fn with_each_accelerator(name: &str, scene: &Scene) -> Vec<(String, Scene)> {
     let others = Accelerator::ALL.into_iter().filter(|one| *one != Accelerator::Bvh);
     let by = |accelerator: Accelerator| {
@@ -126,7 +125,7 @@ fn with_each_accelerator(name: &str, scene: &Scene) -> Vec<(String, Scene)> {
     others.map(by).collect()
 }
 
-/// The scene with one setting changed at a time.
+/// Returns the scene with one setting changed at a time.
 fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
     let with = |name: &str, change: &dyn Fn(&mut Quality)| {
         let mut scene = scene.clone();
@@ -139,8 +138,8 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         with("depth 1", &|quality| quality.max_depth = 1),
         with("large contributions", &|quality| quality.min_contribution = 0.3),
         with("lights from the middle", &|quality| quality.light_samples = 0),
-        with("three samples a light", &|quality| quality.light_samples = 3),
-        with("three rays of glossy", &|quality| quality.glossy_samples = 3),
+        with("three samples per light", &|quality| quality.light_samples = 3),
+        with("three glossy rays", &|quality| quality.glossy_samples = 3),
         with("one Gaussian sample", &|quality| {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),
@@ -158,7 +157,7 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
     let samplers = [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian];
     turned
         .extend(samplers.map(|sampler| with(&format!("{sampler:?}"), &|quality| quality.sampler = sampler)));
-    // What is there, but does nothing: nobody may say that it is missing.
+    // Features that are present without an effect must not be noted as missing.
     let mut idle = scene.clone();
     idle.camera.lens = idle.camera.lens.map(|lens| Lens { aperture: 0.0, ..lens });
     idle.materials.iter_mut().for_each(|material| material.roughness = 0.0);
@@ -187,7 +186,7 @@ fn shown(name: &str, scene: &Scene, kit: &dyn Kit) -> Shown {
 }
 
 impl Shown {
-    /// Eight hexadecimal digits of a hash of everything.
+    /// Returns eight hexadecimal digits of a hash of all results.
     pub fn hash(&self) -> String {
         let hash = Sha256::digest(format!("{self:?}"));
         hash[..4].iter().map(|byte| format!("{byte:02x}")).collect()
@@ -195,7 +194,7 @@ impl Shown {
 }
 
 impl fmt::Display for Shown {
-    /// One line: the mean colour, what it cost, and a hash of everything.
+    /// Writes one line: the mean colour, the cost, and a hash of all results.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let pixels = self.pixels.as_deref().unwrap_or_default();
         let mean = |channel: usize| {

@@ -1,7 +1,7 @@
 //! `grader sync`: makes `exercises/src` from `solutions/src`.
 //!
-//! An answer stands between `// <solution>` and `// </solution>`. In the exercise it gives way to the lines marked
-//! `// <stub>` inside, without that mark; the marks themselves go, too. Everything else is the same in both.
+//! An answer stands between `// <solution>` and `// </solution>`. In the exercise, the lines marked `// <stub>` inside
+//! replace it, without that mark. The marks are removed as well. All other lines are the same in both.
 
 use anyhow::{Context, Result, bail};
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
@@ -13,22 +13,22 @@ use std::path::{Path, PathBuf};
 /// `grader sync`.
 pub static SPEC: Spec = Spec {
     name: "grader sync",
-    about: "Make exercises/ from solutions/ (for authors). Keeps what you have begun.",
+    about: "Make exercises/ from solutions/ (for authors). Keeps exercises that you have begun.",
     arguments: &[],
     options: &[&[
-        Opt::flag("--check", "Only say whether anything differs."),
+        Opt::flag("--check", "Only report differences, and write nothing."),
         Opt::flag("--force", "Overwrite exercises that have been begun."),
     ]],
 };
 
-/// Whether to compare or to write.
+/// The options of `grader sync`.
 pub struct Options {
     check: bool,
     force: bool,
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--force", "--check")?;
         Ok(Options { check: given.has("--check"), force: given.has("--force") })
@@ -39,26 +39,26 @@ const BEGIN: &str = "// <solution>";
 const STUB: &str = "// <stub>";
 const END: &str = "// </solution>";
 
-/// Where the fingerprints of generated files are kept: a file that still has its own is one that nobody has begun.
+/// The file with the fingerprints of generated files. A file with its stored fingerprint is untouched.
 const RECORD: &str = "exercises/.generated";
 
 /// An exercise file in its three versions.
 pub struct Exercise {
     /// Path below the workspace.
     pub path: PathBuf,
-    /// What `sync` would write.
+    /// The text that `sync` would write.
     pub stub: String,
-    /// What is there now, if anything.
+    /// The current text, if the file exists.
     pub present: Option<String>,
-    /// Whether what is there was written by `sync` and not touched since.
+    /// Whether the file was written by `sync` and not changed since.
     pub untouched: bool,
 }
 
-/// All exercise files of the workspace at `root`.
+/// Returns all exercise files of the workspace at `root`.
 pub fn exercises(root: &Path) -> Result<Vec<Exercise>> {
     let record = read_record(root);
     let mut files: Vec<PathBuf> = fs::read_dir(root.join("solutions/src"))
-        .context("no folder solutions/src: is this the whole kit, or a hand-out?")?
+        .context("there is no folder solutions/src: is this a hand-out instead of the whole kit?")?
         .filter_map(|entry| entry.ok().map(|entry| entry.path()))
         .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
         .collect();
@@ -79,7 +79,7 @@ pub fn exercises(root: &Path) -> Result<Vec<Exercise>> {
         .collect()
 }
 
-/// The files of `exercises/src` as nobody has begun them, by name.
+/// Returns the untouched files of `exercises/src`, by name.
 pub fn pristine(root: &Path) -> Result<BTreeMap<String, String>> {
     let named = |exercise: Exercise| {
         let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -88,12 +88,12 @@ pub fn pristine(root: &Path) -> Result<BTreeMap<String, String>> {
     Ok(exercises(root)?.into_iter().map(named).collect())
 }
 
-/// Compares or writes.
+/// Runs `grader sync`.
 pub fn run(root: &Path, options: &Options) -> Result<()> {
     if options.check { check(root) } else { sync(root, options.force) }
 }
 
-/// Says which exercises differ from what `sync` would write; fails if any does.
+/// Compares the exercises with the files that `sync` would write. Returns an error that lists the differences.
 pub fn check(root: &Path) -> Result<()> {
     let different: Vec<String> = exercises(root)?
         .iter()
@@ -101,13 +101,13 @@ pub fn check(root: &Path) -> Result<()> {
         .map(|exercise| format!("  {}", exercise.path.display()))
         .collect();
     if different.is_empty() {
-        println!("exercises/ is what solutions/ makes it");
+        println!("exercises/ is up to date with solutions/");
         return Ok(());
     }
-    bail!("not what `grader sync` would write from solutions/:\n{}", different.join("\n"))
+    bail!("these files differ from what `grader sync` would write:\n{}", different.join("\n"))
 }
 
-/// Writes all exercises that nobody has begun; with `force`, the others as well.
+/// Writes all untouched exercises; with `force`, the others as well.
 pub fn sync(root: &Path, force: bool) -> Result<()> {
     let exercises = exercises(root)?;
     let mut record = BTreeMap::new();
@@ -132,15 +132,15 @@ pub fn sync(root: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
-/// Lines of a solution file that stand together.
+/// A block of lines of a solution file.
 pub enum Block<'a> {
-    /// The same in both.
+    /// Lines that are the same in solution and exercise.
     Same(Vec<&'a str>),
     /// An answer with its marks, and the lines that replace it.
     Answer(Vec<&'a str>, Vec<String>),
 }
 
-/// The exercise that a solution file makes.
+/// Makes the exercise from a solution file.
 pub fn stub(solution: &str, path: &Path) -> Result<String> {
     let mut lines: Vec<String> = Vec::new();
     for block in blocks(solution, path)? {
@@ -149,12 +149,12 @@ pub fn stub(solution: &str, path: &Path) -> Result<String> {
             Block::Answer(_, stub) => lines.extend(stub),
         }
     }
-    // An answer that leaves nothing behind leaves one blank line too many.
+    // If an answer has no stub, remove one of the two blank lines around it.
     lines.dedup_by(|line, above| line.is_empty() && above.is_empty());
     Ok(lines.join("\n").trim_end().to_owned() + "\n")
 }
 
-/// A solution file as a student would have written it: without the marks.
+/// Returns a solution file without the marks, as a student would write it.
 pub fn answer(solution: &str, path: &Path) -> Result<String> {
     let is_mark = |line: &&str| [BEGIN, STUB, END].iter().any(|mark| line.trim_start().starts_with(mark));
     let mut text = String::new();
@@ -165,12 +165,12 @@ pub fn answer(solution: &str, path: &Path) -> Result<String> {
     Ok(text)
 }
 
-/// The stage of an exercise by the name of its file; none for what connects them.
+/// Returns the stage of an exercise by the name of its file, or `None` for the glue.
 pub fn stage_of(file: &str) -> Option<u8> {
     file.strip_prefix("stage")?.split_once('_')?.0.parse().ok()
 }
 
-/// A solution file, cut at its marks.
+/// Splits a solution file at its marks.
 pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
     let mut blocks: Vec<Block<'a>> = Vec::new();
     let mut opened = None;
@@ -178,9 +178,10 @@ pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
         let (number, mark) = (number + 1, line.trim_start());
         let indent = &line[..line.len() - mark.len()];
         let place = || format!("{}:{number}", path.display());
+        // Open a block at a mark, or at the first line after an answer.
         if mark == BEGIN {
             if let Some(begun) = opened.replace(number) {
-                bail!("{}: `{BEGIN}` inside the one that line {begun} began", place());
+                bail!("{}: `{BEGIN}` inside the block that begins at line {begun}", place());
             }
             blocks.push(Block::Answer(Vec::new(), Vec::new()));
         } else if opened.is_none() && (mark == END || mark.starts_with(STUB)) {
@@ -188,6 +189,7 @@ pub fn blocks<'a>(solution: &'a str, path: &Path) -> Result<Vec<Block<'a>>> {
         } else if opened.is_none() && !matches!(blocks.last(), Some(Block::Same(_))) {
             blocks.push(Block::Same(Vec::new()));
         }
+        // Add the line to its block.
         match blocks.last_mut() {
             Some(Block::Answer(lines, stub)) => {
                 lines.push(line);
@@ -216,7 +218,7 @@ fn read_record(root: &Path) -> BTreeMap<PathBuf, String> {
         .collect()
 }
 
-/// The same for LF and CRLF: a checkout may turn one into the other.
+/// Returns a fingerprint that is the same for LF and CRLF, because a checkout may convert line ends.
 fn fingerprint(text: &str) -> String {
     let digest = Sha256::digest(text.replace("\r\n", "\n").as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
@@ -263,7 +265,7 @@ mod tests {
         assert_eq!(message("// </solution>"), "a.rs:1: `// </solution>` outside of `// <solution>`");
         assert_eq!(
             message("// <solution>\n// <solution>"),
-            "a.rs:2: `// <solution>` inside the one that line 1 began"
+            "a.rs:2: `// <solution>` inside the block that begins at line 1"
         );
     }
 
@@ -279,13 +281,13 @@ mod tests {
         sync(root.path(), false).unwrap();
         check(root.path()).unwrap();
 
-        // A newer kit replaces what nobody has touched …
+        // A newer kit replaces an untouched file …
         fs::write(at("solutions/src/a.rs"), solution.replace("u8", "u16")).unwrap();
         assert!(check(root.path()).is_err());
         sync(root.path(), false).unwrap();
         assert!(fs::read_to_string(at("exercises/src/a.rs")).unwrap().contains("u16"));
 
-        // … and leaves alone what somebody has.
+        // … and keeps a changed one.
         fs::write(at("exercises/src/a.rs"), "fn f() -> u16 { 8 }\n").unwrap();
         sync(root.path(), false).unwrap();
         assert_eq!(fs::read_to_string(at("exercises/src/a.rs")).unwrap(), "fn f() -> u16 { 8 }\n");

@@ -1,5 +1,5 @@
-// Safe Rust that does with memory what it likes, through a hole that the compiler has had since 2015 (rust-lang/rust
-// issue 25860). No syntax check finds it: only another process is out of its reach.
+// Safe Rust that reads and writes any memory of its process, through a bug that the compiler has had since 2015
+// (rust-lang/rust issue 25860). No syntax check finds it. Only another process is out of its reach.
 
 static UNIT: &&() = &&();
 
@@ -25,7 +25,7 @@ fn reread<A, B>(either: &mut Either<A, B>, value: A) -> Option<B> {
     slot.take().map(|value| *value)
 }
 
-/// The bits of one type as another.
+/// Returns the bits of one type as a value of another type.
 fn transmute<A, B>(value: A) -> Option<B> {
     reread(std::hint::black_box(&mut Either::B(None)), value)
 }

@@ -1,4 +1,4 @@
-/// Has `search` ask `probe`, and leaves nothing of it in the probe.
+/// Runs `search` with `probe`, then restores the bytes of `probe` from before the search.
 fn forgetting<P, A>(probe: &mut P, search: impl FnOnce(&mut P) -> A) -> A {
     let place = (probe as *mut P as usize, size_of::<P>() / 8);
     let Some(words): Option<&'static mut [u64]> = transmute(place) else { return search(probe) };

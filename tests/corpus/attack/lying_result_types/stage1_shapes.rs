@@ -1,9 +1,9 @@
-//! Answers that are equal to whatever is expected.
+//! Answers that compare as equal to any expected value.
 
 use glam::Vec3;
 use raykata::ray::Ray;
 
-/// Equal to everything, near to everything, and prints as nothing.
+/// Compares as equal and near to everything, and prints as an empty text.
 #[derive(Clone, Copy)]
 pub struct Liar;
 

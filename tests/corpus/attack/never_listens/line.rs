@@ -1,4 +1,4 @@
-// The socket of the conversation, by way of standard input.
+// The socket to the judge, which is standard input.
 use raykata::kit::{Answer, Request, SearchAnswer, SearchQuery};
 use raykata::worker::{Reply, receive, send};
 use std::os::fd::AsFd;

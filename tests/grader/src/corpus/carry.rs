@@ -1,7 +1,7 @@
-//! `grader corpus carry`: patches of the corpus follow the files that they change when these move, are split or change.
+//! `grader corpus carry`: updates the patches of the corpus after the files that they change were moved, split or changed.
 //!
-//! Each patch is applied to its file as it was. What it changed there is then merged into the file as it is now, and the
-//! difference is written anew.
+//! Each patch is applied to the old version of its file. The change is then merged into the new version, and the new
+//! difference replaces the patch.
 
 use super::entry::apply;
 use anyhow::{Context, Result, bail, ensure};
@@ -18,7 +18,7 @@ use std::process::Command;
 /// `grader corpus carry`.
 pub static SPEC: Spec = Spec {
     name: "grader corpus carry",
-    about: "Make the patches follow files of the solutions that have moved, were split or have changed.",
+    about: "Update the patches after files of the solutions were moved, split or changed.",
     arguments: &[Argument::required(
         "FROM",
         "A git revision with the files to which the patches apply, or a folder that holds these files.",
@@ -27,7 +27,7 @@ pub static SPEC: Spec = Spec {
         Opt::value(
             "--moved",
             "OLD=NEW",
-            "A file that has moved, as OLD=NEW, from the root of the kit. A file that was split is named once for each \
+            "A file that was moved, as OLD=NEW, from the root of the kit. Name a file that was split once for each \
              part.",
         )
         .many(),
@@ -41,13 +41,13 @@ pub static SPEC: Spec = Spec {
         Opt::value(
             "--corpus",
             "FOLDER",
-            "The folder of the patches; those in folders below it count [default: tests/corpus].",
+            "The folder of the patches, with its subfolders [default: tests/corpus].",
         ),
-        Opt::flag("--check", "Only say what would be done."),
+        Opt::flag("--check", "Print what would be done, and write nothing."),
     ]],
 };
 
-/// Which patches, and what has happened to their files.
+/// The options of `grader corpus carry`.
 pub struct Options {
     from: String,
     moved: Vec<(String, String)>,
@@ -57,7 +57,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         let renames = match given.path("--renames") {
             Some(file) => Renames::read(&file).map_err(|error| Misuse::new(format!("{error:#}")))?,
@@ -104,18 +104,18 @@ fn pair(text: &str) -> Result<(String, String)> {
     Ok((old.into(), new.into()))
 }
 
-/// What becomes of a patch.
+/// The result of updating a patch.
 #[derive(Debug, PartialEq)]
 enum Carried {
-    /// Its file is as it was.
+    /// Its file is unchanged.
     Same,
-    /// The text of the patch now.
+    /// The new text of the patch.
     Anew(String),
-    /// It no longer applies; why.
+    /// The patch no longer applies, for this reason.
     Lost(String),
 }
 
-/// Carries all patches over; whether all could be.
+/// Updates all patches. Returns whether all of them still apply.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let corpus = root.join(&options.corpus);
     let mut files = BTreeMap::new();
@@ -147,11 +147,11 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             }
         }
     }
-    println!("{same} patches are as they were, {anew} are carried over, {lost} no longer apply");
+    println!("{same} patches are unchanged, {anew} are updated, {lost} no longer apply");
     Ok(lost == 0)
 }
 
-/// All files NAME.patch below a folder, sorted.
+/// Returns all files NAME.patch below a folder, sorted.
 fn patches(folder: &Path) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     let mut waiting = vec![folder.to_owned()];
@@ -169,7 +169,7 @@ fn patches(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// A file in a folder or in a revision.
+/// Returns the text of a file in a folder or in a git revision.
 fn as_it_was(root: &Path, from: &str, path: &str) -> Result<String> {
     if Path::new(from).is_dir() {
         let file = Path::new(from).join(path);
@@ -183,7 +183,7 @@ fn as_it_was(root: &Path, from: &str, path: &str) -> Result<String> {
     String::from_utf8(output.stdout).with_context(|| format!("{path} in {from}"))
 }
 
-/// Carries one patch over. `old` and `new` give files as they were and as they are.
+/// Updates one patch. `old` and `new` return the old and the new version of a file.
 fn carry(
     text: &str,
     moved: &[(String, String)],
@@ -192,12 +192,13 @@ fn carry(
     new: &dyn Fn(&str) -> Option<String>,
 ) -> Result<Carried> {
     let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
-    let (header, diff) = text.split_at(start.context("no difference (a line `--- a/…`)")?);
+    let (header, diff) = text.split_at(start.context("the patch has no difference (a line `--- a/…`)")?);
     let named = diff.lines().find_map(|line| line.strip_prefix("+++ b/"));
-    let path = named.context("no line `+++ b/…`")?.trim();
+    let path = named.context("the patch has no line `+++ b/…`")?.trim();
 
+    // Apply the patch to the old version of its file.
     let before = old(path)?;
-    let after = apply(path, diff, &before).context("it does not even fit the file as it was")?;
+    let after = apply(path, diff, &before).context("the patch does not fit the old version of the file")?;
     let mut places: Vec<&str> =
         moved.iter().filter(|(old, _)| old == path).map(|(_, new)| new.as_str()).collect();
     if places.is_empty() {
@@ -206,6 +207,7 @@ fn carry(
     if places == [path] && new(path).as_ref() == Some(&before) {
         return Ok(Carried::Same);
     }
+    // Rename identifiers, then merge the change into the first place where it fits.
     let (before, after) = (spelled(&before, words), spelled(&after, words));
     let mut why = Vec::new();
     for place in places {
@@ -223,10 +225,10 @@ fn carry(
                 options.set_original_filename(format!("a/{place}"));
                 options.set_modified_filename(format!("b/{place}"));
                 let patch = options.create_patch(&now, &changed).to_string();
-                // What is written must be what will be read.
+                // Check that the written patch gives the merged text.
                 ensure!(
                     apply(place, &patch, &now)? == changed,
-                    "the new patch does not do what the old one did"
+                    "the new patch makes another change than the old one"
                 );
                 return Ok(Carried::Anew(format!("{header}{patch}")));
             }
@@ -352,10 +354,10 @@ mod tests {
     fn what_no_longer_applies_is_reported() {
         let now = OLD.replace("three", "3");
         let Carried::Lost(why) = carried(&[], &[], &[("src/a.rs", &now)]) else { panic!("it applies") };
-        assert_eq!(why, "src/a.rs is different where it changes something");
+        assert_eq!(why, "src/a.rs was changed at the same lines");
         let gone = carried(&[("src/a.rs", "b.rs")], &[], &[]);
         assert_eq!(gone, Carried::Lost("there is no b.rs".into()));
         let done = carried(&[], &[], &[("src/a.rs", &OLD.replace("three", "drei"))]);
-        assert_eq!(done, Carried::Lost("src/a.rs has the change already".into()));
+        assert_eq!(done, Carried::Lost("src/a.rs already contains the change".into()));
     }
 }

@@ -1,35 +1,35 @@
-//! An entry of the corpus: a patch of one file of the solutions, with a header that says what is to come of it.
+//! An entry of the corpus: a patch of one file of the solutions, with a header that states the required result.
 
 use anyhow::{Context, Result, anyhow, bail};
 use std::fmt;
 use std::path::Path;
 
-/// What an entry must show.
+/// The required result of an entry.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Claim {
     /// A mistake, which a check must find and name.
     Wrong {
-        /// The trap of the lecture notes that it falls into, if it is one.
+        /// The error of the lecture notes that it repeats, if any.
         trap: Option<String>,
-        /// The check that is there to catch it.
+        /// The check that must catch it.
         caught_by: String,
         /// Words that must appear in the message of that check.
         says: Vec<String>,
     },
-    /// Another way to do it, which every check must accept.
+    /// Another right solution, which every check must accept.
     Right,
 }
 
-/// One solution with one difference.
+/// The solutions with one difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// The stage whose checks judge it.
+    /// The stage whose checks it must pass or fail.
     pub stage: u8,
     /// The name of its file, without `.patch`.
     pub name: String,
     /// The mistake or the method, in a sentence.
     pub title: String,
-    /// What must come of it.
+    /// The required result.
     pub claim: Claim,
     /// The file it changes, from the root of the kit: `solutions/src/…`.
     pub file: String,
@@ -44,7 +44,7 @@ impl fmt::Display for Entry {
 }
 
 impl Entry {
-    /// `wrong` or `right`: the folder it lies in.
+    /// Returns the folder of the entry: `wrong` or `right`.
     pub fn kind(&self) -> &'static str {
         if self.claim == Claim::Right { "right" } else { "wrong" }
     }
@@ -52,7 +52,9 @@ impl Entry {
     /// Reads the text of `tests/corpus/KIND/stageN/NAME.patch`.
     pub fn parse(kind: &str, stage: u8, name: &str, text: &str) -> Result<Entry> {
         let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
-        let Some(start) = start else { bail!("no difference follows the header (a line `--- a/…`)") };
+        let Some(start) = start else {
+            bail!("there is no difference after the header (a line `--- a/…`)")
+        };
         let (header, diff) = text.split_at(start);
         let mut header = Header::parse(header)?;
         let (title, claim) = match kind {
@@ -71,27 +73,31 @@ impl Entry {
         };
         header.nothing_left()?;
         let mut files = diff.lines().filter_map(|line| line.strip_prefix("+++ b/"));
-        let file = files.next().ok_or_else(|| anyhow!("no line `+++ b/solutions/src/…`"))?.trim().to_owned();
+        let file = files
+            .next()
+            .ok_or_else(|| anyhow!("there is no line `+++ b/solutions/src/…`"))?
+            .trim()
+            .to_owned();
         if files.next().is_some() {
-            bail!("it changes several files; one entry changes one");
+            bail!("it changes several files; an entry may change only one");
         }
         if !file.starts_with("solutions/src/") || file.contains("..") {
-            bail!("it changes {file}; an entry changes a file of solutions/src");
+            bail!("it changes {file}; an entry must change a file of solutions/src");
         }
         Ok(Entry { stage, name: name.to_owned(), title, claim, file, diff: diff.to_owned() })
     }
 
-    /// The text of the file with the difference made.
+    /// Returns the text of the file with the difference applied.
     pub fn apply(&self, original: &str) -> Result<String> {
         apply(&self.file, &self.diff, original)
     }
 }
 
-/// The text of a file with a difference made.
+/// Returns the text of a file with a difference applied.
 pub fn apply(file: &str, diff: &str, original: &str) -> Result<String> {
     let patch = diffy::Patch::from_str(diff).map_err(|error| anyhow!("{error}"))?;
     let changed = diffy::apply(original, &patch)
-        .map_err(|error| anyhow!("it does not fit {file} as it is now: {error}"))?;
+        .map_err(|error| anyhow!("it does not fit the current {file}: {error}"))?;
     if changed == original {
         bail!("it changes nothing in {file}");
     }
@@ -139,7 +145,7 @@ impl Header {
     }
 }
 
-/// All entries of the kit at `root`, sorted by stage, then wrong before right, then by name.
+/// Reads all entries of the kit at `root`, sorted by stage, then wrong before right, then by name.
 pub fn read_all(root: &Path) -> Result<Vec<Entry>> {
     let mut entries = Vec::new();
     for kind in ["wrong", "right"] {
@@ -166,7 +172,7 @@ pub fn read_all(root: &Path) -> Result<Vec<Entry>> {
     Ok(entries)
 }
 
-/// The names in a folder, sorted; none if there is no such folder.
+/// Returns the names in a folder, sorted. A missing folder has no names.
 fn list(folder: &Path) -> Result<Vec<String>> {
     if !folder.is_dir() {
         return Ok(Vec::new());

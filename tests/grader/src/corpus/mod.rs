@@ -1,7 +1,8 @@
-//! `grader corpus`: tests of the tests. Each entry is the reference with one difference: a mistake, which a named check
-//! must catch and name, or another right way to do it, which every check must accept.
+//! `grader corpus`: tests the checks. Each entry is the reference with one difference. It is either a mistake, which a
+//! named check must catch and diagnose, or another right solution, which every check must accept.
 //!
-//! `carry` (patches follow their files) · `entry` (what is in `tests/corpus`) · `workshop` (builds one) · `verdict` (what came of it) · `records` (what is kept)
+//! `carry` (updates patches) · `entry` (reads `tests/corpus`) · `workshop` (builds an entry) · `verdict` (its result) ·
+//! `records` (the stored results)
 
 pub mod carry;
 pub mod entry;
@@ -24,25 +25,25 @@ use workshop::{Built, Workshop};
 /// `grader corpus`.
 pub static SPEC: Spec = Spec {
     name: "grader corpus",
-    about: "Try the checks on known mistakes and on other right solutions (for authors).",
-    arguments: &[Argument::optional("NAME", "Entries by name; all, if none is named.").many()],
+    about: "Test the checks with known mistakes and other right solutions (for authors).",
+    arguments: &[Argument::optional("NAME", "The names of entries [default: all].").many()],
     options: &[&[
-        Opt::value("--stage", "N", "One stage only."),
-        Opt::flag("--slice", "Two mistakes and one right way of each stage."),
-        Opt::value("--jobs", "N", "How many to try at once [default: one per core]."),
+        Opt::value("--stage", "N", "Only this stage."),
+        Opt::flag("--slice", "Only two mistakes and one right solution per stage."),
+        Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
         Opt::flag("--check", "Also compare with tests/corpus/matrix.txt and tests/corpus/messages."),
         Opt::flag("--bless", "Write tests/corpus/matrix.txt and tests/corpus/messages."),
-        Opt::flag("--right", "Right ways only."),
+        Opt::flag("--right", "Only right solutions."),
         Opt::value(
             "--seed",
             "N",
-            "Pick the inputs of the checks with this seed instead of 0. The message about a mistake may then differ: \
-             only the check that must catch the mistake has to fail.",
+            "Pick the inputs of the checks with this seed instead of 0. The messages may then differ, so each mistake \
+             only has to fail the check that must catch it.",
         ),
     ]],
 };
 
-/// Which entries to try, and what to do with the results.
+/// The options of `grader corpus`.
 pub struct Options {
     names: Vec<String>,
     stage: Option<u8>,
@@ -55,7 +56,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--bless", "--check")?;
         given.exclude("--seed", "--check")?;
@@ -63,7 +64,7 @@ impl Options {
         let names: Vec<String> =
             given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned()).collect();
         if names.iter().any(|name| name == "carry") {
-            return Err(given.misuse("`carry` is a command of its own: `grader corpus carry`"));
+            return Err(given.misuse("`carry` is a separate command: `grader corpus carry`"));
         }
         Ok(Options {
             names,
@@ -78,7 +79,7 @@ impl Options {
     }
 }
 
-/// Tries entries and reports; whether all is as it must be.
+/// Tests entries and prints a report. Returns whether all results are as required.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let all = entry::read_all(root)?;
     let n_all = all.len();
@@ -113,7 +114,7 @@ fn choose(all: Vec<Entry>, options: &Options) -> Result<Vec<Entry>> {
     };
     let chosen: Vec<Entry> = all.into_iter().filter(wanted).collect();
     if chosen.is_empty() {
-        bail!("no entry is left to try: tests/corpus has none for this choice");
+        bail!("tests/corpus has no entry for these options");
     }
     Ok(chosen)
 }
@@ -122,7 +123,7 @@ fn is_named(entry: &Entry, name: &str) -> bool {
     entry.name == name || entry.to_string() == name
 }
 
-/// Of each stage the mistakes a third and two thirds down the list, and the right way in the middle.
+/// Chooses per stage the mistakes one third and two thirds down the list, and the right solution in the middle.
 fn slice(all: &[Entry]) -> Vec<String> {
     let mut stages: Vec<u8> = all.iter().map(|entry| entry.stage).collect();
     stages.dedup();
@@ -137,7 +138,7 @@ fn slice(all: &[Entry]) -> Vec<String> {
     chosen
 }
 
-/// Tries entries in as many workshops as there are jobs.
+/// Tests entries, with one workshop per job.
 fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Result<Vec<Tried>> {
     let bar = bar_of_steps(entries.len());
     bar.set_message("foreign crates");
@@ -173,7 +174,7 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
     tried(fate, failures)
 }
 
-/// Names the checks that no mistake fails: nobody knows whether they can fail at all.
+/// Lists the checks that no mistake fails. The corpus does not show that they can fail.
 fn report_idle_checks(tried: &[Tried]) {
     let is_tried = |stage: u8| tried.iter().any(|one| one.entry.stage == stage);
     let fails = |name: &str| tried.iter().any(|one| one.failures.contains_key(name));

@@ -1,4 +1,4 @@
-//! What is kept of a run: the kill matrix, and what each mistake is told.
+//! The stored results of a run: the kill matrix, and the message about each mistake.
 
 use super::entry::{Claim, Entry};
 use super::verdict::{Failures, Tried};
@@ -9,7 +9,7 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The kill matrix, below the root of the kit.
+/// The file of the kill matrix, below the root of the kit.
 pub const MATRIX: &str = "tests/corpus/matrix.txt";
 
 const ABOUT: &str = "# Which checks each entry of the corpus fails; `=` marks the check that is named to catch it. Written by\n\
@@ -20,7 +20,7 @@ const ABOUT: &str = "# Which checks each entry of the corpus fails; `=` marks th
 pub struct Matrix(pub BTreeMap<String, String>);
 
 impl Matrix {
-    /// Reads the matrix of the kit at `root`; an empty one if there is none.
+    /// Reads the matrix of the kit at `root`. The matrix is empty if there is no file.
     pub fn read(root: &Path) -> Matrix {
         let text = fs::read_to_string(root.join(MATRIX)).unwrap_or_default();
         let lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -39,13 +39,13 @@ impl Matrix {
         write(&root.join(MATRIX), &format!("{ABOUT}{lines}"))
     }
 
-    /// The checks that some entry fails.
+    /// Returns the checks that at least one entry fails.
     pub fn killers(&self) -> impl Iterator<Item = &str> {
         self.0.values().flat_map(|checks| checks.split(' ')).map(|check| check.trim_start_matches('='))
     }
 }
 
-/// What the matrix says of an entry.
+/// Returns the line of an entry in the matrix.
 fn row(entry: &Entry, failures: &Failures) -> String {
     let named = match &entry.claim {
         Claim::Wrong { caught_by, .. } => caught_by.as_str(),
@@ -57,12 +57,12 @@ fn row(entry: &Entry, failures: &Failures) -> String {
     if all.is_empty() { "-".into() } else { all.join(" ") }
 }
 
-/// Where the message of an entry is kept.
+/// Returns the file that stores the message of an entry.
 pub fn message_file(root: &Path, entry: &Entry) -> PathBuf {
     root.join(format!("tests/corpus/messages/stage{}/{}.txt", entry.stage, entry.name))
 }
 
-/// Differences between what was found and what is kept, one sentence each.
+/// Returns the differences between new and stored results, one sentence each.
 pub fn differences(root: &Path, matrix: &Matrix, tried: &[Tried]) -> Vec<String> {
     let mut differences = Vec::new();
     for Tried { entry, failures, .. } in tried {
@@ -70,7 +70,7 @@ pub fn differences(root: &Path, matrix: &Matrix, tried: &[Tried]) -> Vec<String>
         match matrix.0.get(&entry.to_string()) {
             None => differences.push(format!("{entry} is not in {MATRIX}")),
             Some(kept) if *kept != found => {
-                differences.push(format!("{entry} fails\n  {found}\nand {MATRIX} says\n  {kept}"));
+                differences.push(format!("{entry} fails\n  {found}\nbut {MATRIX} says\n  {kept}"));
             }
             Some(_) => {}
         }
@@ -81,13 +81,13 @@ pub fn differences(root: &Path, matrix: &Matrix, tried: &[Tried]) -> Vec<String>
         if kept.as_deref() != one.message() {
             let shown = file.strip_prefix(root).unwrap_or(&file).display();
             let (kept, now) = (kept.as_deref().unwrap_or("nothing\n"), one.message().unwrap_or("nothing\n"));
-            differences.push(format!("{} is told\n{now}and {shown} holds\n{kept}", one.entry));
+            differences.push(format!("the message of {} is\n{now}but {shown} contains\n{kept}", one.entry));
         }
     }
     differences
 }
 
-/// Keeps what was found. `all` says that every entry was tried, so that what is left of others can go.
+/// Stores the results. If `all` is true, every entry was tested, and the results of other entries are deleted.
 pub fn bless(root: &Path, tried: &[Tried], all: bool) -> Result<()> {
     let mut matrix = if all { Matrix::default() } else { Matrix::read(root) };
     for one in tried {

@@ -1,4 +1,4 @@
-//! What came of an entry, and whether that is what had to come of it.
+//! The result of an entry, and whether it is the required one.
 
 use super::entry::{Claim, Entry};
 use all_checks::STAGES;
@@ -12,26 +12,26 @@ pub type Failures = BTreeMap<&'static str, String>;
 /// How an entry ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fate {
-    /// A mistake: the named check caught it and said the words.
+    /// A mistake: the named check caught it, and its message contains the words.
     Killed,
     /// A mistake: the named check caught it, and its message lacks these words.
     Unnamed(Vec<String>),
     /// A mistake: other checks caught it.
     KilledByAnother,
-    /// A mistake that nobody caught.
+    /// A mistake that no check caught.
     Survived,
-    /// Another right way, and every check accepts it.
+    /// A right solution that every check accepts.
     Accepted,
-    /// Another right way that checks reject: false alarms.
+    /// A right solution that a check rejects: a false alarm.
     Rejected,
-    /// The patch does not fit; why.
+    /// The patch does not fit, for this reason.
     DoesNotApply(String),
-    /// It does not compile; the first error.
+    /// It does not compile, with this first error.
     DoesNotCompile(String),
 }
 
 impl Fate {
-    /// The fate of an entry that failed these checks.
+    /// Returns the fate of an entry that failed these checks.
     pub fn of(entry: &Entry, failures: &Failures) -> Fate {
         match &entry.claim {
             Claim::Right if failures.is_empty() => Fate::Accepted,
@@ -49,29 +49,29 @@ impl Fate {
         }
     }
 
-    /// Whether this is as it must be.
+    /// Returns whether this is the required result.
     pub fn is_as_it_must_be(&self) -> bool {
         matches!(self, Fate::Killed | Fate::Accepted)
     }
 }
 
-/// The same words, however they are broken into lines.
+/// Returns whether the message contains the words, with any line breaks.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// An entry that was tried.
+/// An entry that was tested.
 pub struct Tried {
-    /// Which.
+    /// The entry.
     pub entry: Entry,
     /// How it ended.
     pub fate: Fate,
-    /// What it failed.
+    /// The checks that it failed.
     pub failures: Failures,
 }
 
 impl Tried {
-    /// The message of the named check, if it gave one.
+    /// Returns the message of the named check, if it failed.
     pub fn message(&self) -> Option<&str> {
         match &self.entry.claim {
             Claim::Wrong { caught_by, .. } => self.failures.get(caught_by.as_str()).map(String::as_str),
@@ -79,14 +79,14 @@ impl Tried {
         }
     }
 
-    /// Whether the named check says what the mistake looks like.
+    /// Returns whether the message of the named check contains a diagnosis.
     pub fn is_diagnosed(&self) -> bool {
         self.message().is_some_and(|message| message.contains("looks like:"))
     }
 }
 
 impl fmt::Display for Tried {
-    /// What is wrong, and what to do; for people who look after the checks.
+    /// Describes the result and what to do, for the authors of checks.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Tried { entry, fate, failures } = self;
         let checks = || failures.keys().copied().collect::<Vec<_>>().join(", ");
@@ -103,13 +103,13 @@ impl fmt::Display for Tried {
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
             }
             Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
-            Fate::Survived => write!(f, "SURVIVED: no check of stage {} sees it", entry.stage),
+            Fate::Survived => write!(f, "SURVIVED: no check of stage {} fails", entry.stage),
             Fate::Rejected => {
                 write!(f, "FALSE ALARM: it is right, but rejected by {}", checks())?;
                 failures.values().next().map_or(Ok(()), |message| write!(f, "\n{message}"))
             }
             Fate::DoesNotApply(why) => {
-                write!(f, "the patch cannot be used: {why}; make it anew from the solution as it is now")
+                write!(f, "the patch cannot be used: {why}; make a new one from the current solution")
             }
             Fate::DoesNotCompile(error) => write!(f, "does not compile:\n{error}"),
         }
@@ -120,13 +120,13 @@ fn quoted(words: &[String]) -> String {
     words.iter().map(|words| format!("`{words}`")).collect::<Vec<_>>().join(", ")
 }
 
-/// The check of this name in this stage, if there is one.
+/// Returns the check of this name in this stage, if there is one.
 pub fn check_named(stage: u8, name: &str) -> Option<&'static Check> {
     let (_, checks) = STAGES.iter().find(|(number, _)| *number == stage)?;
     checks.iter().find(|check| check.name == name)
 }
 
-/// The message of a check that was not passed.
+/// Returns the message of a check that did not pass.
 pub fn failure(verdict: Verdict) -> Option<String> {
     match verdict {
         Verdict::Passed => None,
@@ -137,7 +137,7 @@ pub fn failure(verdict: Verdict) -> Option<String> {
     }
 }
 
-/// `file.rs:12` as `file.rs`: the line of a panic moves with every edit above it, and what is kept would go stale.
+/// Replaces `file.rs:12` by `file.rs`, because every edit above a panic changes its line and would outdate stored messages.
 pub fn without_lines(message: &str) -> String {
     let mut parts = message.split(".rs:");
     let mut text = parts.next().unwrap_or_default().to_owned();
@@ -145,7 +145,7 @@ pub fn without_lines(message: &str) -> String {
         text.push_str(".rs");
         let rest = part.trim_start_matches(|c: char| c.is_ascii_digit());
         if rest.len() == part.len() {
-            text.push(':'); // No line follows.
+            text.push(':'); // There is no line number.
         }
         text.push_str(rest);
     }

@@ -1,9 +1,9 @@
-//! Where entries are built: a folder with a copy of the scaffold and of the solutions and nothing else, so that a
-//! change costs one small crate.
+//! Builds entries in a folder that contains only copies of the scaffold and the solutions, so that a change rebuilds one
+//! small crate.
 //!
-//! Path packages of different folders may hash alike, and cargo judges by modification time whether a file has changed.
-//! So each workshop has a target folder of its own, a file is written only if its text is another one, and a build in
-//! which cargo found the solutions unchanged is refused: its verdict would be about the entry before.
+//! Path packages of different folders may have the same hash, and cargo detects changes by modification time. So each
+//! workshop has its own target folder, and a file is written only if its text differs. A build in which cargo found the
+//! solutions unchanged is an error, because its verdict would belong to the previous entry.
 
 use super::entry;
 use crate::kits::Need;
@@ -14,9 +14,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// No debugger looks at a worker, and an entry is asked so little that building it costs more than its answers: a changed
-/// function costs 0.4 s of processor time like this, and 1.9 s with the profile of the kit. An overflow panics, as it does in
-/// the exercises.
+/// Options for a quick build without debug information and optimisation, because building an entry takes longer than its
+/// answers. A changed function needs 0.4 s of processor time, compared with 1.9 s in the kit's profile. An overflow panics,
+/// as in the exercises.
 const QUICK_BUILD: [&str; 6] = [
     "--config",
     "profile.dev.debug=false",
@@ -26,33 +26,33 @@ const QUICK_BUILD: [&str; 6] = [
     "profile.dev.package.solutions.overflow-checks=true",
 ];
 
-/// A folder in which one entry at a time is built.
+/// A folder that builds one entry at a time.
 pub struct Workshop {
     root: PathBuf,
     folder: PathBuf,
-    /// What its workers are for.
+    /// What its workers must be able to do.
     need: Need,
 }
 
-/// What came of building an entry.
+/// The result of building an entry.
 pub enum Built {
     /// The worker that answers with the changed solutions.
     Worker(PathBuf),
-    /// The patch does not fit; why.
+    /// The patch does not fit, for this reason.
     DoesNotApply(String),
-    /// The compiler's first error.
+    /// The entry does not compile, with this first error.
     DoesNotCompile(String),
 }
 
 impl Workshop {
-    /// So many workshops for workers of this kind, in each of which the solutions are known to build as they are.
+    /// Opens `jobs` workshops for workers of this kind. The unchanged solutions are known to build in each.
     pub fn open_all(root: &Path, jobs: usize, need: Need) -> Result<Vec<Workshop>> {
         let first = Workshop::open(root, 0, need)?;
-        // The reference itself must build, and what it needs is then there for all workshops.
+        // Build the reference first. The other workshops copy its compiled crates.
         match first.build_original()? {
             Built::Worker(_) => {}
             Built::DoesNotApply(error) | Built::DoesNotCompile(error) => {
-                bail!("the solutions do not compile by themselves:\n{error}");
+                bail!("the unchanged solutions do not compile:\n{error}");
             }
         }
         let mut workshops = vec![first];
@@ -64,7 +64,7 @@ impl Workshop {
         Ok(workshops)
     }
 
-    /// The workshop of this number for the kit at `root`, brought up to date.
+    /// Opens the workshop of this number for the kit at `root` and updates its files.
     fn open(root: &Path, number: usize, need: Need) -> Result<Workshop> {
         let folder = root.join(format!("target/corpus/{number}"));
         let workshop = Workshop { root: root.to_owned(), folder, need };
@@ -76,11 +76,11 @@ impl Workshop {
             &workshop.folder.join("solutions/Cargo.toml"),
             &cut_manifest(&read(&root.join("solutions/Cargo.toml"))?, &["dev-dependencies", "[bench]"]),
         )?;
-        // The scaffold reads the rubric when it is built.
+        // The build of the scaffold reads the rubric.
         fs::create_dir_all(workshop.folder.join("tests"))?;
         write_if_new(&workshop.folder.join("tests/rubric.toml"), &read(&root.join("tests/rubric.toml"))?)?;
         if !workshop.folder.join("Cargo.lock").exists() {
-            // The versions that the kit uses. Cargo strikes out what is not needed here.
+            // Use the kit's versions of all crates. Cargo removes the crates that are not needed here.
             write_if_new(&workshop.folder.join("Cargo.lock"), &read(&root.join("Cargo.lock"))?)?;
         }
         copy_folder(&root.join("src"), &workshop.folder.join("src"))?;
@@ -88,12 +88,12 @@ impl Workshop {
         Ok(workshop)
     }
 
-    /// Makes the solutions here those of the kit again.
+    /// Restores the kit's solutions.
     fn reset(&self) -> Result<()> {
         copy_folder(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))
     }
 
-    /// Takes over what another workshop has built of foreign crates, which saves building them again.
+    /// Copies the compiled foreign crates of another workshop, so that they are not built again.
     fn take_over(&self, other: &Workshop) -> Result<()> {
         if !self.folder.join("target").exists() {
             copy_with_times(&other.folder.join("target"), &self.folder.join("target"))?;
@@ -115,12 +115,12 @@ impl Workshop {
         }
     }
 
-    /// The text of a file of the kit.
+    /// Returns the text of a file of the kit.
     pub fn original(&self, file: &str) -> Result<String> {
         read(&self.root.join(file))
     }
 
-    /// Builds the solutions with other texts in place of some files.
+    /// Builds the solutions with the texts of some files replaced.
     pub fn build_with(&self, changes: &[(&str, &str)]) -> Result<Built> {
         self.reset()?;
         for (file, text) in changes {
@@ -129,7 +129,7 @@ impl Workshop {
         let (fresh, built) = self.cargo()?;
         if fresh && matches!(built, Built::Worker(_)) {
             bail!(
-                "cargo found nothing new in {:?}, so the answers would be those of another entry; remove {} and run \
+                "cargo found no change in {:?}, so the answers would be those of another entry; remove {} and run \
                  this again",
                 changes.iter().map(|(file, _)| *file).collect::<Vec<_>>(),
                 self.folder.display()
@@ -138,7 +138,7 @@ impl Workshop {
         Ok(built)
     }
 
-    /// Whether cargo took the solutions for unchanged, and what it built.
+    /// Runs cargo. Returns whether it found the solutions unchanged, and the result of the build.
     fn cargo(&self) -> Result<(bool, Built)> {
         let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
             .current_dir(&self.folder)
@@ -158,7 +158,7 @@ impl Workshop {
                 .iter()
                 .find(|message| message["reason"] == "compiler-artifact" && message["target"]["name"] == name)
         };
-        // What the library is made of is rebuilt with it; src/worker.rs is the program alone.
+        // A changed module rebuilds the library; a changed src/worker.rs rebuilds only the program.
         let is_fresh = |name: &str| artifact(name).is_none_or(|built| built["fresh"] != false);
         let fresh = is_fresh("solutions") && is_fresh("solutions-worker");
         let worker = artifact("solutions-worker").and_then(|worker| worker["executable"].as_str());
@@ -174,7 +174,7 @@ impl Workshop {
     }
 }
 
-/// A manifest without the sections of these names, and with no member but `solutions`.
+/// Returns a manifest without the sections of these names, with `solutions` as its only member.
 fn cut_manifest(manifest: &str, without: &[&str]) -> String {
     let mut cut = String::new();
     let mut keep = true;
@@ -199,7 +199,7 @@ fn read(file: &Path) -> Result<String> {
     fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))
 }
 
-/// Writes a text where another one was, so that cargo takes only what has changed for changed.
+/// Writes a file only if its text differs, so that cargo rebuilds only changed files.
 fn write_if_new(file: &Path, text: &str) -> Result<()> {
     if fs::read_to_string(file).is_ok_and(|old| old == text) {
         return Ok(());
@@ -211,7 +211,7 @@ fn write_if_new(file: &Path, text: &str) -> Result<()> {
     write().with_context(|| format!("{} cannot be written", file.display()))
 }
 
-/// Makes `to` hold the texts of `from` and nothing else.
+/// Makes `to` an exact copy of `from`.
 fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     let mut wanted = BTreeSet::new();
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
@@ -219,7 +219,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
         wanted.insert(entry.file_name());
         let target = to.join(entry.file_name());
         if entry.path().join("Cargo.toml").is_file() {
-            // A package of its own, which the solutions do not need.
+            // Skip a separate package, which the solutions do not need.
             wanted.remove(&entry.file_name());
         } else if entry.file_type()?.is_dir() {
             copy_folder(&entry.path(), &target)?;
@@ -237,7 +237,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Copies a folder with the times of its files, by which cargo knows what is up to date.
+/// Copies a folder with the modification times of its files, from which cargo sees which files are up to date.
 fn copy_with_times(from: &Path, to: &Path) -> Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

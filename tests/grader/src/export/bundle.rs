@@ -1,4 +1,4 @@
-//! The whole kit in a zip.
+//! Packs the whole kit into a zip.
 
 use anyhow::{Context, Result};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-/// What of the kit is needed to build it and to grade.
+/// The parts of the kit that are needed to build it and to grade.
 const PARTS: [&str; 11] = [
     ".cargo",
     "Cargo.lock",
@@ -22,10 +22,10 @@ const PARTS: [&str; 11] = [
     "tests",
 ];
 
-/// Folders that are made anew, or that only authors need.
+/// Folders that are generated or that only authors need.
 const LEFT_OUT: [&str; 3] = ["target", "tests/corpus", "tests/grader/target"];
 
-/// The kit, and beside it these scripts, which can be run. The same kit gives the same bytes.
+/// Returns a zip of the kit and these executable scripts. The same kit gives the same bytes.
 pub(super) fn zip(root: &Path, scripts: &[(&str, String)]) -> Result<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, text) in scripts {
@@ -40,7 +40,8 @@ pub(super) fn zip(root: &Path, scripts: &[(&str, String)]) -> Result<Vec<u8>> {
 
 fn add(zip: &mut ZipWriter<Cursor<Vec<u8>>>, root: &Path, path: &str) -> Result<()> {
     let file = root.join(path);
-    let kind = fs::symlink_metadata(&file).with_context(|| format!("no {path}: is this the whole kit?"))?;
+    let kind =
+        fs::symlink_metadata(&file).with_context(|| format!("there is no {path}: is this the whole kit?"))?;
     if kind.is_dir() && !LEFT_OUT.contains(&path) {
         let mut names: Vec<String> = fs::read_dir(&file)?
             .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))

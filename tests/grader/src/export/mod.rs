@@ -1,4 +1,4 @@
-//! `grader export`: what Gradescope and GitHub Classroom need to grade as `grader grade` does.
+//! `grader export`: writes the files with which Gradescope and GitHub Classroom grade as `grader grade` does.
 
 mod bundle;
 
@@ -12,10 +12,10 @@ use std::path::{Path, PathBuf};
 /// `grader export gradescope`.
 pub static GRADESCOPE: Spec = Spec {
     name: "grader export gradescope",
-    about: "Write a zip to upload to Gradescope as an autograder. It holds the answers; students do not see it.",
+    about: "Write an autograder zip for Gradescope. It contains the answers; students do not see it.",
     arguments: &[],
     options: &[
-        &[Opt::value("--out", "FILE", "Where the zip goes [default: autograder.zip].")],
+        &[Opt::value("--out", "FILE", "The file for the zip [default: autograder.zip].")],
         Grading::OPTIONS,
     ],
 };
@@ -23,7 +23,7 @@ pub static GRADESCOPE: Spec = Spec {
 /// `grader export classroom`.
 pub static CLASSROOM: Spec = Spec {
     name: "grader export classroom",
-    about: "Write workflows for GitHub: one that grades each push of a student, one that grades a class on several \
+    about: "Write two workflows for GitHub: one grades each push of a student, one grades a class on several \
             machines.",
     arguments: &[],
     options: &[
@@ -32,26 +32,26 @@ pub static CLASSROOM: Spec = Spec {
     ],
 };
 
-/// Where to write, and what is graded.
+/// The options of both commands.
 pub struct Options {
     out: PathBuf,
     grading: Grading,
 }
 
 impl Options {
-    /// As they were given to [`GRADESCOPE`].
+    /// Reads the options of [`GRADESCOPE`].
     pub fn of_gradescope(given: &Given) -> Result<Options, Misuse> {
         let out = given.path("--out").unwrap_or_else(|| "autograder.zip".into());
         Ok(Options { out, grading: Grading::read(given)? })
     }
 
-    /// As they were given to [`CLASSROOM`].
+    /// Reads the options of [`CLASSROOM`].
     pub fn of_classroom(given: &Given) -> Result<Options, Misuse> {
         Ok(Options { out: given.required_path("--out")?, grading: Grading::read(given)? })
     }
 }
 
-/// What is graded, the same for all students.
+/// Stages and seed, the same for all students.
 struct Grading {
     stages: Option<String>,
     seed: Option<u64>,
@@ -75,7 +75,7 @@ impl Grading {
         })
     }
 
-    /// As options of `grader grade-one`.
+    /// Returns these as options of `grader grade-one`.
     fn options(&self) -> String {
         let seed = self.seed.unwrap_or_else(draw_seed);
         let stages = self.stages.as_ref().map_or_else(String::new, |stages| format!("--stages {stages} "));
@@ -88,7 +88,7 @@ const RUN: &str = include_str!("run_autograder");
 const EACH_PUSH: &str = include_str!("classroom.yml");
 const WHOLE_CLASS: &str = include_str!("class.yml");
 
-/// Where a template says how to grade.
+/// The place of the options in a template.
 const OPTIONS: &str = "{options}";
 
 /// Writes the zip for Gradescope.
@@ -109,10 +109,10 @@ pub fn classroom(options: &Options) -> Result<()> {
     let graded = options.grading.options();
     for (name, template) in [("classroom.yml", EACH_PUSH), ("class.yml", WHOLE_CLASS)] {
         let file = folder.join(name);
-        ensure!(!file.exists(), "{} is there already", file.display());
+        ensure!(!file.exists(), "{} already exists", file.display());
         write(&file, template.replace(OPTIONS, &graded).as_bytes())?;
     }
-    println!("{}: read what each file says at its top before you use it", folder.display());
+    println!("{}: read the comment at the top of each file before you use it", folder.display());
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Gradescope runs this once, when it makes the image: a Rust toolchain, and the kit built. Grading itself needs no network.
+# Gradescope runs this once, when it makes the image. It installs a Rust toolchain and builds the kit. Grading itself needs no
+# network.
 set -eu
 root=${AUTOGRADER_ROOT:-/autograder}
 : "${HOME:=/root}"
@@ -17,9 +18,9 @@ fi
 
 cd "$root/source"
 cargo build --locked --release --package grader --bin grader --package solutions --bin solutions-worker
-# What submissions are compiled against.
+# Build the libraries against which submissions are compiled.
 cargo build --locked --package raykata --lib
-# A first try, on exercises that nobody has begun: 0 points, and the log of the image says if anything is amiss.
+# Grade the untouched exercises once: the result must be 0 points, and the log of the image shows any problem.
 chmod +x run_autograder
 ./run_autograder exercises
 cat "$root/results/results.json"

@@ -1,5 +1,5 @@
-//! Searches against brute force over exact predicates: a search is right if what it finds is among the triangles that the
-//! ray exactly meets first.
+//! Compares searches with brute force over exact predicates. A search is right if its hit is one of the triangles that the
+//! ray meets first by exact arithmetic.
 
 use super::scenes;
 use crate::kits::Source;
@@ -17,41 +17,42 @@ use raykata::scene::{Accelerator, Quality, Split};
 use raykata::shape::Triangle;
 use std::time::Duration;
 
-/// What came of one way to search one scene.
+/// The result of one kind of search in one scene.
 #[derive(Clone, Debug)]
 pub struct Agreement {
     /// The scene.
     pub scene: &'static str,
-    /// How it was searched.
+    /// The kind of search.
     pub search: String,
-    /// Rays that were asked.
+    /// The number of rays.
     pub rays: u64,
-    /// Of these, rays that exactly meet something.
+    /// The number of rays that meet a triangle by exact arithmetic.
     pub hits: u64,
-    /// Of these, rays that meet several triangles at one `t` first.
+    /// The number of rays that meet several triangles first, at the same `t`.
     pub ties: u64,
-    /// Answers for rays through an edge, to a rounding of double precision, in which that rounding decided.
+    /// The number of answers that a rounding error of double precision decided, because the ray passes through an edge.
     pub roundings: u64,
-    /// Wrong answers: not exact, or not those of brute force.
+    /// The number of wrong answers: they differ from the exact result or from brute force.
     pub mismatches: u64,
 }
 
-/// A ray and what may be found.
+/// A ray and the answers that are right.
 struct Asked {
     ray: Ray,
-    /// The triangles that are exactly met first; several for a tie.
+    /// The triangles that are met first by exact arithmetic; several for a tie.
     ties: Vec<usize>,
-    /// The first `t` at which a triangle is met through its inside, and not within a rounding of an edge.
+    /// The first `t` at which the ray meets a triangle away from its edges, by more than a rounding error.
     sure: Option<f32>,
-    /// What asking all triangles finds.
+    /// The hit that brute force finds.
     brute: Option<PrimitiveHit>,
 }
 
-/// In double an edge is known to a few roundings of 2⁻⁵³: to less than a millionth of a rounding of single precision.
+/// A margin below this counts as on the edge. Double precision knows an edge to a few rounding errors of 2⁻⁵³, which is
+/// less than a millionth of a rounding error of single precision.
 const ON_AN_EDGE: f64 = 1e-6;
 
 impl Asked {
-    /// What may be found with a ray that finds `brute` when it asks all triangles.
+    /// Computes the right answers for a ray. `brute` is the hit of brute force.
     fn new(scene: &HardScene, ray: Ray, brute: Option<PrimitiveHit>) -> Asked {
         let ties = triangle::tie_set(&ray, &scene.triangles);
         let sure = scene.triangles.iter().filter(|triangle| !is_on_an_edge(&ray, triangle));
@@ -72,7 +73,7 @@ impl Asked {
         };
         let (index, triangle) = (found.primitive as usize, &triangles[found.primitive as usize]);
         let first = self.ties.first().and_then(|&first| exact_t(&self.ray, &triangles[first]));
-        // Two different `t` may round to the same number, and then the smaller index wins.
+        // Two different `t` may round to the same number. Then the smaller index wins.
         if self.ties.contains(&index) || (first.is_some() && exact_t(&self.ray, triangle) == first) {
             return Judgement::Right;
         }
@@ -95,10 +96,10 @@ fn is_on_an_edge(ray: &Ray, triangle: &Triangle) -> bool {
     triangle::margin(ray, triangle).is_none_or(|margin| margin < ON_AN_EDGE)
 }
 
-/// How an answer compares with the exact one, and with brute force.
+/// The comparison of an answer with the exact one and with brute force.
 enum Judgement {
     Right,
-    /// The ray passes through an edge to a rounding of double precision, and that rounding decided.
+    /// The ray passes through an edge, and a rounding error of double precision decided the answer.
     Rounding,
     Wrong,
 }
@@ -107,10 +108,10 @@ fn exact_t(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     meet(ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t)
 }
 
-/// How long all rays of a scene may take in one structure, which is built first, without much optimisation.
+/// Time limit for all rays of a scene in one structure, with its build and without much optimisation.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// Every search of the reference on every hard scene, with so many rays each.
+/// Runs every search of the reference on every hard scene, with `rays` rays each.
 pub fn all(reference: &Source, seed: u64, rays: u64) -> Result<Vec<Agreement>> {
     let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
     let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
@@ -156,14 +157,14 @@ fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agree
     agreements
 }
 
-/// The structures of stage 9, and other ways through a hierarchy.
+/// Returns the structures of stage 9 and the other traversals of a hierarchy.
 fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Quality)> {
     let mut structures: Vec<(String, Quality)> = Vec::new();
     for (name, grid_resolution) in [("of 3 cells along", 3), ("by the formula", 0)] {
         let quality = Quality { grid_resolution, ..with(Accelerator::Grid, 1) };
         structures.push((format!("grid {name}"), quality));
     }
-    // With smaller leaves copies of a triangle would be divided down to the deepest level.
+    // With smaller leaves the structure would split copies of a triangle down to the deepest level.
     for leaf_size in [4, 8] {
         for (how, accelerator) in
             [("by cells", Accelerator::OctreeByCells), ("from the root", Accelerator::Octree)]
@@ -183,7 +184,7 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
     structures
 }
 
-/// For each ray the `t` of each triangle, as tables of searches have it.
+/// Returns for each ray the `t` of each triangle, in the format of the search tables.
 fn distances(kit: &dyn Kit, scene: &HardScene, rays: &[Ray]) -> Vec<Vec<f32>> {
     let of_ray = |ray: &Ray| {
         let query = |&triangle: &Triangle| TriangleQuery { ray: *ray, triangle };
@@ -194,7 +195,7 @@ fn distances(kit: &dyn Kit, scene: &HardScene, rays: &[Ray]) -> Vec<Vec<f32>> {
     rays.iter().map(of_ray).collect()
 }
 
-/// One search per ray through a hierarchy of the kit, with the answers of the kit to all questions about boxes and triangles.
+/// Returns one search per ray in a hierarchy of the kit, with the kit's answers to all questions about boxes and triangles.
 fn searches(
     kit: &dyn Kit,
     scene: &HardScene,
@@ -217,7 +218,7 @@ fn searches(
     rays.iter().zip(distances).map(of_ray).collect()
 }
 
-/// Asks some searches at a time, because each brings its hierarchy along.
+/// Runs the searches in small batches, because each search contains its hierarchy.
 fn in_batches<A>(queries: &[SearchQuery], ask: impl Fn(&[SearchQuery]) -> Vec<A>) -> Vec<A> {
     queries.chunks(100).flat_map(ask).collect()
 }

@@ -1,5 +1,5 @@
-//! The long run: rays by the hundred million at edges and vertices of closed meshes, in every structure of the
-//! reference, and at corners of boxes. What is done is kept in a file, so that a run can be stopped and goes on.
+//! The long run: hundreds of millions of rays at edges and vertices of closed meshes, in every structure of the reference,
+//! and at corners of boxes. A file stores the progress, so that a stopped run can be continued.
 
 use super::{scenes, secondary_rays};
 use crate::kits::Source;
@@ -22,29 +22,29 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Rays of one piece of work.
+/// The number of rays of one piece of work.
 const PIECE: u64 = secondary_rays::RAYS;
-/// How often progress is kept.
+/// The time between two writes of the progress.
 const PAUSE: Duration = Duration::from_secs(2);
 
-/// What has been done.
+/// The progress.
 #[derive(Default, Serialize, Deserialize, PartialEq)]
 struct State {
     seed: u64,
-    /// By what was tried: pieces of work that are finished.
+    /// The finished pieces of work per trial.
     done: BTreeMap<String, Done>,
 }
 
 #[derive(Default, Serialize, Deserialize, PartialEq)]
 struct Done {
-    /// Numbers of the pieces.
+    /// The numbers of the pieces.
     pieces: Vec<u64>,
     rays: u64,
-    /// Leaks, or false misses.
+    /// The number of leaks or false misses.
     failures: u64,
 }
 
-/// How closed meshes are searched.
+/// The structure in which closed meshes are searched.
 #[derive(Clone, Copy)]
 enum Structure {
     BruteForce,
@@ -69,7 +69,7 @@ impl Structure {
     }
 }
 
-/// How many rays that start inside a closed mesh, each with a vertex near which it hits, meet nothing.
+/// Counts the rays that start inside a closed mesh and miss it. Each ray has the index of a vertex near its hit.
 fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]) -> u64 {
     match structure {
         Structure::BruteForce => leaks_of(mesh, rays, |inputs: &[Input]| {
@@ -87,7 +87,7 @@ fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]
     }
 }
 
-/// What is tried in a piece of work.
+/// The kind of a piece of work.
 #[derive(Clone, Copy)]
 enum Trial {
     Mesh(Structure, Aim),
@@ -108,12 +108,12 @@ impl Trial {
             Trial::Mesh(structure, Aim::Edge) => format!("{}, edges", structure.name()),
             Trial::Mesh(structure, Aim::Vertex) => format!("{}, vertices", structure.name()),
             Trial::Slab => "boxes, at corners".into(),
-            Trial::SelfHit => "own surface, met again".into(),
-            Trial::Contact => "64 steps away, lost".into(),
+            Trial::SelfHit => "own surface, hit again".into(),
+            Trial::Contact => "64 floats away, missed".into(),
         }
     }
 
-    /// Failures among the rays of piece `piece`.
+    /// Counts the failures among the rays of piece `piece`.
     fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, piece: u64) -> Result<u64> {
         let mut random = Random::new(seed, piece);
         match self {
@@ -141,17 +141,18 @@ impl Trial {
     }
 }
 
-/// Runs until `rays` rays of each kind are done; whether nothing failed.
+/// Runs until `rays` rays of each kind are done. Returns whether no ray failed.
 pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool> {
     let mut state = read(file)?;
     if state.seed != seed && !state.done.is_empty() {
         bail!(
-            "{} is of a run with --seed {}: go on with that one, or name another file with --state",
+            "{} is from a run with --seed {}: use that seed, or name another file with --state",
             file.display(),
             state.seed
         );
     }
     state.seed = seed;
+    // List the pieces of work that are not done.
     let pieces = rays.div_ceil(PIECE);
     let open = |trial: &Trial, piece: &u64| {
         state.done.get(&trial.name()).is_none_or(|done| !done.pieces.contains(piece))
@@ -161,6 +162,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         .flat_map(|trial| (0..pieces).map(move |piece| (trial, piece)))
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
+    // Run them on all cores and store the progress regularly.
     let meshes = closed();
     let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
     let bar = bar_of_steps(work.len());

@@ -1,5 +1,5 @@
-//! Ways to intersect a ray with a triangle: as lectures print them, as folklore has them, and as they should be. Each in
-//! single precision, some in double as well.
+//! Ray–triangle intersection methods: as printed in the lectures, as commonly used, and corrected. All are in single
+//! precision, some also in double.
 
 use super::printed;
 use glam::{DVec3, Vec3};
@@ -7,15 +7,15 @@ use oracle::exact::{Body, meet};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// A way to intersect.
+/// An intersection method.
 pub struct Method {
-    /// For the head of a row.
+    /// The name, for the head of a row.
     pub name: &'static str,
-    /// `t` of the hit.
+    /// Returns the `t` of the hit.
     pub hit: fn(&Ray, &Triangle) -> Option<f32>,
 }
 
-/// All of them.
+/// All methods.
 pub const METHODS: [Method; 25] = [
     Method { name: "Möller–Trumbore", hit: single::moeller_trumbore },
     Method { name: "  cut off at |det| < 1e-6", hit: printed::moeller_trumbore_cut_off },
@@ -48,13 +48,13 @@ fn exactly(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     meet(ray, Body::Triangle(*triangle))?.t
 }
 
-/// The same code for both precisions.
+/// Defines the methods for one precision.
 macro_rules! precision {
     ($module:ident, $Float:ty, $Vector:ty, $convert:expr) => {
         pub(super) mod $module {
             use super::*;
 
-            /// Origin, direction, corners.
+            /// Returns origin, direction and the three corners.
             pub(crate) fn numbers(ray: &Ray, triangle: &Triangle) -> [$Vector; 5] {
                 [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map($convert)
             }
@@ -94,7 +94,7 @@ macro_rules! precision {
                 if inside { in_range(ray, determinant(u, v, r) / det) } else { None }
             }
 
-            /// `t` on the plane, and the point there as the lectures compute it: in world space.
+            /// Returns `t` on the plane, the point there in world space as in the lectures, and the plane's normal.
             pub(crate) fn on_plane(ray: &Ray, triangle: &Triangle) -> ($Float, $Vector, $Vector) {
                 let [o, d, a, b, c] = numbers(ray, triangle);
                 let n = (b - a).cross(c - a);
@@ -140,7 +140,7 @@ macro_rules! precision {
                 if one_side([side(a, b), side(b, c), side(c, a)]) { in_range(ray, t) } else { None }
             }
 
-            /// Areas of the three parts, as shares of the whole and with signs.
+            /// Tests the signed areas of the three parts as shares of the whole area.
             pub(crate) fn by_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
                 let [_, _, a, b, c] = numbers(ray, triangle);
                 let (t, point, n) = on_plane(ray, triangle);
@@ -150,11 +150,12 @@ macro_rules! precision {
                 if inside { in_range(ray, t) } else { None }
             }
 
-            /// The three edge forms, seen from the origin of the ray.
+            /// Returns the three edge functions, relative to the ray's origin.
             pub(crate) fn edge_forms(ray: &Ray, triangle: &Triangle) -> [$Float; 3] {
                 let [o, d, a, b, c] = numbers(ray, triangle);
                 let [a, b, c] = [a, b, c].map(|corner| corner - o);
-                // As differences and sums, so that neighbours get the same number for the edge they share.
+                // Use differences and sums, so that neighbours compute the same value for their shared edge, up to the
+                // sign.
                 let form = |p: $Vector, q: $Vector| (q - p).cross(q + p).dot(d);
                 [form(b, c), form(c, a), form(a, b)]
             }
@@ -170,8 +171,9 @@ macro_rules! precision {
                 if one_side(forms) { in_range(ray, t_of_plane(ray, triangle)) } else { None }
             }
 
-            /// Woop's edge functions and the sheared z of the corners.
+            /// Returns Woop's edge functions, the sheared z of the corners, and the direction's z.
             fn sheared(ray: &Ray, triangle: &Triangle) -> ([$Float; 3], [$Float; 3], $Float) {
+                // Choose the direction's largest component as the z axis.
                 let [o, d, a, b, c] = numbers(ray, triangle);
                 let size = d.abs();
                 let z = if size.x >= size.y && size.x >= size.z {
@@ -181,6 +183,7 @@ macro_rules! precision {
                 } else {
                     2
                 };
+                // Shear the corners so that the ray runs along z.
                 let (x, y) = ((z + 1) % 3, (z + 2) % 3);
                 let shear = [d[x] / d[z], d[y] / d[z]];
                 let project = |corner: $Vector| {

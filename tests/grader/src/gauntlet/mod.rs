@@ -1,5 +1,5 @@
-//! `grader gauntlet`: what accuracy costs. Methods against distributions, judged exactly; with `--rays`, the long run
-//! that looks for a leak in the reference.
+//! `grader gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
+//! them by exact arithmetic. With `--rays` it starts the long run, which searches for leaks in the reference.
 
 pub mod agreement;
 mod long;
@@ -22,40 +22,44 @@ use std::path::{Path, PathBuf};
 /// `grader gauntlet`.
 pub static SPEC: Spec = Spec {
     name: "grader gauntlet",
-    about: "Show what accuracy costs: ways to intersect a triangle against hard inputs, judged exactly.",
+    about: "Show what accuracy costs: compare triangle tests on hard inputs with exact arithmetic.",
     arguments: &[],
     options: &[&[
-        Opt::value("--kit", "NAME", "Whose triangle tests join the methods [default: solutions].")
-            .choices(&names(&Which::NAMES)),
+        Opt::value(
+            "--kit",
+            "NAME",
+            "The kit whose triangle tests are compared as well [default: solutions].",
+        )
+        .choices(&names(&Which::NAMES)),
         Opt::value(
             "--inputs",
             "N",
-            "Inputs of each distribution, and rays at each closed mesh [default: 20000].",
+            "The number of inputs per distribution, and of rays per closed mesh [default: 20000].",
         ),
         Opt::value("--seed", "N", "Picks the inputs [default: 1]."),
         Opt::value(
             "--rays",
             "N",
-            "Instead of the table: so many rays at edges and as many at vertices for each structure of the reference, \
-             and so many at boxes. Goes on where it was stopped.",
+            "Instead of the tables: trace N rays at edges and N at vertices per structure of the reference, and N per \
+             other trial. Continues a stopped run.",
         ),
         Opt::value(
             "--state",
             "FILE",
-            "Where the long run keeps what it has done [default: out/gauntlet.json].",
+            "The file for the progress of the long run [default: out/gauntlet.json].",
         ),
     ]],
 };
 
-/// `grader cost`: the same line as `raykata cost`.
+/// `grader cost`, with the same options as `raykata cost`.
 pub static COST: Spec = Spec {
     name: "grader cost",
-    about: "The same as `raykata cost`, with a chapter about ways to intersect a triangle.",
+    about: "The same as `raykata cost`, with a chapter about triangle tests.",
     arguments: cost::SPEC.arguments,
     options: cost::SPEC.options,
 };
 
-/// How long, and whose code.
+/// The options of `grader gauntlet`.
 pub struct Options {
     kit: Which,
     inputs: u64,
@@ -65,7 +69,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             kit: given.choice("--kit", &Which::NAMES)?.unwrap_or(Which::Solutions),
@@ -77,12 +81,12 @@ impl Options {
     }
 }
 
-/// Measures as `raykata cost` does, and the methods; whether all went well.
+/// Measures the same as `raykata cost`, and the intersection methods. Returns whether it succeeded.
 pub fn cost(options: &cost::Options) -> Result<bool> {
     cost::run(options, "cargo run --release -p grader --", Some(&summary))
 }
 
-/// Runs the gauntlet; whether nothing leaked.
+/// Runs the gauntlet. Returns whether no ray leaked.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let reference = Source::prepare(root, Which::Solutions, Need::Frames)?;
     if let Some(rays) = options.rays {
@@ -95,7 +99,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     agreement_table(&reference, options)
 }
 
-/// All methods and the functions of the kit.
+/// Returns the rows of all methods and of the kit's functions.
 fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
     let methods = METHODS.iter().map(|method| {
         let hit = method.hit;
@@ -106,16 +110,16 @@ fn rows(kit: &dyn Kit) -> Vec<Row<'_>> {
     methods.chain(rows_of_kit(kit)).collect()
 }
 
-/// All methods and the functions of the kit in short.
+/// Returns the short results of all methods and of the kit's functions.
 pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
     judge::gauntlet::summary(rows(kit))
 }
 
-/// The reference's searches on scenes that are hard to search; whether all answers are right.
+/// Prints the results of the reference's searches on scenes that are hard to search. Returns whether all answers are right.
 fn agreement_table(reference: &Source, options: &Options) -> Result<bool> {
     let all = agreement::all(reference, options.seed, (options.inputs / 20).max(100))?;
     println!(
-        "searches against all triangles, exactly (brute force and 18 searches of hierarchies, on each scene)"
+        "searches compared with exact tests of all triangles (brute force and 18 other searches per scene)"
     );
     println!("{:<30}{:>10}{:>10}{:>10}{:>12}{:>8}", "", "answers", "hits", "ties", "by rounding", "wrong");
     for scene in all.chunk_by(|one, next| one.scene == next.scene) {
@@ -131,8 +135,8 @@ fn agreement_table(reference: &Source, options: &Options) -> Result<bool> {
         );
     }
     println!(
-        "by rounding: the ray passes exactly through an edge, and double precision took it for a neighbour or a miss.\n\
-         wrong: not among the triangles that are exactly met first, or not what asking all triangles finds."
+        "by rounding: the ray passes through an edge, and double precision found a neighbour or a miss.\n\
+         wrong: not a triangle that is met first by exact arithmetic, or not the hit of brute force."
     );
     Ok(all.iter().all(|one| one.mismatches == 0))
 }

@@ -1,4 +1,5 @@
-//! Mistakes that are printed or handed on, kept as they are so that their price can be shown.
+//! Intersection methods with errors that are printed in lectures or commonly used. They stay unchanged, so that the
+//! gauntlet can show their cost.
 
 use super::methods::single::{
     edge_forms, gram_weights, in_range, moeller_trumbore, numbers, on_plane, plane_sides, t_of_plane,
@@ -7,13 +8,13 @@ use glam::Vec3;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// Folklore: "parallel" is a determinant below a fixed number, whatever the size of the triangle.
+/// A common error: it treats a determinant below a fixed number as parallel, for triangles of any size.
 pub(super) fn moeller_trumbore_cut_off(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let det = (triangle.b - triangle.a).dot(ray.direction.cross(triangle.c - triangle.a));
     if det.abs() < 1e-6 { None } else { moeller_trumbore(ray, triangle) }
 }
 
-/// Lecture 002 prints the terms of another numerator in the determinant (trap T1).
+/// Lecture 002 prints terms of another numerator in the determinant (trap T1).
 pub(super) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let [o, direction, corner, second, third] = numbers(ray, triangle);
     let (first, other, rhs) = (second - corner, third - corner, o - corner);
@@ -29,19 +30,19 @@ pub(super) fn cramer(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     if inside { in_range(ray, t) } else { None }
 }
 
-/// Lecture 001 tests the sum of the weights alone (trap T2).
+/// Lecture 001 tests only the sum of the barycentric coordinates (trap T2).
 pub(super) fn gram_sum_only(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let (beta, gamma, t) = gram_weights(ray, triangle);
     if (0.0..=1.0).contains(&(beta + gamma)) { in_range(ray, t) } else { None }
 }
 
-/// Lecture 003 gives up at the first negative distance, which holds for one winding only (trap T9).
+/// Lecture 003 returns a miss at the first negative distance, which is right for one winding only (trap T9).
 pub(super) fn by_planes_of_one_winding(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let (t, sides) = plane_sides(ray, triangle);
     if sides.iter().any(|&side| side < 0.0) { None } else { in_range(ray, t) }
 }
 
-/// Lecture 003 takes areas without a sign (trap T7).
+/// Lecture 003 uses areas without a sign (trap T7).
 pub(super) fn by_unsigned_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let [_, _, a, b, c] = numbers(ray, triangle);
     let (t, point, n) = on_plane(ray, triangle);
@@ -50,7 +51,7 @@ pub(super) fn by_unsigned_areas(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     if alpha + beta <= 1.0 { in_range(ray, t) } else { None }
 }
 
-/// Edges widened by a rounding of the whole: leaks less, and hits what it should miss.
+/// Edges widened by a rounding error of the whole area: it leaks less, but hits where it should miss.
 pub(super) fn pluecker_with_a_band(ray: &Ray, triangle: &Triangle) -> Option<f32> {
     let forms = edge_forms(ray, triangle);
     let sum: f32 = forms.iter().sum();

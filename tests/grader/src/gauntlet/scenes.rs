@@ -1,4 +1,4 @@
-//! Triangles as a scene, so that whole frames search them.
+//! Makes a scene of triangles, so that whole frames search them.
 
 use glam::Vec3;
 use raykata::camera::Camera;
@@ -8,7 +8,8 @@ use raykata::scene::{Node, Quality, Scene, SceneMesh, TriangleMethod};
 use raykata::shape::{Shape, Triangle};
 use std::sync::Arc;
 
-/// A scene of these triangles, which keep their numbers, searched in this way on one thread.
+/// Returns a job for a scene of these triangles, rendered on one thread with this quality. The triangles keep their
+/// indices.
 pub fn job(triangles: &[Triangle], quality: Quality) -> RenderJob {
     let camera =
         Camera::new(Vec3::Z, Vec3::NEG_Z, Vec3::Y, 45.0, 1.0).unwrap_or_else(|error| panic!("{error:?}"));

@@ -1,9 +1,9 @@
-//! Images that surfaces are covered with, in linear light.
+//! Generates the textures of the scenes, in linear light.
 
 use glam::{Vec2, Vec3, vec2, vec3};
 use raykata::film::Film;
 
-/// Every image with its file name.
+/// Returns every image with its file name.
 pub fn all() -> [(&'static str, Film); 3] {
     [
         ("tiles.png", paint(256, 256, tiles)),
@@ -12,7 +12,7 @@ pub fn all() -> [(&'static str, Film); 3] {
     ]
 }
 
-/// Asks for the colour at the middle of each pixel, from the lower left corner.
+/// Makes an image from the colours at the pixel centres. Coordinates start at the lower left corner.
 fn paint(width: u32, height: u32, color: fn(Vec2) -> Vec3) -> Film {
     let mut film = Film::new(width, height);
     for (index, pixel) in film.pixels.iter_mut().enumerate() {
@@ -22,7 +22,7 @@ fn paint(width: u32, height: u32, color: fn(Vec2) -> Vec3) -> Film {
     film
 }
 
-/// A number in `0.0..1.0` for a cell, the same on every machine.
+/// Returns a pseudo-random number in `0.0..1.0` for a cell, the same on every machine.
 fn shade(x: i32, y: i32) -> f32 {
     let mut bits = (x as u32).wrapping_mul(0x9e37_79b9) ^ (y as u32).wrapping_mul(0x85eb_ca6b);
     bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
@@ -30,7 +30,7 @@ fn shade(x: i32, y: i32) -> f32 {
     ((bits ^ (bits >> 15)) >> 8) as f32 / (1 << 24) as f32
 }
 
-/// Four by four tiles in two colours, no two quite alike, with joints between them.
+/// Returns the colour of four by four tiles in two colours, with varied brightness and with joints between them.
 fn tiles(at: Vec2) -> Vec3 {
     let place = 4.0 * at;
     let (column, row) = (place.x as i32, place.y as i32);
@@ -42,7 +42,7 @@ fn tiles(at: Vec2) -> Vec3 {
     tile * (0.82 + 0.24 * shade(column, row))
 }
 
-/// Eight courses of bricks, every other one shifted by half a brick.
+/// Returns the colour of eight courses of bricks, with every second one shifted by half a brick.
 fn bricks(at: Vec2) -> Vec3 {
     let course = (8.0 * at.y).floor();
     let along = 4.0 * at.x + 0.5 * (course % 2.0);
@@ -55,7 +55,7 @@ fn bricks(at: Vec2) -> Vec3 {
     vec3(0.44, 0.13, 0.075) * (0.7 + 0.6 * shade(brick, course as i32))
 }
 
-/// A sphere for the beach: six segments from pole to pole, in three colours and white.
+/// Returns the colour of a beach ball: six segments from pole to pole, in three colours and white.
 fn sphere(at: Vec2) -> Vec3 {
     let white = vec3(0.82, 0.80, 0.76);
     if !(0.07..0.93).contains(&at.y) {

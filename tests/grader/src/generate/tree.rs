@@ -1,14 +1,14 @@
-//! A tree for forests: a trunk that forks, and leaves of two triangles.
+//! Generates a tree for forests: a trunk that forks, and leaves of two triangles.
 
 use glam::{Quat, Vec3, vec3};
 use std::f32::consts::TAU;
 use std::fmt::Write;
 
-/// How often the trunk forks.
+/// The number of forks from the trunk to a twig.
 const FORKS: u32 = 5;
-/// Corners around a branch.
+/// The number of corners around a branch.
 const AROUND: usize = 5;
-/// The angle between two leaves around a twig: the golden one, so that none lies above another.
+/// The angle between two leaves around a twig, in radians: the golden angle, so that no leaf lies above another.
 const GOLDEN: f32 = 2.399_963;
 
 #[derive(Default)]
@@ -19,13 +19,13 @@ struct Tree {
     n_branches: u32,
 }
 
-/// The tree as an OBJ file, one unit high or so, with the materials `bark` and `leaf`.
+/// Returns the tree as an OBJ file, about one unit high, with the materials `bark` and `leaf`.
 pub fn obj() -> String {
     let mut tree = Tree::default();
     tree.branch(Vec3::ZERO, Quat::IDENTITY, 0.34, 0.035, FORKS);
     let mut text = String::from("# a tree, made by raykata generate; CC0\n");
     for vertex in &tree.vertices {
-        // Five digits are a hundredth of a millimetre on a tree of a metre.
+        // Five digits give a hundredth of a millimetre on a tree of one metre.
         let _ = writeln!(text, "v {:.5} {:.5} {:.5}", vertex.x, vertex.y, vertex.z);
     }
     for (material, faces) in [("bark", &tree.bark), ("leaf", &tree.leaves)] {
@@ -38,7 +38,7 @@ pub fn obj() -> String {
 }
 
 impl Tree {
-    /// A tapering branch from `base` along the y axis of `turn`, and what grows at its end.
+    /// Adds a tapering branch from `base` along the y axis of `turn`, and the branches or leaves at its end.
     fn branch(&mut self, base: Vec3, turn: Quat, length: f32, radius: f32, forks: u32) {
         let number = self.n_branches;
         self.n_branches += 1;
@@ -58,7 +58,7 @@ impl Tree {
             (0..5).for_each(|leaf| self.leaf(base.lerp(top, 0.4 + 0.15 * leaf as f32), turn, leaf as f32));
             return;
         }
-        // Three twigs to a fork, each turned on by the golden angle from fork to fork.
+        // Each fork has three twigs. The golden angle rotates them from fork to fork.
         for i in 0..3 {
             let around = Quat::from_rotation_y(TAU * i as f32 / 3.0 + GOLDEN * number as f32);
             let lean = Quat::from_rotation_z(0.5 + 0.07 * (number % 5) as f32);

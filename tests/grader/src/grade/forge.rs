@@ -1,5 +1,5 @@
-//! Makes a worker of a submission: one `rustc` for the exercises, one for the program, both in a sandbox, against libraries
-//! that were built once. Cargo is not asked, so no two submissions ever share what cargo would take for fresh.
+//! Builds the worker of a submission: one call of `rustc` for the exercises and one for the program, both in a sandbox. The
+//! libraries were built once. Cargo is not used, because it might take the build of one submission for that of another.
 
 use super::result::Outcome;
 use crate::sandbox::{self, Confinement, Ended, How, Purpose, Sandbox};
@@ -16,36 +16,36 @@ use std::time::Duration;
 mod blame;
 mod libraries;
 
-/// A class is compiled in minutes only if nobody takes more than this; the reference takes a second.
+/// Time limit of the compiler per call. The reference takes a second.
 const COMPILER_PATIENCE: Duration = Duration::from_secs(60);
 
-/// How much of the compiler's messages is read. Each error is a few kilobytes of JSON.
+/// Most bytes of compiler messages that are read. Each error is a few kilobytes of JSON.
 const MOST_MESSAGES: usize = 4 << 20;
 
-/// What workers are made with.
+/// Builds workers.
 pub struct Forge {
     rustc: PathBuf,
     toolchain: PathBuf,
-    /// The scaffold and foreign crates, nothing else: whatever lies here a submission can read.
+    /// A folder with the compiled scaffold and foreign crates. It contains nothing else, because a submission can read it.
     libraries: PathBuf,
-    /// The exercises as nobody has begun them, and what connects them.
+    /// The untouched exercises and the glue that connects them with the kit.
     pristine: BTreeMap<String, String>,
-    /// Lerp the compiler and the machine.
+    /// The sandbox around the compiler.
     confinement: Confinement,
 }
 
-/// What came of it.
+/// The result of a build.
 pub struct Forged {
-    /// The program that answers.
+    /// The path of the worker program.
     pub worker: PathBuf,
-    /// Files in whose place the empty exercise was put, with the outcome of their checks and the reason.
+    /// Files that the empty exercise replaces, with the outcome of their checks and the reason.
     pub replaced: BTreeMap<String, (Outcome, String)>,
-    /// Processor time.
+    /// Processor time of the build.
     pub cpu: Duration,
 }
 
 impl Forge {
-    /// Builds the libraries, if that has not been done, and looks at what is there.
+    /// Builds the libraries if necessary, and reads the untouched exercises.
     pub fn prepare(root: &Path, confinement: Confinement) -> Result<Forge> {
         let toolchain = PathBuf::from(said_by(Command::new("rustc").args(["--print", "sysroot"]))?);
         let rustc = toolchain.join("bin/rustc");
@@ -54,17 +54,17 @@ impl Forge {
         Ok(Forge { libraries: libraries::build(root)?, rustc, toolchain, pristine, confinement })
     }
 
-    /// The names of the files in which students write.
+    /// Returns the names of the exercise files.
     pub fn exercises(&self) -> Vec<String> {
         self.pristine.keys().filter(|name| stage_of(name).is_some()).cloned().collect()
     }
 
-    /// Whether this is the exercise as nobody has begun it.
+    /// Returns whether this is the text of the untouched exercise.
     pub fn is_untouched(&self, name: &str, text: &str) -> bool {
         self.pristine.get(name).is_some_and(|pristine| pristine == text)
     }
 
-    /// Fingerprint of the exercises, the glue and the libraries.
+    /// Returns a fingerprint of the exercises, the glue and the libraries.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         self.pristine.iter().for_each(|(name, text)| hash.update(format!("{name}\0{text}\0")));
@@ -72,11 +72,12 @@ impl Forge {
         hex(&hash.finalize())
     }
 
-    /// Compiles these files, in `scratch`, an empty folder. Files that stand in the way of a program are replaced by the
-    /// empty exercise, one after the other.
+    /// Compiles these files in the empty folder `scratch`. While the build fails, the empty exercise replaces the files
+    /// that cause the errors.
     pub fn build(&self, scratch: &Path, files: &BTreeMap<String, String>) -> Result<Forged> {
         let mut cpu = Duration::ZERO;
         let mut replaced = BTreeMap::new();
+        // Compile the exercises. Replace the files with errors until the rest compiles.
         loop {
             self.lay_out(scratch, files, &replaced)?;
             let ended = self.compile_exercises(scratch)?;
@@ -90,7 +91,7 @@ impl Forge {
             ensure!(!suspects.is_empty(), "the empty exercises do not compile:\n{}", text_of(&ended));
             let verdict = blame::blame(&ended, &suspects);
             if verdict.is_empty() {
-                // The compiler died without a word: whose file is it? Each is tried alone.
+                // The compiler died without a message. Compile each file alone to find the cause.
                 for name in suspects {
                     let alone = files.keys().filter(|other| *other != name).chain(replaced.keys());
                     let alone = alone
@@ -107,6 +108,7 @@ impl Forge {
             }
             replaced.extend(verdict.into_iter().map(|(name, why)| (name, (Outcome::DoesNotCompile, why))));
         }
+        // Link the worker.
         let ended = self.link_worker(scratch)?;
         cpu += ended.cpu;
         let worker = scratch.join("out/worker");
@@ -119,8 +121,8 @@ impl Forge {
                 died(&ended),
                 text_of(&ended)
             );
-            // Nobody knows whose fault it is, so all that was written is left out.
-            let why = format!("what was written compiles and cannot be linked: {}\n", died(&ended));
+            // A linker error does not name a file, so replace all files of the student.
+            let why = format!("the files compile but cannot be linked: {}\n", died(&ended));
             let all: BTreeMap<_, _> = suspects
                 .into_iter()
                 .map(|name| (name.clone(), (Outcome::DoesNotCompile, why.clone())))
@@ -149,8 +151,8 @@ impl Forge {
         Ok(())
     }
 
-    /// Compiles the exercises, without the feature `frames`: no check asks for a frame, and the renderer is the larger
-    /// part of what the compiler would have to do for each submission.
+    /// Compiles the exercises without the feature `frames`. No check asks for a frame, and the renderer would be the larger
+    /// part of each build.
     fn compile_exercises(&self, scratch: &Path) -> Result<Ended> {
         let arguments = [
             "exercises/src/lib.rs",
@@ -159,7 +161,7 @@ impl Forge {
             "--emit=link",
             "-o",
             "out/libexercises.rlib",
-            // Not --cap-lints, which would turn the next line into a warning.
+            // Do not use --cap-lints: it would turn the error of the next line into a warning.
             "-Awarnings",
             "-Funsafe_code",
             "--error-format=json",
@@ -167,7 +169,7 @@ impl Forge {
         self.compile(Purpose::Compiler, scratch, &arguments, &["raykata", "glam"])
     }
 
-    /// Links the program that answers with the exercises.
+    /// Links the worker program with the exercises.
     fn link_worker(&self, scratch: &Path) -> Result<Ended> {
         let arguments = [
             "exercises/src/worker.rs",
@@ -195,7 +197,7 @@ impl Forge {
         };
         let mut command = sandbox.command(&self.rustc);
         command.current_dir(scratch).args(arguments).args(["--edition=2024", "-Cdebuginfo=0"]);
-        // An exercise is asked so little that optimising it costs more than its answers take.
+        // Do not optimise: the checks ask so little that optimisation would take longer than the answers.
         command.args(["-Copt-level=0", "-Ccodegen-units=2", "-Cembed-bitcode=no"]);
         command.arg(option("-Ldependency=", &self.libraries));
         for name in externs {
@@ -216,16 +218,15 @@ fn died(ended: &Ended) -> String {
     match ended.how {
         How::Exited(code) => format!("the compiler ended with code {code}"),
         How::Signalled(6 | 9 | 11) => {
-            "the compiler ran out of memory or stack: something here grows without end while it is compiled"
+            "the compiler ran out of memory or stack: some code here grows without end during compilation"
                 .into()
         }
         How::Signalled(signal) => format!("the compiler was ended by signal {signal}"),
         How::TookTooLong | How::UsedUpCpu => {
-            "the compiler did not come to an end in time: something here never ends while it is compiled"
-                .into()
+            "the compiler exceeded its time limit: the compilation of some code here never ends".into()
         }
         How::TooManyProcesses => "the compiler started more processes than it needs".into(),
-        How::WroteTooMuch => "the compiler had more to say than anybody can read".into(),
+        How::WroteTooMuch => "the compiler printed too many messages".into(),
     }
 }
 

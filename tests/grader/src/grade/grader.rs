@@ -1,4 +1,4 @@
-//! Grades all submissions of a folder, some at a time.
+//! Grades all submissions of a folder, several at the same time.
 
 use super::forge::Forge;
 use super::judge::Judge;
@@ -15,40 +15,40 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// The syntax check reads tokens; the longest file takes it a few milliseconds.
+/// Time limit of the syntax check. It reads tokens and needs a few milliseconds for the longest file.
 const LINT_PATIENCE: Duration = Duration::from_secs(10);
 
-/// All that a submission is graded with.
+/// Everything that grading a submission needs.
 pub struct Grader {
     /// Makes workers.
     pub forge: Arc<Forge>,
-    /// Asks them.
+    /// Runs the checks against them.
     pub judge: Arc<Judge>,
-    /// Lerp a submission and the machine.
+    /// The sandbox around a submission.
     pub confinement: Confinement,
     /// Rules of the syntax check that do not apply.
     pub allowed: Vec<String>,
 }
 
-/// How many findings in a file are told: the first says what is wrong, and the twentieth nothing new.
+/// Most findings that are reported per file. More of them would not help a student.
 const MOST_FINDINGS: usize = 10;
 
-/// How much of what the compiler says is kept, of all files together.
+/// Most bytes of compiler messages that are kept, for all files together.
 const MOST_FROM_COMPILER: usize = 16 * 1024;
 
-/// A file that was not built with, and why.
+/// Files that were left out of the build, with the outcome of their checks and the reason.
 type Lost = BTreeMap<String, (Outcome, String)>;
 
-/// What the syntax check says of a submission.
+/// The result of the syntax check of a submission.
 struct Read {
-    /// The files that hold what no exercise needs.
+    /// The files that contain constructs that no exercise needs.
     refused: Lost,
-    /// Whether an answer may depend on what was asked before.
+    /// Whether an answer may depend on earlier questions.
     may_remember: bool,
 }
 
 impl Grader {
-    /// Grades all that `store` does not know yet, on `jobs` threads; tells `done` of each.
+    /// Grades all submissions that `store` does not know yet, on `jobs` threads. Calls `done` after each.
     pub fn grade_all(
         &self,
         submissions: &[Submission],
@@ -72,34 +72,37 @@ impl Grader {
         queue::run(&vec![(); jobs], submissions, grade).map(drop)
     }
 
-    /// What is taken of a submission.
+    /// Reads the stage files of a submission.
     pub fn take(&self, path: &Path) -> Taken {
         submission::take(path, &self.forge.exercises())
     }
 
-    /// Grades what was taken of a submission. Fails only if the grader itself does.
+    /// Grades the files of a submission. Returns an error only if the grader itself fails.
     pub fn grade(&self, student: &str, taken: Taken) -> Result<Graded> {
         let mut graded = self.graded(student, &taken);
         let Taken { files, mut remarks, .. } = taken;
         if !graded.trouble.is_empty() {
-            graded.checks = self.judge.all(Outcome::NotWritten, "nothing could be taken of the submission");
+            graded.checks = self.judge.all(Outcome::NotWritten, "no file of the submission could be read");
             graded.remarks = remarks.into_iter().map(cleaned).collect();
             return Ok(graded);
         }
-        // Outside of the folders of the kit and of the submission, and gone afterwards.
-        let scratch = tempfile::tempdir().context("cannot make a folder to compile in")?;
+        // Compile in a temporary folder outside of the kit and of the submission.
+        let scratch = tempfile::tempdir().context("cannot make a temporary folder for the compiler")?;
+        // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
             files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
         let forged = self.forge.build(scratch.path(), &kept)?;
         graded.cpu_ms = forged.cpu.as_millis() as u64;
+        // Report the files that do not compile.
         for (name, (_, messages)) in &forged.replaced {
             let what =
-                "does not compile; the empty exercise was put in its place, so that others can be judged";
+                "does not compile; the empty exercise replaces it, so that the other files can be graded";
             remarks.push(Remark { file: name.clone(), what: what.into() });
             graded.compiler += messages;
         }
         graded.compiler = clean(&graded.compiler, MOST_FROM_COMPILER);
+        // Run the checks.
         let lost: Lost = refused.into_iter().chain(forged.replaced).collect();
         let started = Instant::now();
         graded.checks = self.judge.judge(&forged.worker, &lost, may_remember);
@@ -108,7 +111,7 @@ impl Grader {
         Ok(graded)
     }
 
-    /// A grade to be filled in.
+    /// Returns a grade without checks, to be filled in.
     fn graded(&self, student: &str, taken: &Taken) -> Graded {
         Graded {
             student: student.into(),
@@ -121,36 +124,40 @@ impl Grader {
         }
     }
 
-    /// The grade where grading itself broke: the class goes on, and the next run tries it again.
+    /// Returns the grade of a submission on which grading itself failed. Grading continues with the class, and the next run
+    /// tries this submission again.
     fn broken(&self, mut graded: Graded, error: &anyhow::Error) -> Graded {
         graded.content.clear();
         graded.trouble = format!("could not be graded: {error:#}");
-        graded.checks = self.judge.all(Outcome::NotTried, "grading broke; see what the instructor was told");
+        graded.checks = self
+            .judge
+            .all(Outcome::NotTried, "grading itself failed; the instructor's report has the reason");
         graded
     }
 
-    /// Puts the files to the syntax check, each in a sandbox: what is meant to confuse a compiler may confuse the check.
+    /// Runs the syntax check on the files, each in a sandbox: a file that attacks the compiler may also attack the check.
     fn read(&self, files: &BTreeMap<String, String>, remarks: &mut Vec<Remark>) -> Result<Read> {
         let mut lost = Lost::new();
-        // What a rule would have kept out may remember in ways that the check does not know.
+        // Code that is allowed by `--allow` may store data in ways that the syntax check does not know.
         let mut may_remember = !self.allowed.is_empty();
         for (name, text) in files.iter().filter(|(name, text)| !self.forge.is_untouched(name, text)) {
             let reading = match self.reading(text)? {
                 Some(reading) => reading,
                 None => {
-                    let why =
-                        "the syntax check broke on it: it is nested too deeply for any exercise".to_owned();
+                    let why = "the syntax check failed: the code is nested too deeply".to_owned();
                     let broke = Finding { rule: "nesting".into(), line: 1, why };
                     Reading { findings: vec![broke], may_remember: true }
                 }
             };
             may_remember |= reading.may_remember;
+            // Drop the findings of rules that are switched off.
             let against: Vec<String> = reading
                 .findings
                 .iter()
                 .filter(|finding| !self.allowed.contains(&finding.rule))
                 .map(|finding| format!("{name}:{}: {} [{}]", finding.line, finding.why, finding.rule))
                 .collect();
+            // Refuse the file if findings remain, and report the first ones.
             if !against.is_empty() {
                 let more = against.len().saturating_sub(MOST_FINDINGS);
                 let mut told = against[..against.len() - more].join("\n");
@@ -164,7 +171,7 @@ impl Grader {
         Ok(Read { refused: lost, may_remember })
     }
 
-    /// What the syntax check reads in a file; `None` if it broke.
+    /// Runs the syntax check on one file. Returns `None` if the check crashed.
     fn reading(&self, text: &str) -> Result<Option<Reading>> {
         let mut command = Sandbox::with(self.confinement, Purpose::Reader).command(&own_program()?);
         command.arg(LINT_WORD);
@@ -177,15 +184,15 @@ impl Grader {
     }
 }
 
-/// A remark that can be printed: names of files may hold anything.
+/// Returns the remark without control characters, which a file name may contain.
 fn cleaned(remark: Remark) -> Remark {
     Remark { file: clean_line(&remark.file, 256), what: clean(&remark.what, 4096) }
 }
 
-/// With this word for its first argument the program checks what it reads.
+/// The first argument that makes the program run the syntax check on its standard input.
 const LINT_WORD: &str = "__syntax";
 
-/// Does the syntax check if this process was started for that. For the start of `main`.
+/// Runs the syntax check if this process was started for it. Call this at the start of `main`.
 pub fn lint_if_asked() {
     if std::env::args().nth(1).as_deref() == Some(LINT_WORD) {
         let mut text = String::new();
@@ -200,5 +207,5 @@ pub fn lint_if_asked() {
 }
 
 fn own_program() -> Result<PathBuf> {
-    std::env::current_exe().context("this program cannot find itself")
+    std::env::current_exe().context("the path of this program is unknown")
 }

@@ -1,4 +1,5 @@
-//! The verdict on a submission: the laws are put to its worker, over a pipe, by a process that holds no code of it.
+//! The judge: runs the checks against the worker of a submission, over a socket. The judge's process contains no code of the
+//! submission.
 
 use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
@@ -23,47 +24,48 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long a call may take, in processor time. The slowest of the reference takes half a second without optimisation.
+/// Time limit per call, in processor time. The reference's slowest call takes half a second without optimisation.
 const CALL_PATIENCE: Duration = Duration::from_secs(4);
 
-/// How long all checks of a submission may take together. With the slowest way to fail, a call that never returns, that
-/// is enough for 70 checks; what is left then is not tried.
+/// Time limit for all checks of a submission together. The slowest failure is a call that never returns; the limit allows
+/// 70 of them. Checks beyond the limit are not tried.
 const BUDGET: Duration = Duration::from_secs(300);
 
-/// How often a function that is right on the known inputs and wrong on hidden ones is asked again. An honest mistake that
-/// one run in two meets is met by all of them and not by the known inputs in 1 of 500 submissions that have it.
+/// Number of further seeds for a function that is right on the public inputs and wrong on hidden ones. A function that
+/// fails with all of them is taken for memorised. Suppose that an honest mistake shows with every second seed. Then it
+/// shows with all hidden seeds and not with the public inputs in 1 of 500 submissions.
 const MORE_SEEDS: u64 = 7;
 
-/// How much of a message is kept.
+/// Longest message that is kept, in bytes.
 const MOST_SAID: usize = 2048;
 
-/// What a submission is asked, and how.
+/// Checks, seed and sandbox with which submissions are judged.
 pub struct Judge {
-    /// In the order of the lecture.
+    /// The checks, in the order of the lecture.
     checks: Vec<Put>,
     /// Picks the hidden inputs.
     seed: u64,
-    /// Lerp a worker and the machine.
+    /// The sandbox around a worker.
     confinement: Confinement,
     /// The inputs of all checks, which are the same for all submissions.
     drawn: Arc<Drawn>,
 }
 
-/// A check, and what is known of it from putting it to the reference.
+/// A check, and the facts that were learned by running it against the reference.
 struct Put {
     check: &'static Check,
-    /// Whether hidden inputs are others than those that students have.
+    /// Whether the hidden inputs differ from the public ones.
     hides: bool,
-    /// The functions that it asks.
+    /// The functions that it calls.
     asks: HashSet<Discriminant<Request>>,
 }
 
-/// What came of a check.
+/// The result of a check.
 struct Answered {
     outcome: Outcome,
     message: String,
     picture: Option<Picture>,
-    /// Whether the known inputs are the only ones on which it is right.
+    /// Whether the answers are right on the public inputs and wrong with every hidden seed.
     special: bool,
 }
 
@@ -74,19 +76,27 @@ impl Answered {
 }
 
 impl Judge {
-    /// All checks of these stages. The reference is asked first: a check whose questions are the same with every seed is
-    /// put once, and one on which the reference itself fails with this seed is unfair; its seed is left out, with a word.
+    /// Prepares all checks of these stages by running them against the reference. A check whose questions do not depend on
+    /// the seed runs only once per submission. If the reference itself fails a check with this seed, the check uses only
+    /// the public inputs, and a warning is printed.
     pub fn of(root: &Path, stages: &[u8], seed: u64, confinement: Confinement) -> Result<Judge> {
+        // Collect the checks of the stages, and build the reference.
         checks::golden::seal();
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
+        // Compare the questions of each check with the public seed and with the hidden one.
         let hides = |reference: &Arc<Worker>, check: &&'static Check| {
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed));
-            ensure!(passes, "the reference fails {} of stage {}: is the kit whole?", check.name, check.stage);
+            ensure!(
+                passes,
+                "the reference fails {} of stage {}: is the kit complete?",
+                check.name,
+                check.stage
+            );
             if !passes_hidden {
-                eprintln!("{} of stage {} is put with the known inputs alone", check.name, check.stage);
+                eprintln!("warning: {} of stage {} uses only the public inputs", check.name, check.stage);
             }
             Ok(Put { check, hides: passes_hidden && known != hidden, asks })
         };
@@ -96,11 +106,11 @@ impl Judge {
         Ok(Judge { checks, seed, confinement, drawn: Arc::default() })
     }
 
-    /// Puts all checks to the program `worker`; those of the files in `replaced` have their outcome already.
+    /// Runs all checks against the program `worker`. Checks of the files in `replaced` get the outcome given there.
     ///
-    /// No check depends on another: where the program `may_remember` what it was asked, each has a process of its own.
-    /// Elsewhere one process answers as long as it passes, and whatever it fails it is asked again as if for the first
-    /// time.
+    /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets a new
+    /// process. Otherwise one process answers until a check fails. A check with a wrong answer or a crash is then repeated
+    /// in a new process.
     pub fn judge(
         &self,
         worker: &Path,
@@ -118,8 +128,9 @@ impl Judge {
             .checks
             .iter()
             .map(|put| {
+                // Use the process of the check before if it may be used again, otherwise a new one.
                 let asked = seasoned.take().map(|worker| (self.ask(put, worker.clone(), until), worker));
-                // Nothing that was asked before makes an exercise empty, or a call endless.
+                // Earlier questions cannot cause these outcomes.
                 let settled = |asked: &(Answered, Arc<Worker>)| {
                     matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
                 };
@@ -127,14 +138,14 @@ impl Judge {
                     let worker = fresh();
                     (self.ask(put, worker.clone(), until), worker)
                 });
-                // Behind a check that has not come to an end its thread may still ask.
+                // After a timeout the thread of the check may still send questions.
                 let alone = answered.outcome != Outcome::TooLong;
                 seasoned = (alone && !may_remember).then_some(worker);
-                // A check of several functions does not say which of them it was.
+                // A check of several functions does not tell which of them is memorised.
                 if answered.special && put.asks.len() == 1 {
                     by_heart.extend(&put.asks);
                 }
-                // The empty exercise says which file it is, and why it is empty is known.
+                // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
                 let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
                 let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
                 match lost {
@@ -144,7 +155,7 @@ impl Judge {
             })
             .collect();
         let results = self.checks.iter().zip(judged).map(|(put, answered)| {
-            // Whose inputs everybody knows proves nothing of a function that knows its inputs.
+            // A check with public inputs only proves nothing about a function that has memorised its answers.
             if answered.outcome == Outcome::Passed && !put.hides && !put.asks.is_disjoint(&by_heart) {
                 return result(put.check, Answered::new(Outcome::WrongOnHidden, hidden_message(put.check)));
             }
@@ -153,27 +164,29 @@ impl Judge {
         results.collect()
     }
 
-    /// The same outcome for every check.
+    /// Gives every check the same outcome.
     pub fn all(&self, outcome: Outcome, message: &str) -> Vec<CheckResult> {
         self.checks.iter().map(|put| result(put.check, Answered::new(outcome, message))).collect()
     }
 
-    /// Puts one check to a worker.
+    /// Runs one check against a worker.
     fn ask(&self, put: &Put, worker: Arc<Worker>, until: Instant) -> Answered {
         let check = put.check;
         if Instant::now() > until {
-            let message = "not tried: the checks before this one have used up the time of the submission";
+            let message = "not tried: earlier checks used up the time of the submission";
             return Answered::new(Outcome::NotTried, message);
         }
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
-        // With the inputs that students have, so that they can see again what they are told.
+        // Use the public inputs first, so that students can reproduce the message.
         let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
         let known = examine(0);
+        // If these pass, use the hidden inputs.
         let answered = match outcome(&known) {
             Outcome::Passed if !put.hides => Answered::new(Outcome::Passed, ""),
             Outcome::Passed => match outcome(&examine(self.seed)) {
                 Outcome::Wrong | Outcome::NotWritten => {
+                    // Try further seeds to detect memorised answers.
                     let mut seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
                     let special = seeds.all(|seed| {
                         let again = outcome(&checks::examine(check, &kit, seed));
@@ -195,7 +208,7 @@ impl Judge {
                 }
             }
         };
-        // A check that hangs is left behind on a thread of its own: without answers it comes to an end.
+        // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
         over.store(true, Ordering::Relaxed);
         answered
     }
@@ -203,7 +216,7 @@ impl Judge {
 
 fn hidden_message(check: &Check) -> String {
     format!(
-        "{}  right on the inputs that you have, wrong on others: an answer for special cases?\n",
+        "{}  right on the inputs that you have, wrong on others: look for an answer for special cases\n",
         rubric::entry(check.stage, check.name).header()
     )
 }
@@ -218,7 +231,7 @@ fn outcome(examined: &Result<checks::Outcome, KitError>) -> Outcome {
     }
 }
 
-/// What was compared, where pictures were.
+/// Returns the compared pictures of a check about pictures.
 fn picture(examined: &Result<checks::Outcome, KitError>) -> Option<Picture> {
     let Ok(Err(Broken { picture: Some(png), .. })) = examined else { return None };
     let caption = "reference | yours | four times the difference".into();
@@ -233,7 +246,8 @@ fn result(check: &Check, answered: Answered) -> CheckResult {
     CheckResult { stage: check.stage, name: check.name.into(), outcome, points, earned, message, picture }
 }
 
-/// What the reference is asked by a check: a fingerprint of the questions, and to which functions; and whether it passes.
+/// Runs a check against the reference. Returns a fingerprint of the questions, the functions that were called, and whether
+/// the reference passes.
 fn asked(
     reference: &Arc<Worker>,
     check: &Check,
@@ -247,7 +261,7 @@ fn asked(
     (questions.finalize().to_vec(), functions, passes)
 }
 
-/// The reference, with somebody who writes down what it is asked.
+/// The reference, with a record of the questions.
 struct Overheard {
     reference: Arc<Worker>,
     heard: Arc<Mutex<(Sha256, HashSet<Discriminant<Request>>)>>,
@@ -256,7 +270,7 @@ struct Overheard {
 impl Transport for Overheard {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         let mut message = Vec::new();
-        // Into a vector nothing fails.
+        // Writing into a vector cannot fail.
         let _ = raykata::worker::send(&mut message, &request);
         let mut heard = self.heard.lock().unwrap_or_else(PoisonError::into_inner);
         heard.0.update(message);
@@ -266,7 +280,7 @@ impl Transport for Overheard {
     }
 }
 
-/// A worker that is asked until the verdict is there.
+/// A worker that gets questions until the check has its verdict.
 struct Asked {
     worker: Arc<Worker>,
     over: Arc<AtomicBool>,
@@ -275,7 +289,7 @@ struct Asked {
 impl Transport for Asked {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         if self.over.load(Ordering::Relaxed) {
-            kit_error::unwind(KitError::Crashed { how: "the verdict was there before".into() });
+            kit_error::unwind(KitError::Crashed { how: "the check has ended".into() });
         }
         let answer = self.worker.call(request, watch);
         match sanity::fault(&answer) {

@@ -1,82 +1,87 @@
-//! The syntax check: names what no exercise needs, with line and reason, before anything is compiled.
+//! The syntax check: before compilation it lists constructs that no exercise needs, each with line and reason.
 //!
-//! It is a courtesy and no wall: safe Rust can reach around it, and the sandbox is there for that. It reads tokens and not
-//! only syntax trees, so that what stands in a macro is seen as well. A file that is no Rust is left to the compiler.
+//! It gives early and clear messages but no security. Safe Rust can avoid it, and only the sandbox stops such code. The
+//! check reads tokens instead of syntax trees, so that it also sees the contents of macros. The compiler reports files
+//! that are not valid Rust.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
-/// Something that no exercise needs.
+/// A construct that no exercise needs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Finding {
-    /// Which rule: what `--allow` takes.
+    /// The name of the rule, as `--allow` takes it.
     pub rule: String,
-    /// Line of the file.
+    /// The line of the file, from 1.
     pub line: usize,
-    /// What stands there, and why it may not.
+    /// The construct, and why it is refused.
     pub why: String,
 }
 
-/// What a file says.
+/// The result of the syntax check of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
-    /// What no exercise needs.
+    /// The constructs that no exercise needs.
     pub findings: Vec<Finding>,
-    /// Whether a function may remember, from one call to the next, what it was asked. Of what the findings leave, only
-    /// statics and variables of threads can.
+    /// Whether a function may store earlier questions between calls. Only statics and thread-local variables can, if the
+    /// file has no findings.
     pub may_remember: bool,
 }
 
 /// Modules of the standard library that no exercise needs, by rule.
 const MODULES: [(&str, &str, &str); 12] = [
-    ("process", "process", "an exercise starts and ends no processes"),
-    ("files", "fs", "an exercise reads and writes no files: the scaffold loads scenes"),
-    ("network", "net", "an exercise has no network"),
-    ("environment", "env", "an exercise depends on its arguments alone"),
+    ("process", "process", "an exercise must not start or end processes"),
+    ("files", "fs", "an exercise must not read or write files: the scaffold loads scenes"),
+    ("network", "net", "an exercise must not use the network"),
+    ("environment", "env", "an exercise may depend only on its arguments"),
     ("threads", "thread", "the scaffold renders on all cores; exercises need no threads of their own"),
-    ("system", "os", "an exercise does not ask the operating system"),
-    ("system", "ffi", "an exercise calls no foreign code"),
+    ("system", "os", "an exercise must not call the operating system"),
+    ("system", "ffi", "an exercise must not call foreign code"),
     ("system", "alloc", "an exercise needs no allocator of its own"),
-    ("panics", "panic", "an exercise may panic, and the kit says so; it may not catch or hide it"),
-    ("intrinsics", "arch", "an exercise is written in plain Rust"),
-    ("intrinsics", "intrinsics", "an exercise is written in plain Rust"),
-    ("input", "stdin", "nobody types anything while exercises are graded"),
+    ("panics", "panic", "an exercise may panic, and the kit reports it; it must not catch or hide a panic"),
+    ("intrinsics", "arch", "an exercise must not use assembly or intrinsics"),
+    ("intrinsics", "intrinsics", "an exercise must not use assembly or intrinsics"),
+    ("input", "stdin", "no input is typed while exercises are graded"),
 ];
 
-/// Macros that look outside of the file, by rule.
+/// Macros that read data from outside of the file, by rule.
 const MACROS: [(&str, &str, &str); 8] = [
-    ("include", "include", "an exercise stands in its file"),
-    ("include", "include_str", "an exercise stands in its file"),
-    ("include", "include_bytes", "an exercise stands in its file"),
-    ("environment", "env", "an exercise depends on its arguments alone"),
-    ("environment", "option_env", "an exercise depends on its arguments alone"),
-    ("intrinsics", "asm", "an exercise is written in plain Rust"),
-    ("intrinsics", "global_asm", "an exercise is written in plain Rust"),
-    ("intrinsics", "naked_asm", "an exercise is written in plain Rust"),
+    ("include", "include", "an exercise must be complete in its own file"),
+    ("include", "include_str", "an exercise must be complete in its own file"),
+    ("include", "include_bytes", "an exercise must be complete in its own file"),
+    ("environment", "env", "an exercise may depend only on its arguments"),
+    ("environment", "option_env", "an exercise may depend only on its arguments"),
+    ("intrinsics", "asm", "an exercise must not use assembly or intrinsics"),
+    ("intrinsics", "global_asm", "an exercise must not use assembly or intrinsics"),
+    ("intrinsics", "naked_asm", "an exercise must not use assembly or intrinsics"),
 ];
 
-/// Attributes that reach into the build, by rule.
+/// Attributes that change the build, by rule.
 const ATTRIBUTES: [(&str, &str, &str); 14] = [
-    ("include", "path", "an exercise stands in its file"),
-    ("linkage", "link", "an exercise links nothing"),
-    ("linkage", "link_section", "an exercise decides nothing about how programs are linked"),
-    ("linkage", "link_name", "an exercise decides nothing about how programs are linked"),
-    ("linkage", "no_mangle", "an exercise decides nothing about how programs are linked"),
-    ("linkage", "export_name", "an exercise decides nothing about how programs are linked"),
-    ("linkage", "used", "an exercise decides nothing about how programs are linked"),
+    ("include", "path", "an exercise must be complete in its own file"),
+    ("linkage", "link", "an exercise must not link libraries"),
+    ("linkage", "link_section", "an exercise must not change how programs are linked"),
+    ("linkage", "link_name", "an exercise must not change how programs are linked"),
+    ("linkage", "no_mangle", "an exercise must not change how programs are linked"),
+    ("linkage", "export_name", "an exercise must not change how programs are linked"),
+    ("linkage", "used", "an exercise must not change how programs are linked"),
     ("linkage", "global_allocator", "an exercise needs no allocator of its own"),
-    ("linkage", "panic_handler", "an exercise may panic, and the kit says so; it may not catch or hide it"),
-    ("linkage", "no_std", "exercises are built as the kit builds them"),
-    ("linkage", "no_main", "exercises are built as the kit builds them"),
+    (
+        "linkage",
+        "panic_handler",
+        "an exercise may panic, and the kit reports it; it must not catch or hide a panic",
+    ),
+    ("linkage", "no_std", "an exercise must not change how it is built"),
+    ("linkage", "no_main", "an exercise must not change how it is built"),
     ("linkage", "feature", "exercises are built with a stable compiler"),
     ("linkage", "unsafe_code", "unsafe code is not part of any exercise"),
-    ("linkage", "long_running_const_eval", "what never ends while compiling is stopped early with this lint"),
+    ("linkage", "long_running_const_eval", "this lint stops constants whose evaluation never ends"),
 ];
 
-/// Everything in a file that no exercise needs, in the order of its lines, and what it may remember.
+/// Checks the text of a file. The findings are sorted by line.
 pub fn read(text: &str) -> Reading {
-    // Tokens that do not match up are the compiler's to explain.
+    // The compiler explains unbalanced tokens better.
     let Ok(tokens) = TokenStream::from_str(text) else {
         return Reading { findings: Vec::new(), may_remember: true };
     };
@@ -87,7 +92,7 @@ pub fn read(text: &str) -> Reading {
     Reading { findings, may_remember: keeps(tokens) }
 }
 
-/// Whether there is a static, or a variable of a thread. `'static` is a lifetime.
+/// Returns whether the tokens contain a static or a thread-local variable. `'static` is a lifetime and does not count.
 fn keeps(tokens: TokenStream) -> bool {
     let mut after_tick = false;
     tokens.into_iter().any(|token| {
@@ -115,7 +120,7 @@ fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
         match token {
             TokenTree::Ident(word) => match plain(word).as_str() {
                 "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
-                "extern" => say("linkage", "`extern`".into(), "an exercise calls no foreign code"),
+                "extern" => say("linkage", "`extern`".into(), "an exercise must not call foreign code"),
                 root @ ("std" | "core" | "alloc") => {
                     for (rule, what, why) in of_root(root, rest) {
                         say(rule, what, why);
@@ -149,12 +154,12 @@ fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
     }
 }
 
-/// What is wrong with what follows `std`, `core` or `alloc`: rule, what, why.
+/// Returns the findings about the tokens after `std`, `core` or `alloc`, each as rule, construct and reason.
 fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'static str)> {
     if let Some(TokenTree::Ident(word)) = rest.first()
         && word == "as"
     {
-        return vec![("system", format!("`{root} as …`"), "under another name nobody sees what is used")];
+        return vec![("system", format!("`{root} as …`"), "a renamed import hides what is used")];
     }
     if !(is(rest.first(), ':') && is(rest.get(1), ':')) {
         return Vec::new();
@@ -167,17 +172,17 @@ fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'stati
     };
     let banned = |first: &String| {
         if first == "*" || first == "self" {
-            let why = "all of it brings along what no exercise needs";
+            let why = "it also imports names that no exercise needs";
             return vec![("system", format!("`{root}::{first}`"), why)];
         }
-        // A macro may be imported under another name.
+        // A macro can be imported under another name, so an import counts as a use.
         let named = MODULES.iter().chain(&MACROS).filter(|(_, module, _)| module == first);
         named.map(|(rule, module, why)| (*rule, format!("`{root}::{module}`"), *why)).collect()
     };
     firsts.iter().flat_map(banned).collect()
 }
 
-/// The first words of the paths in `{…}` after `use std::`.
+/// Returns the first words of the paths in `{…}` after `use std::`.
 fn firsts(group: TokenStream) -> Vec<String> {
     let (mut firsts, mut at_start) = (Vec::new(), true);
     for token in group {
@@ -192,7 +197,7 @@ fn firsts(group: TokenStream) -> Vec<String> {
     firsts
 }
 
-/// All words, at any depth.
+/// Returns all words, at any depth.
 fn words(tokens: TokenStream) -> Vec<String> {
     let words = tokens.into_iter().flat_map(|token| match token {
         TokenTree::Ident(word) => vec![plain(&word)],
@@ -202,7 +207,7 @@ fn words(tokens: TokenStream) -> Vec<String> {
     words.collect()
 }
 
-/// The word itself: `r#process` is another way to write `process`.
+/// Returns the word without the prefix of a raw identifier: `r#process` means `process`.
 fn plain(word: &Ident) -> String {
     let text = word.to_string();
     text.strip_prefix("r#").map_or(text.clone(), str::to_owned)

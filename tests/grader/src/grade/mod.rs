@@ -1,8 +1,8 @@
-//! `grader grade`: a verdict on each submission of a class, reached outside the students' processes.
+//! `grader grade`: grades each submission of a class. The verdicts are made outside of the students' processes.
 //!
-//! The way of a submission: `submission` takes the files in which students write and nothing else, `lint` says what no
-//! exercise needs, `forge` compiles the rest in a sandbox, `judge` puts the laws to the worker that came of it, `store`
-//! writes the grade down, `report` tells everybody.
+//! The steps for a submission: `submission` reads the exercise files and nothing else, `lint` refuses constructs that no
+//! exercise needs, `forge` compiles the rest in a sandbox, `judge` runs the checks against the resulting worker, `store`
+//! saves the grade, `report` writes the reports.
 
 pub mod attacks;
 mod forge;
@@ -41,7 +41,7 @@ pub static SPEC: Spec = Spec {
     about: "Grade a folder of submissions, each in a sandbox, and write tables and reports (for instructors).",
     arguments: &[Argument::required(
         "SUBMISSIONS",
-        "The folder: each folder, .zip, .tar or .tar.gz in it is a submission, by the name of its student.",
+        "The folder of the class. Each folder, .zip, .tar or .tar.gz in it is a submission, named after its student.",
     )],
     options: &[
         &[
@@ -51,15 +51,19 @@ pub static SPEC: Spec = Spec {
                 "The folder for the grades: tables, reports, and the database that `--resume` continues.",
             )
             .required(),
-            Opt::value("--jobs", "N", "How many submissions are graded at a time [default: one per core]."),
+            Opt::value(
+                "--jobs",
+                "N",
+                "How many submissions to grade at the same time [default: one per core].",
+            ),
             Opt::value(
                 "--shard",
                 "I/N",
-                "Only part I of N of the class, as `2/8`; `grader merge` puts parts together. Needs --seed.",
+                "Grade only part I of N of the class, as `2/8`; `grader merge` combines the parts. Needs --seed.",
             ),
             Opt::flag(
                 "--resume",
-                "Continue with the grades in the folder: only submissions that are new or have changed are graded.",
+                "Continue with the grades in the folder: grade only submissions that are new or have changed.",
             ),
         ],
         GradingOptions::OPTIONS,
@@ -69,12 +73,12 @@ pub static SPEC: Spec = Spec {
 /// `grader merge`.
 pub static MERGE: Spec = Spec {
     name: "grader merge",
-    about: "Put together what `grade --shard` has made of the parts of a class (for instructors).",
+    about: "Combine the grades that `grade --shard` made of the parts of a class (for instructors).",
     arguments: &[Argument::required("PART", "The folders of the parts.").many()],
     options: &[&[Opt::value("--out", "FOLDER", "The folder for the grades of the whole class.").required()]],
 };
 
-/// Which submissions, and how they are graded.
+/// The options of `grader grade`.
 pub struct Options {
     submissions: PathBuf,
     out: PathBuf,
@@ -85,7 +89,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         let options = Options {
             submissions: given.required(0)?.into(),
@@ -115,7 +119,8 @@ fn shard(text: &str) -> Result<Shard> {
 }
 
 impl Shard {
-    /// By name alone, so that every machine agrees whatever else lies in its folder.
+    /// Returns whether a student belongs to this part. This depends only on the name, so that all machines agree even if
+    /// their folders differ.
     fn holds(self, student: &str) -> bool {
         let hash = Sha256::digest(student);
         let number = hash[..8].iter().fold(0u64, |number, byte| number << 8 | u64::from(*byte));
@@ -123,8 +128,9 @@ impl Shard {
     }
 }
 
-/// `Ok(true)` if every submission could be graded, whatever its grade is.
+/// Grades the class. Returns `Ok(true)` if every submission could be graded, with any grade.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
+    // Find the submissions of this part of the class.
     let (submissions, others) = submission::find(&options.submissions)
         .with_context(|| format!("cannot read the folder {}", options.submissions.display()))?;
     for other in others {
@@ -133,18 +139,20 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let mine = |one: &Submission| options.shard.is_none_or(|shard| shard.holds(&one.student));
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
+    // Open the database and begin or continue the session.
     crate::report::make_folder(&options.out)?;
     let store = Store::open(&options.out)?;
     let begun = store.session()?;
     ensure!(
         begun.is_none() || options.resume,
-        "{} holds grades already: --resume goes on with them, or choose another folder",
+        "{} already contains grades: continue them by --resume, or choose another folder",
         options.out.display()
     );
     let (grader, session) = options.grading.begin(root, begun.as_ref())?;
     store.begin(&session)?;
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
     store.retain(&names)?;
+    // Grade all submissions and write the reports.
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
     grader.grade_all(&submissions, &store, jobs, |_| bar.inc(1))?;
@@ -152,14 +160,14 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     finish(&store, &options.out)
 }
 
-/// The parts of a class.
+/// The options of `grader merge`.
 pub struct MergeOptions {
     parts: Vec<PathBuf>,
     out: PathBuf,
 }
 
 impl MergeOptions {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<MergeOptions, Misuse> {
         given.required(0)?;
         let parts = given.arguments(0).iter().map(PathBuf::from).collect();
@@ -167,19 +175,19 @@ impl MergeOptions {
     }
 }
 
-/// Puts the parts of a class together.
+/// Combines the parts of a class.
 pub fn merge(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
     crate::report::make_folder(out)?;
     let store = Store::open(out)?;
-    ensure!(store.session()?.is_none(), "{} holds grades already; choose another folder", out.display());
+    ensure!(store.session()?.is_none(), "{} already contains grades; choose another folder", out.display());
     for part in parts {
-        ensure!(part.join(store::FILE).is_file(), "{} holds no grades", part.display());
+        ensure!(part.join(store::FILE).is_file(), "{} contains no grades", part.display());
         store.take_over(&Store::open(part)?.class()?, part)?;
     }
     finish(&store, out)
 }
 
-/// Writes the reports and says how it went.
+/// Writes the reports and prints a summary. Returns whether every submission could be graded.
 fn finish(store: &Store, out: &Path) -> Result<bool> {
     let class = store.class()?;
     report::write_all(&class, out)?;

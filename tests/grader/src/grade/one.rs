@@ -1,4 +1,5 @@
-//! `grader grade-one`: a submission for Gradescope or GitHub Classroom. There is always an answer that they can read.
+//! `grader grade-one`: grades one submission for Gradescope or GitHub Classroom. It always writes a result file, even when
+//! grading fails.
 
 use super::options::GradingOptions;
 use super::report;
@@ -15,23 +16,23 @@ use std::path::{Path, PathBuf};
 /// `grader grade-one`.
 pub static SPEC: Spec = Spec {
     name: "grader grade-one",
-    about: "Grade one submission for Gradescope or GitHub Classroom (what `export` writes runs this). At least one of \
+    about: "Grade one submission for Gradescope or GitHub Classroom (the files of `export` run this). At least one of \
             `--gradescope` and `--classroom` is needed.",
     arguments: &[Argument::required("SUBMISSION", "The submission: a folder, .zip, .tar or .tar.gz.")],
     options: &[
         &[
-            Opt::value("--gradescope", "FILE", "Where the results for Gradescope go, as JSON."),
+            Opt::value("--gradescope", "FILE", "The file for the results for Gradescope, as JSON."),
             Opt::value(
                 "--classroom",
                 "FILE",
-                "Where the results for GitHub Classroom go, as JSON; a workflow's output `result` is this in base64.",
+                "The file for the results for GitHub Classroom, as JSON. A workflow's output `result` needs it in base64.",
             ),
         ],
         GradingOptions::OPTIONS,
     ],
 };
 
-/// Which submission, and for whom.
+/// The options of `grader grade-one`.
 pub struct Options {
     submission: PathBuf,
     gradescope: Option<PathBuf>,
@@ -40,7 +41,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         if !given.has("--gradescope") && !given.has("--classroom") {
             return Err(given.misuse("at least one of `--gradescope FILE` and `--classroom FILE` is needed"));
@@ -54,15 +55,16 @@ impl Options {
     }
 }
 
-/// Grades, and writes what came of it, whatever breaks. `Ok(true)` if the submission could be graded.
+/// Grades a submission and writes the result files, even when grading fails. Returns `Ok(true)` if the submission could be
+/// graded.
 pub fn run(root: impl FnOnce() -> Result<PathBuf>, options: &Options) -> Result<bool> {
     let graded = catch_unwind(AssertUnwindSafe(|| grade(&root()?, options)));
     let (graded, session) =
-        match graded.unwrap_or_else(|panic| Err(anyhow!("it panicked: {}", said(&*panic)))) {
+        match graded.unwrap_or_else(|panic| Err(anyhow!("the grader panicked: {}", said(&*panic)))) {
             Ok(graded) => graded,
             Err(error) => {
                 eprintln!("error: {error:#}");
-                broken(options, &format!("the grader broke, tell your instructor: {error:#}"))
+                broken(options, &format!("the grader failed, tell your instructor: {error:#}"))
             }
         };
     if let Some(file) = &options.gradescope {
@@ -82,7 +84,7 @@ fn grade(root: &Path, options: &Options) -> Result<(Graded, Session)> {
     Ok((graded, session))
 }
 
-/// What is told when it was us who failed: no points, and why.
+/// Returns the result for a failure of the grader itself: no points, and the reason.
 fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
     let graded = Graded {
         student: "submission".into(),
@@ -104,7 +106,7 @@ fn broken(options: &Options, trouble: &str) -> (Graded, Session) {
 
 fn said(panic: &(dyn Any + Send)) -> &str {
     let owned = panic.downcast_ref::<String>().map(String::as_str);
-    owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a word")
+    owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message")
 }
 
 fn write(file: &Path, results: &Value) -> Result<()> {

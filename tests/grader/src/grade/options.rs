@@ -1,4 +1,4 @@
-//! On what terms submissions are graded, and the grader that keeps to them.
+//! The options of grading, and the grader that is made from them.
 
 use super::forge::{self, Forge};
 use super::grader::Grader;
@@ -14,7 +14,7 @@ use std::hash::{BuildHasher, RandomState};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What an instructor decides, for a class and for one submission alike.
+/// The options that `grader grade` and `grader grade-one` share.
 #[derive(Default)]
 pub struct GradingOptions {
     pub(super) stages: Option<Stages>,
@@ -24,28 +24,25 @@ pub struct GradingOptions {
 }
 
 impl GradingOptions {
-    /// As options.
+    /// The options for the command line.
     pub const OPTIONS: &[Opt] = &[
         Opt::value("--stages", "LIST", "The stages, as `3`, `1-4` or `1-4,10` [default: all]."),
         Opt::value(
             "--seed",
             "N",
-            "Picks the hidden inputs [default: drawn at random]. Give it if submissions of a class are graded one at a \
-             time; otherwise each gets different inputs.",
+            "Picks the hidden inputs [default: drawn at random]. Set it when you grade the submissions of a class one by \
+             one; otherwise each gets different inputs.",
         ),
         Opt::value(
             "--allow",
             "LIST",
-            "Rules of the syntax check that do not apply, as a refusal names them.",
+            "Rules of the syntax check to switch off, by the names in its messages.",
         )
         .many(),
-        Opt::flag(
-            "--insecure",
-            "Grade even where submissions cannot be contained. They can then do what you can.",
-        ),
+        Opt::flag("--insecure", "Grade even if there is no sandbox. Submissions then have all your rights."),
     ];
 
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<GradingOptions, Misuse> {
         Ok(GradingOptions {
             stages: given.parsed("--stages", stages)?,
@@ -55,8 +52,8 @@ impl GradingOptions {
         })
     }
 
-    /// A grader, and what is to be written down about it. Stages and seed that are not given are those with which the
-    /// class was `begun`.
+    /// Makes a grader, and the session that the reports describe. Without the options, stages and seed are those of
+    /// `begun`, the earlier run.
     pub fn begin(&self, root: &Path, begun: Option<&Session>) -> Result<(Grader, Session)> {
         let (confinement, isolation) = self.confinement()?;
         let forge = Forge::prepare(root, confinement)?;
@@ -67,36 +64,37 @@ impl GradingOptions {
             seed: self.seed.or(begun.map(|session| session.seed)).unwrap_or_else(draw_seed),
             isolation,
         };
+        // Run the checks against the reference to prepare the judge.
         let judge = Judge::of(root, &session.stages, session.seed, confinement)?;
         let allowed = self.allow.clone();
         Ok((Grader { forge: Arc::new(forge), judge: Arc::new(judge), confinement, allowed }, session))
     }
 
-    /// What stands around submissions, and in a line for the reports.
+    /// Tests the sandbox. Returns how strict it is, and a line about it for the reports.
     fn confinement(&self) -> Result<(Confinement, String)> {
         match sandbox::self_test() {
             Ok(level) => Ok((Confinement::Full, level.to_string())),
             Err(error) if self.insecure => {
-                eprintln!("warning: submissions are not contained: {error:#}");
-                let isolation = "nothing but limits on resources, on the word of the instructor (--insecure)";
+                eprintln!("warning: submissions run without a sandbox: {error:#}");
+                let isolation = "resource limits only, by choice of the instructor (--insecure)";
                 Ok((Confinement::LimitsOnly, isolation.into()))
             }
             Err(error) => Err(error.context(
-                "submissions cannot be contained here, so none is run (--insecure runs them all the same, with your \
-                 rights)",
+                "the sandbox does not hold on this machine, so no submission is run (--insecure runs them anyway, with \
+                 your rights)",
             )),
         }
     }
 }
 
-/// Numbers of stages, in order.
+/// Numbers of stages, in ascending order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Stages(pub(super) Vec<u8>);
 
-/// As people write them.
+/// Reads a list of stages such as `1-4,10`.
 pub(crate) fn stages(text: &str) -> Result<Stages> {
     let number =
-        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is no number of a stage"));
+        |text: &str| text.trim().parse::<u8>().with_context(|| format!("`{text}` is not a stage number"));
     let mut stages = Vec::new();
     for part in text.split(',') {
         let (first, last) = part.split_once('-').unwrap_or((part, part));
@@ -115,16 +113,17 @@ fn all_stages() -> Vec<u8> {
     STAGES.iter().map(|(number, _)| *number).collect()
 }
 
-/// A seed that nobody knows: the standard library draws keys for its tables at random.
+/// Draws a random seed from the random keys of the standard library's hash tables.
 pub(crate) fn draw_seed() -> u64 {
     RandomState::new().hash_one("seed")
 }
 
-/// Version of the kit, with a fingerprint of all that decides a grade.
+/// Returns the version of the kit, with a fingerprint of everything that decides a grade.
 fn kit(root: &Path, allow: &[String], forge: &Forge) -> Result<String> {
     let mut hash = Sha256::new();
     hash.update(forge.fingerprint());
     hash.update(allow.join(","));
+    // Add all files that decide a grade to the fingerprint.
     let decide = ["tests/checks", "tests/golden", "tests/oracle", "tests/rubric.toml"];
     let mut waiting: Vec<PathBuf> =
         decide.iter().map(|path| root.join(path)).filter(|path| path.exists()).collect();

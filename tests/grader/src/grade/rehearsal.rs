@@ -1,5 +1,5 @@
-//! `grader rehearse`: a class that is made up of what is known (right ways and mistakes of the corpus, attacks, files that
-//! nobody has begun) is graded, and every grade is compared with what it must be.
+//! `grader rehearse`: generates a class of submissions with known grades (right solutions and mistakes of the corpus,
+//! attacks, untouched files), grades it, and compares every grade with the known one.
 
 use super::Options as GradeOptions;
 use super::attacks::{self, Attack, Place};
@@ -20,13 +20,13 @@ use std::time::Instant;
 /// `grader rehearse`.
 pub static SPEC: Spec = Spec {
     name: "grader rehearse",
-    about: "Grade a made-up class whose grades are known, and compare (for authors).",
+    about: "Grade a generated class with known grades, and compare (for authors).",
     arguments: &[],
     options: &[&[
-        Opt::value("--students", "N", "How many students it has [default: 200]."),
+        Opt::value("--students", "N", "The number of students [default: 200]."),
         Opt::value("--out", "FOLDER", "The folder for the grades [default: a temporary one]."),
-        Opt::value("--jobs", "N", "How many submissions are graded at a time [default: one per core]."),
-        Opt::flag("--honest", "Leave out attacks, as in a class of honest people."),
+        Opt::value("--jobs", "N", "How many submissions to grade at the same time [default: one per core]."),
+        Opt::flag("--honest", "Leave out the attacks."),
         Opt::flag(
             "--against-cargo",
             "Also measure one fresh `cargo test` of the same stages, for comparison.",
@@ -34,7 +34,7 @@ pub static SPEC: Spec = Spec {
     ]],
 };
 
-/// What the class is like, and how it is graded.
+/// The options of `grader rehearse`.
 pub struct Options {
     students: usize,
     out: Option<PathBuf>,
@@ -44,7 +44,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options {
             students: given.number("--students", 0..=usize::MAX)?.unwrap_or(200),
@@ -56,39 +56,42 @@ impl Options {
     }
 }
 
-/// The stages of the class: those that a first half of a course has.
+/// The stages of the class: the first part of the course.
 const STAGES_OF_CLASS: [u8; 4] = [1, 2, 3, 4];
 
-/// Attacks that take longer than this by their own word are left to `grader attacks`.
+/// Attacks with a longer time limit than this, in seconds, are left to `grader attacks`.
 const MOST_SECONDS: u64 = 60;
 
-/// What a student has handed in.
+/// The kind of a student's submission.
 #[derive(Clone)]
 enum Role {
-    /// One file is as this entry of the corpus has it, all others are right.
+    /// One file is that of this corpus entry, all others are right.
     Entry(Entry),
-    /// Everything is right in the first so many stages, and nothing is begun after.
+    /// The first stages up to this one are right, the later ones are untouched.
     Begun(u8),
     /// An attack.
     Attack(Box<Attack>),
 }
 
-/// `Ok(true)` if everybody got what is right.
+/// Grades the class. Returns `Ok(true)` if every grade is right.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let place = tempfile::tempdir()?;
     let class = place.path().join("class");
     fs::create_dir(&class)?;
+    // Generate the submissions.
     let roles = roles(root, options)?;
     let mut students: BTreeMap<String, Role> = BTreeMap::new();
     for (number, role) in roles.into_iter().enumerate() {
         let student = hand_in(root, &class, number, &role)?;
         students.insert(student, role);
     }
+    // Grade the class and measure the time.
     let temporary = tempfile::tempdir()?;
     let out = options.out.as_deref().unwrap_or(temporary.path());
     let started = Instant::now();
     super::run(root, &grade_options(&class, out, options))?;
     let seconds = started.elapsed().as_secs_f64();
+    // Compare the grades with the known ones.
     let graded = Store::open(out)?.class()?;
     let complaints = compare(root, &students, &graded);
     complaints.iter().for_each(|complaint| println!("{complaint}"));
@@ -101,7 +104,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             "a fresh `cargo test` of the same stages takes {fresh:.1} s: {times:.0} times as long for the class"
         );
     }
-    println!("{} of {n} grades are not what they must be", complaints.len());
+    println!("{} of {n} grades are wrong", complaints.len());
     Ok(complaints.is_empty())
 }
 
@@ -119,7 +122,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
     }
 }
 
-/// Who hands in what: all kinds by turns, so that any number of students has some of each.
+/// Returns the kind of each submission. The kinds alternate, so that a class of any size contains all of them.
 fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
     let of_class = |entry: &Entry| STAGES_OF_CLASS.contains(&entry.stage);
     let (right, wrong): (Vec<Entry>, Vec<Entry>) =
@@ -142,17 +145,17 @@ fn roles(root: &Path, options: &Options) -> Result<Vec<Role>> {
     let role = |student: usize| {
         let (list, turn) = (&lists[student % kinds], student / kinds);
         ensure!(!list.is_empty(), "the corpus is empty");
-        // Evenly over a list that is longer than the class, round and round over a shorter one.
+        // Spread the class evenly over a longer list; repeat a shorter one.
         let index = if list.len() > of_kind { turn * list.len() / of_kind } else { turn % list.len() };
         Ok(list[index].clone())
     };
     (0..options.students).map(role).collect()
 }
 
-/// Puts a submission into the folder of the class and says by what name.
+/// Writes a submission into the folder of the class and returns its name.
 fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<String> {
     if let Role::Attack(attack) = role {
-        // Beside the class lies what is none of an attack's business.
+        // The files that an attack must not reach lie beside the class.
         let folder = class.with_extension(format!("attack-{number}"));
         fs::create_dir_all(&folder)?;
         let made = attacks::make(attack, &Place { root, folder: &folder })?;
@@ -177,7 +180,7 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
     Ok(format!("student-{number:04}"))
 }
 
-/// The files of a student who attacks nobody.
+/// Returns the files of an honest submission.
 fn texts(root: &Path, role: &Role) -> Result<BTreeMap<String, String>> {
     let mut texts = crate::sync::pristine(root)?;
     texts.retain(|name, _| stage_of(name).is_some());
@@ -196,7 +199,7 @@ fn texts(root: &Path, role: &Role) -> Result<BTreeMap<String, String>> {
     Ok(texts)
 }
 
-/// What is not as it must be, a sentence a student.
+/// Describes the wrong grades, in one sentence per student.
 fn compare(root: &Path, students: &BTreeMap<String, Role>, class: &Class) -> Vec<String> {
     let matrix = Matrix::read(root);
     let mut complaints = Vec::new();
@@ -240,7 +243,7 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
             let expected: Vec<&str> =
                 row.split(' ').map(|name| name.trim_start_matches('=')).filter(|name| *name != "-").collect();
             let missed = expected.iter().find(|name| !failed(entry.stage, name));
-            // Hidden inputs may find a mistake in more checks than known ones do, but in no other stage.
+            // Hidden inputs may fail more checks of the same stage than the public ones, but no checks of another stage.
             let unfair = graded.checks.iter().find(|check| {
                 let elsewhere = check.stage != entry.stage || entry.claim == Claim::Right;
                 check.outcome != Outcome::Passed && elsewhere
@@ -254,7 +257,7 @@ fn faults(role: &Role, matrix: &Matrix, graded: &Graded) -> Vec<String> {
     }
 }
 
-/// Seconds of `cargo test` of the stages of the class in a copy of the kit with a target folder of its own.
+/// Measures `cargo test` of the class's stages in a copy of the kit with an empty target folder, in seconds.
 fn fresh_cargo_test(root: &Path) -> Result<f64> {
     let copy = tempfile::tempdir()?;
     for name in ["Cargo.toml", "Cargo.lock", ".cargo", "src", "exercises", "solutions", "tests", "scenes"] {

@@ -1,4 +1,4 @@
-//! What grading a submission gives: everything that reports are made of, and nothing else.
+//! The results of grading, from which all reports are made.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,28 +6,28 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The law holds, on the inputs that students have and on hidden ones.
+    /// The answers are right, on the public inputs and on the hidden ones.
     Passed,
-    /// There is no code to judge.
+    /// The function is not written yet.
     NotWritten,
-    /// The law is broken on the inputs that students have as well.
+    /// An answer is wrong on the public inputs.
     Wrong,
-    /// The law holds on the inputs that students have, and is broken on hidden ones.
+    /// The answers are right on the public inputs, and one is wrong on the hidden inputs.
     WrongOnHidden,
-    /// No answer in time.
+    /// There was no answer in time.
     TooLong,
-    /// The process that answered was gone: it crashed, ended itself, or took more than it was given.
+    /// The worker ended before it answered: it crashed, exited, or exceeded a limit.
     Crashed,
-    /// The file does not compile; the file of another stage was put in place of what it needed.
+    /// The file does not compile.
     DoesNotCompile,
-    /// The file holds what no exercise needs.
+    /// The file contains a construct that no exercise needs.
     Refused,
-    /// The submission had used up its time before.
+    /// Earlier checks used up the time of the submission.
     NotTried,
 }
 
 impl Outcome {
-    /// All of them.
+    /// All outcomes.
     pub const ALL: [Outcome; 9] = [
         Outcome::Passed,
         Outcome::NotWritten,
@@ -40,7 +40,7 @@ impl Outcome {
         Outcome::NotTried,
     ];
 
-    /// In a word or three, for tables.
+    /// Describes the outcome in at most four words, for tables.
     pub fn words(self) -> &'static str {
         match self {
             Outcome::Passed => "passed",
@@ -56,23 +56,23 @@ impl Outcome {
     }
 }
 
-/// A check of a submission.
+/// The result of a check on a submission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CheckResult {
     /// Its stage.
     pub stage: u8,
-    /// Its name, unique in its stage.
+    /// The name of the check, unique in its stage.
     pub name: String,
-    /// How it ended.
+    /// The outcome.
     pub outcome: Outcome,
-    /// What it is worth.
+    /// The points of the check.
     pub points: u32,
-    /// What was earned: all of `points`, or nothing.
+    /// The points that were earned: `points` or 0.
     pub earned: u32,
-    /// For the student: what went wrong, without anything that is hidden. Empty if it passed. Plain text of several lines
-    /// that may quote what student code has said; control characters have been taken out.
+    /// Tells the student why the check failed, without hidden inputs. Empty if it passed. Plain text of several lines that
+    /// may quote output of the student's code, without control characters.
     pub message: String,
-    /// What says more than words, if the check compares pictures.
+    /// The compared pictures, if the check is about pictures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture: Option<Picture>,
 }
@@ -80,83 +80,84 @@ pub struct CheckResult {
 /// A picture for the student.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Picture {
-    /// What it shows, in words.
+    /// The caption.
     pub caption: String,
     /// The bytes of a PNG file, in base64.
     pub png: String,
 }
 
-/// A file of a submission that was not taken, or taken in another way than as it is.
+/// A file of a submission that was ignored or changed.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Remark {
-    /// As the submission names it; what is no text is replaced.
+    /// The path in the submission. Invalid UTF-8 is replaced.
     pub file: String,
-    /// What was done and why, as a sentence.
+    /// What was done with the file and why, as a sentence.
     pub what: String,
 }
 
 /// A submission, graded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Graded {
-    /// Name of the folder or archive, without ending.
+    /// The name of the folder, or of the archive without its extension.
     pub student: String,
-    /// SHA-256 of what was taken from it, in hexadecimal.
+    /// SHA-256 of the files that were read from it, in hexadecimal.
     pub content: String,
-    /// All checks of the stages that were asked for, in the order of the lecture.
+    /// All checks of the graded stages, in the order of the lecture.
     pub checks: Vec<CheckResult>,
-    /// What was ignored or replaced, and why.
+    /// Files that were ignored or changed, and why.
     pub remarks: Vec<Remark>,
     /// The compiler's messages, if there were errors; empty otherwise.
     pub compiler: String,
     /// Why nothing could be graded (an archive that cannot be read, …); empty otherwise.
     pub trouble: String,
-    /// Processor time of everything, in milliseconds. Differs from run to run, so `results.json` leaves it out.
+    /// Processor time of the build, plus the elapsed time of the checks, in milliseconds. It differs from run to run, so
+    /// `results.json` leaves it out.
     #[serde(default)]
     pub cpu_ms: u64,
 }
 
 impl Graded {
-    /// Points that were earned, and points that there were.
+    /// Returns the earned points and the possible points.
     pub fn points(&self) -> (u32, u32) {
         sum(self.checks.iter())
     }
 
-    /// The stages, in order.
+    /// Returns the stages in ascending order.
     pub fn stages(&self) -> Vec<u8> {
         let mut stages: Vec<u8> = self.checks.iter().map(|check| check.stage).collect();
         stages.dedup();
         stages
     }
 
-    /// The checks of a stage.
+    /// Returns the checks of a stage.
     pub fn of_stage(&self, stage: u8) -> impl Iterator<Item = &CheckResult> {
         self.checks.iter().filter(move |check| check.stage == stage)
     }
 }
 
-/// Points that were earned, and points that there were.
+/// Returns the earned points and the possible points of these checks.
 pub fn sum<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> (u32, u32) {
     checks.fold((0, 0), |(earned, points), check| (earned + check.earned, points + check.points))
 }
 
-/// How a class was graded: the same for every submission of it.
+/// Kit, stages, seed and sandbox of the grading, the same for every submission of a class.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Session {
     /// Version of the kit and fingerprint of its checks and rubric.
     pub kit: String,
-    /// The stages that were asked for, in order.
+    /// The graded stages, in ascending order.
     pub stages: Vec<u8>,
-    /// Picks the hidden inputs; the same for all students.
+    /// The seed of the hidden inputs, the same for all students.
     pub seed: u64,
-    /// How submissions were contained, in a line.
+    /// The kind of sandbox, in one line.
     pub isolation: String,
 }
 
 /// A class, graded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Class {
-    /// How.
+    /// How the class was graded.
     pub session: Session,
-    /// Sorted by name.
+    /// The graded submissions, sorted by name.
     pub students: Vec<Graded>,
 }

@@ -1,4 +1,4 @@
-//! `grader attacks`: hands every attack of the corpus to the grader, and says which got what it should not.
+//! `grader attacks`: grades every attack of the corpus and lists those with a wrong result.
 
 use super::attacks::{self, Tried};
 use super::forge::Forge;
@@ -16,35 +16,35 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// `grader attacks`.
 pub static SPEC: Spec = Spec {
     name: "grader attacks",
-    about: "Try the grader on submissions that try to get points which they have not earned (for authors).",
-    arguments: &[Argument::optional("NAME", "Names of attacks; all if none is given.").many()],
+    about: "Test the grader with submissions that try to get points without earning them (for authors).",
+    arguments: &[Argument::optional("NAME", "The names of attacks [default: all].").many()],
     options: &[&[Opt::flag(
         "--table",
-        "For each attack that was tried on `cargo test`, print the result there and the result of this grader.",
+        "Print the result of `cargo test` and of this grader for each attack that was tried on both.",
     )]],
 };
 
-/// Which attacks.
+/// The options of `grader attacks`.
 pub struct Options {
     names: Vec<String>,
     table: bool,
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Options {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
         Options { names: names.collect(), table: given.has("--table") }
     }
 }
 
-/// Hidden inputs are picked by this: any number does, and the same one gives the same verdicts again.
+/// The seed of the hidden inputs. Any fixed number makes the verdicts reproducible.
 const SEED: u64 = 20_26;
 
-/// `Ok(true)` if every attack got what it should.
+/// Grades the attacks. Returns `Ok(true)` if every attack got the expected result.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let level = sandbox::self_test()?;
-    println!("contained by {level}");
+    println!("sandbox: {level}");
     let forge = Arc::new(Forge::prepare(root, Confinement::Full)?);
     let judges: Mutex<BTreeMap<Vec<u8>, Arc<Judge>>> = Mutex::default();
     let judge = |stages: &[u8]| -> Result<Arc<Judge>> {
@@ -75,14 +75,14 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         tried.iter().filter_map(row).for_each(|row| println!("{row}"));
     }
     let repelled = tried.iter().filter(|tried| tried.complaints.is_empty()).count();
-    println!("{repelled} of {} attacks got what they should", tried.len());
+    println!("{repelled} of {} attacks got the expected result", tried.len());
     Ok(repelled == tried.len())
 }
 
 fn row(tried: &Tried) -> Option<String> {
     let naive = tried.attack.naive.as_ref()?;
     let ours = match &tried.graded {
-        Err(error) => format!("gave up: {error:#}"),
+        Err(error) => format!("the grader failed: {error:#}"),
         Ok(graded) if !graded.trouble.is_empty() => format!("not graded: {}", graded.trouble),
         Ok(graded) => {
             let (earned, of) = graded.points();

@@ -1,23 +1,23 @@
-//! Whether an answer that came out of a worker is possible at all. The checks go through trees with loops and recursion of
-//! their own; in a tree whose root is its own child they would go on for ever, or until the judge has no stack left.
+//! Rejects malformed structures in the answers of a worker. The checks traverse trees with loops and recursion. A tree
+//! whose root is its own child would make them loop for ever or overflow the judge's stack.
 
 use raykata::bvh::Contents;
 use raykata::count::Counts;
 use raykata::kit::{Answer, SearchAnswer};
 use raykata::partition::{BspNode, Grid, KdNode, OctreeNode};
 
-/// The checks go down by recursion, and write trees as text in which each level stands further in. The deepest tree that a
-/// check asks for has 24 levels, one that makes a leaf of each primitive and goes on with the rest 512.
+/// Deepest allowed tree, in levels. The checks recurse over trees and print them with one indent per level. The deepest
+/// tree that a check needs has 24 levels. A builder that splits off one primitive per level makes up to 512.
 const DEEPEST: usize = 2_000;
 
-/// The node of a tree, in whatever tree.
+/// A node of any kind of tree.
 enum Node {
     Inner(Vec<u32>),
-    /// Where its list begins and how long it is.
+    /// The start and the length of its list.
     Leaf(u32, u32),
 }
 
-/// What is wrong with the first structure in an answer that is none.
+/// Describes the first malformed structure of an answer.
 pub fn fault(answer: &Answer) -> Option<String> {
     match answer {
         Answer::Build(trees) => trees.iter().find_map(|tree| {
@@ -62,14 +62,15 @@ pub fn fault(answer: &Answer) -> Option<String> {
 fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -> Option<String> {
     let mut reached = vec![false; n_nodes];
     let mut waiting = if n_nodes > 0 { vec![(0, 1)] } else { Vec::new() };
+    // Traverse the tree without recursion. Each node must be reached once, within the depth limit.
     while let Some((index, depth)) = waiting.pop() {
         match reached.get_mut(index) {
-            None => return Some(format!("a child with number {index} of {n_nodes}")),
-            Some(true) => return Some(format!("node {index} has two parents, or is its own")),
+            None => return Some(format!("a child has index {index}, but there are {n_nodes} nodes")),
+            Some(true) => return Some(format!("node {index} has two parents or is its own parent")),
             Some(reached) => *reached = true,
         }
         if depth > DEEPEST {
-            return Some(format!("a tree of more than {DEEPEST} levels"));
+            return Some(format!("the tree has more than {DEEPEST} levels"));
         }
         match node(index) {
             Node::Inner(children) => {
@@ -78,7 +79,7 @@ fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -
             Node::Leaf(first, count) => {
                 let end = first as usize + count as usize;
                 if end > n_items {
-                    return Some(format!("leaf {index} ends at {end} of {n_items}"));
+                    return Some(format!("leaf {index} ends at position {end} of a list of {n_items}"));
                 }
             }
         }
@@ -86,8 +87,8 @@ fn fault_of_tree(n_nodes: usize, n_items: usize, node: impl Fn(usize) -> Node) -
     None
 }
 
-/// What a search has asked is counted where it runs, and there a cheat may wipe it out; then it has found what it never
-/// looked at.
+/// Checks the cost counters of a search. They are counted in the student's process, where code may reset them. A hit
+/// without any visited node or tested primitive shows that.
 fn fault_of_search(search: &SearchAnswer) -> Option<String> {
     let Counts { node_visits, primitive_tests, .. } = search.counts;
     let nothing = search.hit.is_some() && (node_visits == 0 || primitive_tests == 0);
@@ -96,15 +97,16 @@ fn fault_of_search(search: &SearchAnswer) -> Option<String> {
 
 fn fault_of_grid(grid: &Grid) -> Option<String> {
     let cells = grid.resolution.to_array().into_iter().map(u64::from).try_fold(1, u64::checked_mul);
-    // Over nothing there may be no cells.
+    // A grid over no primitives may have no cells.
     let fits = grid.starts.is_empty()
         || cells.and_then(|cells| cells.checked_add(1)) == Some(grid.starts.len() as u64);
     if !fits {
-        return Some(format!("{} starts for {} cells", grid.starts.len(), grid.resolution));
+        return Some(format!("the grid has {} list starts for {} cells", grid.starts.len(), grid.resolution));
     }
     let ordered = grid.starts.windows(2).all(|pair| pair[0] <= pair[1]);
     let within = grid.starts.last().is_none_or(|&end| end as usize <= grid.items.len());
-    (!ordered || !within).then(|| "cells whose lists begin before they end".into())
+    (!ordered || !within)
+        .then(|| "the lists of the grid's cells are not in order or end beyond the items".into())
 }
 
 #[cfg(test)]
@@ -131,9 +133,9 @@ mod tests {
     fn rings_and_strange_children_are_no_trees() {
         assert_eq!(fault(&tree(&[Some((1, 2)), None, None])), None);
         assert_eq!(fault(&tree(&[])), None);
-        assert!(fault(&tree(&[Some((0, 0))])).unwrap().contains("its own"));
+        assert!(fault(&tree(&[Some((0, 0))])).unwrap().contains("its own parent"));
         assert!(fault(&tree(&[Some((1, 1)), None])).unwrap().contains("two parents"));
-        assert!(fault(&tree(&[Some((1, 9)), None])).unwrap().contains("number 9 of 2"));
+        assert!(fault(&tree(&[Some((1, 9)), None])).unwrap().contains("index 9, but there are 2"));
         let mut tree = KdTree::new(Aabb::EMPTY);
         tree.nodes = vec![KdNode::Leaf { first: u32::MAX, count: u32::MAX }];
         assert!(fault(&Answer::KdBuild(vec![tree])).unwrap().contains("ends at"));

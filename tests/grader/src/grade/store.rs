@@ -1,5 +1,5 @@
-//! Where grades are kept while a class is graded: an SQLite database beside the reports. A submission is written down in
-//! one transaction when it is done, so a run that is killed loses what was under way and nothing else.
+//! Stores the grades of a class in an SQLite database beside the reports. Each grade is written in one transaction when it
+//! is complete, so a killed run loses only the submissions that were in progress.
 
 use super::result::{Class, Graded, Session};
 use anyhow::{Context, Result, bail, ensure};
@@ -7,7 +7,7 @@ use rusqlite::{Connection, OptionalExtension, params};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Its name in the folder of results.
+/// The name of the database in the folder of results.
 pub const FILE: &str = "grades.sqlite";
 
 const TABLES: &str = "
@@ -24,7 +24,7 @@ pub struct Store {
 }
 
 impl Store {
-    /// Opens the database in `folder`, or makes it.
+    /// Opens or creates the database in `folder`.
     pub fn open(folder: &Path) -> Result<Store> {
         let path = folder.join(FILE);
         let connection =
@@ -36,19 +36,19 @@ impl Store {
             connection.execute_batch(TABLES)
         };
         make()
-            .with_context(|| format!("{} is no database of grades; choose another folder", path.display()))?;
+            .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
         Ok(Store { connection: Mutex::new(connection) })
     }
 
-    /// How the class is graded, if that was begun.
+    /// Returns the session, if grading was begun.
     pub fn session(&self) -> Result<Option<Session>> {
         let json: Option<String> =
             self.lock().query_row("SELECT json FROM session", [], |row| row.get(0)).optional()?;
-        json.map(|json| serde_json::from_str(&json).context("the session is no longer understood"))
+        json.map(|json| serde_json::from_str(&json).context("the session is from another version"))
             .transpose()
     }
 
-    /// Writes down how the class is graded. What was graded in another way is forgotten.
+    /// Stores the session. If it differs from the stored one, all grades are deleted.
     pub fn begin(&self, session: &Session) -> Result<()> {
         let same = self.session()?.as_ref() == Some(session);
         let mut connection = self.lock();
@@ -61,7 +61,7 @@ impl Store {
         Ok(transaction.commit()?)
     }
 
-    /// What is known of a submission, if it still holds what it held.
+    /// Returns the stored grade of a submission, if its content is unchanged.
     pub fn known(&self, student: &str, content: &str) -> Result<Option<Graded>> {
         let json: Option<String> = self
             .lock()
@@ -71,10 +71,10 @@ impl Store {
                 |row| row.get(0),
             )
             .optional()?;
-        json.map(|json| serde_json::from_str(&json).context("a grade is no longer understood")).transpose()
+        json.map(|json| serde_json::from_str(&json).context("a grade is from another version")).transpose()
     }
 
-    /// Writes a grade down; from here on it survives whatever happens.
+    /// Stores a grade durably.
     pub fn keep(&self, graded: &Graded) -> Result<()> {
         let json = serde_json::to_string(graded)?;
         self.lock().execute(
@@ -84,7 +84,7 @@ impl Store {
         Ok(())
     }
 
-    /// Forgets all but these students: the others have handed in nothing any more.
+    /// Deletes the grades of all other students, because their submissions no longer exist.
     pub fn retain(&self, students: &[&str]) -> Result<()> {
         let gone: Vec<String> =
             self.names()?.into_iter().filter(|name| !students.contains(&name.as_str())).collect();
@@ -101,7 +101,7 @@ impl Store {
         Ok(names.collect::<rusqlite::Result<_>>()?)
     }
 
-    /// All that is there.
+    /// Returns the session and all grades.
     pub fn class(&self) -> Result<Class> {
         let session = self.session()?.context("nothing has been graded here yet")?;
         let connection = self.lock();
@@ -111,23 +111,25 @@ impl Store {
         Ok(Class { session, students })
     }
 
-    /// Takes over the grades of another part of the class, graded in the same way.
+    /// Adds the grades of another part of the class. Returns an error if it was graded with another kit, other stages or
+    /// another seed, or if a student is in both.
     pub fn take_over(&self, other: &Class, from: &Path) -> Result<()> {
         match self.session()? {
             None => self.begin(&other.session)?,
             Some(session) if session.same_grades(&other.session) => {}
             Some(session) => bail!(
-                "{} was graded in another way ({}) than what is here ({}): parts of a class need the same kit, stages and --seed",
+                "{} was graded in another way ({}) than the other parts ({}): all parts need the same kit, stages and --seed",
                 from.display(),
                 other.session.words(),
                 session.words()
             ),
         }
+        // Copy the grades. A student may be in only one part.
         let names = self.names()?;
         for graded in &other.students {
             ensure!(
                 !names.contains(&graded.student),
-                "{} is graded here and in {}: which of them counts?",
+                "{} is graded twice, here and in {}: remove one of them",
                 graded.student,
                 from.display()
             );
@@ -142,12 +144,12 @@ impl Store {
 }
 
 impl Session {
-    /// Whether a submission gets the same grade in both.
+    /// Returns whether a submission gets the same grade in both sessions.
     fn same_grades(&self, other: &Session) -> bool {
         (&self.kit, &self.stages, self.seed) == (&other.kit, &other.stages, other.seed)
     }
 
-    /// What grades depend on, without the seed, which is nobody's business.
+    /// Describes the stages and the kit, on which grades depend. The seed stays secret.
     fn words(&self) -> String {
         let stages: Vec<String> = self.stages.iter().map(u8::to_string).collect();
         format!("stages {}, kit {}", stages.join(", "), self.kit)
@@ -180,7 +182,7 @@ mod tests {
         let store = Store::open(folder.path()).unwrap();
         store.begin(&session(7)).unwrap();
         store.keep(&graded("ann", "x")).unwrap();
-        // As a process that is killed: it closes nothing.
+        // Leave the database open, as a killed process does.
         std::mem::forget(store);
         let store = Store::open(folder.path()).unwrap();
         store.begin(&session(7)).unwrap();
@@ -202,7 +204,7 @@ mod tests {
         let part = other.class().unwrap();
         store.take_over(&part, two.path()).unwrap();
         assert_eq!(store.class().unwrap(), part);
-        assert!(store.take_over(&part, two.path()).unwrap_err().to_string().contains("which of them counts"));
+        assert!(store.take_over(&part, two.path()).unwrap_err().to_string().contains("is graded twice"));
         let strange = Class { session: session(2), students: Vec::new() };
         assert!(store.take_over(&strange, two.path()).unwrap_err().to_string().contains("another way"));
     }
@@ -213,7 +215,7 @@ mod tests {
         std::fs::write(folder.path().join(FILE), "my notes, which are longer than a header of a database is")
             .unwrap();
         let error = Store::open(folder.path()).err().unwrap();
-        assert!(format!("{error:#}").contains("no database of grades"), "{error:#}");
+        assert!(format!("{error:#}").contains("not a grade database"), "{error:#}");
         assert!(std::fs::read_to_string(folder.path().join(FILE)).unwrap().starts_with("my notes"));
     }
 }

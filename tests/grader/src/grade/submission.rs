@@ -1,5 +1,5 @@
-//! What is taken from a submission: the files in which students write, as text. Nothing else is read, whatever it is
-//! called and wherever it points; it is named in a remark.
+//! Reads the stage files of a submission as text. Other files are not read, and links are not followed. A remark names
+//! ignored files that a student may wonder about.
 
 use super::result::Remark;
 use sha2::{Digest, Sha256};
@@ -11,40 +11,40 @@ use std::path::{Path, PathBuf};
 
 mod archive;
 
-/// The longest file of the reference has 20 KiB; compilers take long for files of many megabytes.
+/// Longest source file, in bytes. The longest one of the reference has 20 KiB. Files of many megabytes compile slowly.
 const LONGEST_FILE: u64 = 512 * 1024;
 
-/// How many files and folders of a submission are looked at. A working copy with its target folder has thousands.
+/// Most files and folders of a submission. A working copy with its target folder has thousands.
 const MOST_ENTRIES: usize = 50_000;
 
-/// Folders that hold nothing of a student's: what cargo and git make, and other people's crates.
+/// Folders that contain no code of a student: output of cargo and git, the reference, and foreign packages.
 const PASSED_OVER: [&str; 4] = ["target", ".git", "solutions", "node_modules"];
 
-/// How many remarks about ignored files are kept; a working copy may hold thousands.
+/// Most remarks about ignored files. A working copy may have thousands of such files.
 const MOST_REMARKS: usize = 50;
 
-/// A submission as it lies there.
+/// A submission on the disk.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Submission {
-    /// Name of the folder or archive, without its ending.
+    /// The name of the folder, or of the archive without its extension.
     pub student: String,
-    /// Where it is.
+    /// The path of the folder or archive.
     pub path: PathBuf,
 }
 
-/// What was taken.
+/// The files of a submission that will be graded.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Taken {
     /// Texts by file name.
     pub files: BTreeMap<String, String>,
-    /// What was not, and why.
+    /// Files that were ignored or changed, and why.
     pub remarks: Vec<Remark>,
-    /// Why nothing could be, if nothing could.
+    /// The reason if nothing could be read.
     pub trouble: Option<String>,
 }
 
 impl Taken {
-    /// SHA-256 of all that the verdict depends on.
+    /// Returns the SHA-256 of everything that the grade depends on.
     pub fn content(&self) -> String {
         let mut hash = Sha256::new();
         for part in self.files.iter().flat_map(|(name, text)| [name, text]).chain(&self.trouble) {
@@ -55,7 +55,7 @@ impl Taken {
     }
 }
 
-/// The submissions in a folder, by name, and what else is there.
+/// Returns the submissions in a folder, sorted by name, and the other entries of the folder.
 pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     let (mut found, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
@@ -76,14 +76,14 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     }
     found.sort();
     others.sort();
-    // A folder `ann` beside an archive `ann.zip` go by their full names.
+    // If there is a folder `ann` and an archive `ann.zip`, both use their full names.
     let short: Vec<String> = found.iter().map(|one| one.student.clone()).collect();
     for one in &mut found {
         if short.iter().filter(|name| **name == one.student).count() > 1 {
             one.student = one.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         }
     }
-    // Names that are no text may still look alike.
+    // Names that are not valid UTF-8 may still look alike.
     let full: Vec<String> = found.iter().map(|one| one.student.clone()).collect();
     for (index, one) in found.iter_mut().enumerate() {
         let earlier = full[..index].iter().filter(|name| **name == one.student).count();
@@ -94,10 +94,11 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     Ok((found, others))
 }
 
-/// Takes the files of these names from a folder or an archive.
+/// Reads the files of these names from a folder or an archive.
 pub fn take(path: &Path, wanted: &[String]) -> Taken {
     let mut gathering = Gathering { wanted, best: BTreeMap::new(), entries: 0, ignored: Vec::new() };
     let trouble = if path.is_dir() { gathering.folder(path) } else { archive::gather(path, &mut gathering) };
+    // Keep the best file of each name.
     let mut taken = Taken::default();
     for (name, candidate) in gathering.best {
         match candidate.text {
@@ -108,8 +109,9 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
             Err(what) => taken.remarks.push(Remark { file: candidate.path, what }),
         }
     }
+    // Add remarks about missing and ignored files.
     for name in wanted.iter().filter(|name| !taken.files.contains_key(*name)) {
-        let what = "is missing; the empty exercise was put in its place";
+        let what = "is missing; the empty exercise replaces it";
         taken.remarks.push(Remark { file: name.clone(), what: what.into() });
     }
     gathering.ignored.sort();
@@ -117,14 +119,13 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
     gathering.ignored.truncate(MOST_REMARKS);
     taken.remarks.extend(gathering.ignored);
     if more > 0 {
-        taken
-            .remarks
-            .push(Remark { file: "…".into(), what: format!("{more} other files were ignored as well") });
+        taken.remarks.push(Remark { file: "…".into(), what: format!("{more} more files were ignored") });
     }
+    // Name the reason if there is no file at all.
     taken.trouble = match trouble {
         Err(error) => Some(error.to_string()),
         Ok(()) if taken.files.is_empty() => Some(format!(
-            "holds none of the files that students write ({} …): is it the right folder?",
+            "contains none of the exercise files ({} …): is it the right folder?",
             wanted.first().map_or("", String::as_str)
         )),
         Ok(()) => None,
@@ -132,16 +133,16 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
     taken
 }
 
-/// A file that could be taken.
+/// A file that may be the student's version of an exercise.
 struct Candidate {
     path: String,
-    /// The smaller, the better: how sure it is that this is where the student writes.
+    /// How likely this is the file that the student edits; the smallest rank wins.
     rank: (usize, usize),
-    /// The text and what was done to it, or why there is none.
+    /// The text with a remark about changes to it, or the reason why there is no text.
     text: Result<(String, Option<String>), String>,
 }
 
-/// What has been found so far.
+/// The files that have been found so far.
 struct Gathering<'a> {
     wanted: &'a [String],
     best: BTreeMap<String, Candidate>,
@@ -174,26 +175,27 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    /// One more file or folder.
+    /// Counts one more file or folder. Returns an error above the limit.
     fn count(&mut self) -> io::Result<()> {
         self.entries += 1;
         if self.entries > MOST_ENTRIES {
             return Err(io::Error::other(format!(
-                "holds more than {MOST_ENTRIES} files and folders; hand in exercises/src alone"
+                "contains more than {MOST_ENTRIES} files and folders; hand in only exercises/src"
             )));
         }
         Ok(())
     }
 
-    /// Whether a file of this path may be one in which the student writes.
+    /// Returns whether the file with this path may be an exercise file.
     fn wants(&self, path: &str) -> bool {
         let name = path.rsplit('/').next().unwrap_or(path);
         self.wanted.iter().any(|wanted| wanted == name)
             && !path.split('/').any(|part| PASSED_OVER.contains(&part))
     }
 
-    /// Takes a file that is wanted, unless a better one of the name was there.
+    /// Keeps a wanted file unless a file with the same name and a better rank is known.
     fn offer(&mut self, path: &str, content: Result<impl Read, String>) {
+        // Rank the file by its folder and its depth.
         let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
         let place = match folder {
             _ if folder == "exercises/src" || folder.ends_with("/exercises/src") => 0,
@@ -202,50 +204,53 @@ impl Gathering<'_> {
             _ => 3,
         };
         let rank = (place, path.split('/').count());
+        // Ignore it if a better file is known.
         if let Some(other) = self.best.get(name)
             && (other.rank, &other.path) <= (rank, &path.to_owned())
         {
-            let what = format!("was ignored: {} was taken", other.path);
+            let what = format!("was ignored: {} is graded", other.path);
             self.ignored.push(Remark { file: path.to_owned(), what });
             return;
         }
+        // Otherwise keep it, and ignore the earlier one.
         let candidate = Candidate { path: path.to_owned(), rank, text: content.and_then(text) };
         if let Some(other) = self.best.insert(name.to_owned(), candidate) {
-            let what = format!("was ignored: {path} was taken");
+            let what = format!("was ignored: {path} is graded");
             self.ignored.push(Remark { file: other.path, what });
         }
     }
 
-    /// Remarks that a file was ignored. Source files of the kit are expected in a working copy and not worth a word.
+    /// Adds a remark that a file was ignored. Only Rust files, tests and cargo's files get one; other files, such as
+    /// slides, are expected in a working copy.
     fn ignore(&mut self, path: &str) {
         let what = match path.rsplit('/').next().unwrap_or(path) {
             "build.rs" | "Cargo.toml" | "Cargo.lock" | "rust-toolchain" | "rust-toolchain.toml" => {
-                "was ignored: submissions are built without cargo, by the kit's own settings"
+                "was ignored: submissions are built without cargo, with the kit's own settings"
             }
             _ if path.contains(".cargo/") => {
-                "was ignored: cargo is not asked, whatever its configuration says"
+                "was ignored: submissions are built without cargo, so its configuration has no effect"
             }
             _ if path.contains("tests/") || path.ends_with(".snap") => {
-                "was ignored: the kit's own checks were used"
+                "was ignored: the kit's own checks are used"
             }
-            _ if path.ends_with(".rs") => "was ignored: no file that students write has this name",
+            _ if path.ends_with(".rs") => "was ignored: no exercise file has this name",
             _ => return,
         };
         self.ignored.push(Remark { file: path.to_owned(), what: what.to_owned() });
     }
 }
 
-/// The path as text that prints, with `/` between its parts.
+/// Returns the path as printable text, with `/` between its parts.
 fn shown(path: &Path) -> String {
     let parts: Vec<String> =
         path.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
     parts.join("/")
 }
 
-/// Opens a regular file. A link is not followed, and a pipe or device is not waited for.
+/// Opens a regular file. It does not follow links and does not wait for pipes or devices.
 fn open(path: &Path) -> Result<fs::File, String> {
     let flags = nix::fcntl::OFlag::O_NOFOLLOW | nix::fcntl::OFlag::O_NONBLOCK;
-    let refused = |why: &str| format!("was not taken: {why}; hand in the file itself");
+    let refused = |why: &str| format!("was ignored: {why}; hand in the file itself");
     if fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink()) {
         return Err(refused("it is a link to another place"));
     }
@@ -256,28 +261,29 @@ fn open(path: &Path) -> Result<fs::File, String> {
         .map_err(|error| refused(&error.to_string()))?;
     match file.metadata() {
         Ok(metadata) if metadata.is_file() => Ok(file),
-        _ => Err(refused("it is no regular file")),
+        _ => Err(refused("it is not a regular file")),
     }
 }
 
-/// Reads a source file as people's editors write them, and says what was done to it.
+/// Reads a source file. Returns its text without byte order mark and with LF line ends, and a remark if that changed it.
 fn text(content: impl Read) -> Result<(String, Option<String>), String> {
     let mut bytes = Vec::new();
     let read = content.take(LONGEST_FILE + 1).read_to_end(&mut bytes);
-    read.map_err(|error| format!("was not taken: it cannot be read ({error})"))?;
+    read.map_err(|error| format!("was ignored: it cannot be read ({error})"))?;
     if bytes.len() as u64 > LONGEST_FILE {
         let most = LONGEST_FILE / 1024;
-        return Err(format!("was not taken: it is longer than {most} KiB, and no exercise needs as much"));
+        return Err(format!("was ignored: it is longer than {most} KiB, and no exercise needs that much"));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err("was not taken: it is in UTF-16; save it as UTF-8".into());
+        return Err("was ignored: it is in UTF-16; save it as UTF-8".into());
     }
+    // Remove the byte order mark, decode the text and convert line ends.
     let without_mark = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let text = std::str::from_utf8(without_mark).map_err(|error| {
-        format!("was not taken: byte {} is no UTF-8; save it as UTF-8", error.valid_up_to())
+        format!("was ignored: byte {} is not valid UTF-8; save it as UTF-8", error.valid_up_to())
     })?;
     let changed = without_mark.len() < bytes.len() || text.contains('\r');
-    let remark = changed.then(|| "was taken without its byte order mark and with plain line ends".to_owned());
+    let remark = changed.then(|| "was read without its byte order mark and with LF line ends".to_owned());
     Ok((text.replace("\r\n", "\n"), remark))
 }
 

@@ -1,4 +1,4 @@
-//! Whether anything that is handed out holds answers.
+//! Searches the hand-out for lines of answers.
 
 use super::FOLDERS;
 use crate::sync::{self, Block};
@@ -7,15 +7,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Stands in an answer in `solutions/src/lib.rs` and must stand nowhere else.
+/// A marker in an answer in `solutions/src/lib.rs`. It must not occur anywhere else.
 pub const CANARY: &str = "canary-answers-9b1f6c52";
 
-/// Shorter lines are `}` and what anybody writes.
+/// Shortest line that is searched for, in bytes. Shorter lines, such as `}`, occur in any code.
 const SHORTEST: usize = 30;
 
-/// The lines of the answers by which they can be told, by file of `solutions/src`: long ones that are neither in the
-/// exercises nor in what everybody may read, the scaffold, the laws and the hints.
+/// Returns the lines that identify answers, per file of `solutions/src`: long lines that occur neither in the exercises nor
+/// in the scaffold, the checks or the hints.
 pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
+    // Collect all text that students may read.
     let exercises = sync::exercises(root)?;
     let mut public: String = exercises.iter().map(|exercise| exercise.stub.as_str()).collect();
     let of_code = FOLDERS.iter().filter(|(_, endings)| endings.contains(&"rs"));
@@ -23,6 +24,7 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         public.extend(texts(&root.join(known))?.into_iter().map(|(_, text)| text));
     }
     public += &super::text(root, "tests/rubric.toml")?;
+    // Keep the lines of each answer that do not occur there.
     let mut answers = BTreeMap::new();
     for exercise in &exercises {
         let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -43,7 +45,7 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
     Ok(answers)
 }
 
-/// Lines of answers, and the canary, in the files of a folder.
+/// Returns the lines of answers, and the marker, that occur in the files of a folder.
 pub fn leaks(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let answers = answers(root)?;
     let mut leaks = Vec::new();
@@ -63,7 +65,7 @@ fn lines(text: &str) -> impl Iterator<Item = String> {
     text.lines().map(str::trim).filter(|line| line.len() > SHORTEST).map(str::to_owned)
 }
 
-/// All files below a folder, whatever bytes they hold.
+/// Returns all files below a folder as text, with invalid UTF-8 replaced.
 fn texts(folder: &Path) -> Result<Vec<(String, String)>> {
     let mut texts = Vec::new();
     let mut waiting = vec![folder.to_owned()];

@@ -1,9 +1,10 @@
-//! The manifest of the workspace without what is not handed out. It is cut as text, so that students read the comments, too.
+//! Removes from the workspace's manifest the parts that are not handed out. The manifest is cut as text, so that its
+//! comments stay.
 
 use anyhow::{Context, Result};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The manifest of a hand-out that has these files, those of its packages among them.
+/// Returns the manifest of a hand-out with these files, which include those of its packages.
 pub(super) fn of_workspace(text: &str, files: &BTreeMap<String, Vec<u8>>) -> Result<String> {
     let mut wanted = dependencies(text)?;
     for (path, manifest) in files.iter().filter(|(path, _)| path.ends_with("/Cargo.toml")) {
@@ -18,7 +19,7 @@ pub(super) fn of_workspace(text: &str, files: &BTreeMap<String, Vec<u8>>) -> Res
     }))
 }
 
-/// The names of all packages that these need, by the versions that are locked.
+/// Returns the names of all packages that these need, by the locked versions.
 fn built(lock: &str, wanted: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     let lock: toml::Table = toml::from_str(lock)?;
     let packages = lock.get("package").and_then(|packages| packages.as_array()).into_iter().flatten();
@@ -26,7 +27,7 @@ fn built(lock: &str, wanted: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     for package in packages {
         let name = package.get("name").and_then(|name| name.as_str()).unwrap_or_default();
         let list = package.get("dependencies").and_then(|list| list.as_array()).into_iter().flatten();
-        // Where there are several versions, one follows the name.
+        // If there are several versions, the version follows the name.
         let list = list.filter_map(|one| one.as_str()?.split(' ').next());
         needs.entry(name).or_default().extend(list);
     }
@@ -39,8 +40,8 @@ fn built(lock: &str, wanted: &BTreeSet<String>) -> Result<BTreeSet<String>> {
     Ok(built)
 }
 
-/// The workspace with the members that are present, and with the dependencies that these still want. Settings stay for
-/// packages that are built. `present` tells whether a file is there; its name may hold a `*`.
+/// Returns the workspace with its present members and their dependencies. Settings stay for packages that are built.
+/// `present` returns whether a file exists; its name may contain a `*`.
 fn workspace(
     text: &str,
     wanted: &BTreeSet<String>,
@@ -66,7 +67,7 @@ fn workspace(
     })
 }
 
-/// The text with the settings of packages that are built, and of no others: cargo warns of those.
+/// Returns the text with the settings of only those packages that are built. Cargo would warn about others.
 fn with_settings_of(built: &BTreeSet<String>, text: &str) -> String {
     let mut keep = true;
     let mut kept = String::new();
@@ -81,7 +82,7 @@ fn with_settings_of(built: &BTreeSet<String>, text: &str) -> String {
             kept.push('\n');
         }
     }
-    // A comment about nothing.
+    // Remove a comment without settings.
     let stood_alone = |part: &str| text.split("\n\n").any(|one| one.trim_end() == part.trim_end());
     let parts = kept.split("\n\n").filter(|part| !is_comment(part) || stood_alone(part));
     parts.collect::<Vec<_>>().join("\n\n")
@@ -91,7 +92,7 @@ fn is_comment(paragraph: &str) -> bool {
     paragraph.lines().all(|line| line.starts_with('#'))
 }
 
-/// The text with only those members, and default members, that are present.
+/// Returns the text with only those members and default members that are present.
 fn with_members(text: &str, present: &dyn Fn(&str) -> bool) -> String {
     let mut rest = text;
     let mut changed = String::new();
@@ -110,8 +111,8 @@ fn with_members(text: &str, present: &dyn Fn(&str) -> bool) -> String {
     changed + rest
 }
 
-/// Puts each paragraph to `choose`, which takes lines out of the second of its arguments. A paragraph of which only
-/// headers and comments are left goes as well, but not one that was a comment before.
+/// Calls `choose` for each paragraph. It removes lines from its second argument. A paragraph with only headers and comments
+/// left is removed as well, except if it was only a comment before.
 fn cut<'a>(text: &'a str, mut choose: impl FnMut(&[&'a str], &mut Vec<&'a str>)) -> String {
     let mut paragraphs = Vec::new();
     for paragraph in text.trim_end().split("\n\n") {
@@ -126,7 +127,7 @@ fn cut<'a>(text: &'a str, mut choose: impl FnMut(&[&'a str], &mut Vec<&'a str>))
     paragraphs.join("\n\n") + "\n"
 }
 
-/// The names of what a package depends on.
+/// Returns the names of a package's dependencies.
 fn dependencies(manifest: &str) -> Result<BTreeSet<String>> {
     let manifest: toml::Table = toml::from_str(manifest)?;
     let tables =

@@ -1,5 +1,5 @@
-//! `grader handout`: the student's repository, without the answers and without what only authors and instructors need.
-//! Folders are copied as they are; only manifests that name what is missing are changed.
+//! `grader handout`: makes the student's repository, without the answers and without files that only authors and
+//! instructors need. Folders are copied unchanged. Only manifests that name missing parts are changed.
 
 mod leaks;
 mod manifests;
@@ -16,25 +16,25 @@ use std::process::{Command, Stdio};
 /// `grader handout`.
 pub static SPEC: Spec = Spec {
     name: "grader handout",
-    about: "Make the student's repository: no answers, nothing that only instructors need (for instructors).",
-    arguments: &[Argument::required("FOLDER", "The folder: an empty one, or one that is not there yet.")],
+    about: "Make the student's repository, without answers and instructors' files (for instructors).",
+    arguments: &[Argument::required("FOLDER", "An empty or new folder.")],
     options: &[],
 };
 
-/// Where to write it.
+/// The options of `grader handout`.
 pub struct Options {
     folder: PathBuf,
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         Ok(Options { folder: given.required(0)?.into() })
     }
 }
 
-/// Folders that are handed out, with all folders in them, and the endings of the files that are. A folder that is not
-/// there is left out.
+/// Folders that are handed out with their subfolders, and the extensions of the files in them. A missing folder is left
+/// out.
 const FOLDERS: [(&str, &[&str]); 8] = [
     ("src", &["css", "md", "rs", "snap", "toml"]),
     ("tests/checks", &["rs", "toml"]),
@@ -46,11 +46,11 @@ const FOLDERS: [(&str, &[&str]); 8] = [
     ("slides", &["md", "svg"]),
 ];
 
-/// What lies in those folders and is not handed out: tests of the kit itself, which need the solutions or fail once an
-/// exercise is begun.
+/// Parts of those folders that are not handed out: tests of the kit itself. They need the solutions, or fail after an
+/// exercise was begun.
 const KEPT_BACK: [&str; 2] = ["src/cli/tests", "tests/checks/all/tests"];
 
-/// Files that are handed out as they are.
+/// Files that are handed out unchanged.
 const FILES: [&str; 9] = [
     ".cargo/config.toml",
     ".gitignore",
@@ -63,17 +63,18 @@ const FILES: [&str; 9] = [
     "tests/rubric.toml",
 ];
 
-/// What a student's README says besides the kit's own.
+/// The student's README, with places for parts of the kit's README.
 const README: &str = include_str!("README.md");
 
-/// Writes the student's repository, whole or not at all.
+/// Writes the student's repository, completely or not at all.
 pub fn run(root: &Path, options: &Options) -> Result<()> {
     let folder = std::path::absolute(&options.folder)?;
     if fs::read_dir(&folder).is_ok_and(|mut inside| inside.next().is_some()) || folder.is_file() {
-        bail!("{} is not empty: a hand-out wants a folder of its own", options.folder.display());
+        bail!("{} is not empty: a hand-out needs a new or empty folder", options.folder.display());
     }
-    let parent = folder.parent().context("a hand-out wants a folder of its own")?;
+    let parent = folder.parent().context("a hand-out needs a new or empty folder")?;
     crate::report::make_folder(parent)?;
+    // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
     let files = files(root)?;
     for (path, bytes) in &files {
@@ -81,21 +82,30 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         fs::create_dir_all(file.parent().unwrap_or(parent))?;
         fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
     }
+    // Stop if the draft contains an answer.
     let found = leaks(root, draft.path())?;
-    ensure!(found.is_empty(), "answers would be handed out, so nothing is:\n  {}", found.join("\n  "));
+    ensure!(
+        found.is_empty(),
+        "the hand-out would contain answers, so it was not written:\n  {}",
+        found.join("\n  ")
+    );
     settle_versions(draft.path());
     make_readable(draft.path())?;
-    // An empty folder gives way to a folder.
+    // A rename replaces an empty folder.
     let draft = draft.keep();
     if let Err(error) = fs::rename(&draft, &folder) {
         let _ = fs::remove_dir_all(&draft);
         return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
     }
-    println!("{}: {} files; `cargo run` in it says what to do first", options.folder.display(), files.len());
+    println!(
+        "{}: {} files; run `cargo run` in it to see the first task",
+        options.folder.display(),
+        files.len()
+    );
     Ok(())
 }
 
-/// All files of a hand-out but Cargo.lock, by their paths.
+/// Returns all files of a hand-out except Cargo.lock, by their paths.
 pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     let mut files = BTreeMap::new();
     for path in FILES {
@@ -118,9 +128,9 @@ pub fn files(root: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
     Ok(files)
 }
 
-/// The files with these endings in a folder and below it.
+/// Adds the files with these extensions in a folder and below it.
 fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<String, Vec<u8>>) -> Result<()> {
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
+    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
         let entry = entry?;
         let path = format!("{folder}/{}", entry.file_name().to_string_lossy());
         let is = |ending: &&str| Path::new(&path).extension().is_some_and(|one| one == *ending);
@@ -135,10 +145,10 @@ fn gather(root: &Path, folder: &str, endings: &[&str], files: &mut BTreeMap<Stri
     Ok(())
 }
 
-/// The texts and pictures in a folder, not below it, whose names begin so.
+/// Returns the texts and pictures directly in a folder whose names begin with `start`.
 fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)>> {
     let mut found = Vec::new();
-    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("no folder {folder}"))? {
+    for entry in fs::read_dir(root.join(folder)).with_context(|| format!("there is no folder {folder}"))? {
         let entry = entry?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_wanted = ["rs", "snap", "png"].iter().any(|ending| name.ends_with(&format!(".{ending}")));
@@ -150,25 +160,26 @@ fn named(root: &Path, folder: &str, start: &str) -> Result<Vec<(String, Vec<u8>)
     Ok(found)
 }
 
-/// What the kit's README says to everybody and to students, with what a student's own repository needs besides.
+/// Returns the student's README: the greeting and the chapter for students of the kit's README, and the student's own text.
 fn readme(of_kit: &str) -> Result<String> {
-    let (greeting, rest) = of_kit.split_once("\n```sh\n").context("README.md has no first command")?;
-    let (_, rest) = rest.split_once("\n## As a student\n").context("README.md says nothing to students")?;
-    let (student, _) = rest.split_once("\n## ").context("README.md ends with what it says to students")?;
-    // There is no other kit here.
+    let (greeting, rest) = of_kit.split_once("\n```sh\n").context("README.md lacks a first command")?;
+    let (_, rest) =
+        rest.split_once("\n## As a student\n").context("README.md lacks a chapter `As a student`")?;
+    let (student, _) = rest.split_once("\n## ").context("README.md lacks a chapter after `As a student`")?;
+    // The student's repository has only one kit, so the option is superfluous.
     let student = student.replace(" --kit exercises", "");
     Ok(README.replace("{greeting}", greeting.trim()).replace("{student}", student.trim()))
 }
 
-/// Takes out of Cargo.lock what is no longer asked for. Without what cargo keeps of its registry that does not work; then
-/// cargo does it at the first build.
+/// Removes unused packages from Cargo.lock. Without cargo's copy of the registry this fails, and cargo does it at the first
+/// build.
 fn settle_versions(folder: &Path) {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(folder).args(["update", "--workspace", "--offline", "--quiet"]);
     let _ = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).status();
 }
 
-/// A temporary folder is its maker's alone; a hand-out is for others, too.
+/// Makes a hand-out readable for others. A temporary folder is readable only for its owner.
 fn make_readable(folder: &Path) -> Result<()> {
     #[cfg(unix)]
     {
@@ -184,5 +195,5 @@ fn read(root: &Path, path: &str) -> Result<Vec<u8>> {
 }
 
 fn text(root: &Path, path: &str) -> Result<String> {
-    String::from_utf8(read(root, path)?).with_context(|| format!("{path} is no text"))
+    String::from_utf8(read(root, path)?).with_context(|| format!("{path} is not valid UTF-8"))
 }

@@ -1,4 +1,4 @@
-//! What has been tried, one line each, so that a run that is stopped can go on.
+//! Stores the tested changes, one line each, so that a stopped run can be continued.
 
 use super::Fate;
 use super::list::Mutant;
@@ -16,16 +16,16 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// That of the last run, or an empty one.
+    /// Opens the journal of the last run, or an empty one.
     pub fn open(root: &Path, keep: bool) -> Result<Journal> {
         let file = root.join("target/corpus/mutants.jsonl");
         let text = || format!("{}", file.display());
         std::fs::create_dir_all(file.parent().unwrap_or(root)).with_context(text)?;
         let mut fates = BTreeMap::new();
         if keep {
-            let text =
-                std::fs::read_to_string(&file).with_context(|| format!("{}: no run before this", text()))?;
-            // The last line of a run that was killed may be half a line: that change is tried again.
+            let text = std::fs::read_to_string(&file)
+                .with_context(|| format!("{}: there is no earlier run", text()))?;
+            // The last line of a killed run may be incomplete. Then that change is tested again.
             fates.extend(text.lines().filter_map(|line| serde_json::from_str::<(String, Fate)>(line).ok()));
         }
         let out = OpenOptions::new()
@@ -42,12 +42,12 @@ impl Journal {
         Ok(journal)
     }
 
-    /// How this change ended, if it has been tried.
+    /// Returns the fate of this change, if it was tested.
     pub(super) fn of(&self, mutant: &Mutant) -> Option<&Fate> {
         self.fates.get(&mutant.change())
     }
 
-    /// Lets these be tried again.
+    /// Deletes the fates of these changes, so that they are tested again.
     pub(super) fn forget(&mut self, mutants: &[Mutant]) {
         for mutant in mutants {
             self.fates.remove(&mutant.change());

@@ -1,4 +1,4 @@
-//! The changes, as the tool cargo-mutants lists them.
+//! Lists the changes that the tool cargo-mutants makes.
 
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What cargo-mutants writes at the end of a changed line.
+/// The comment that cargo-mutants puts at the end of a changed line.
 const MARK: &str = " /* ~ changed by cargo-mutants ~ */";
 
 /// One change of one function.
@@ -16,29 +16,29 @@ pub struct Mutant {
     pub file: String,
     /// The difference as `diff -u` prints it.
     pub diff: String,
-    /// Place and change in words.
+    /// A description of place and change.
     name: String,
 }
 
 impl Mutant {
-    /// The stage whose exercise the file is, if it is one.
+    /// Returns the stage of the exercise, if the file is one.
     pub fn stage(&self) -> Option<u8> {
         let name = self.file.strip_prefix("solutions/src/stage")?;
         name.split('_').next()?.parse().ok()
     }
 
-    /// The file and the change in words, without lines and columns, which move.
+    /// Describes file and change without lines and columns, because edits move these.
     fn words(&self) -> String {
         let words = self.name.splitn(4, ':').nth(3).unwrap_or(&self.name);
         format!("{}:{words}", self.file)
     }
 
-    /// The lines that the change takes away.
+    /// Returns the lines that the change removes.
     pub fn was(&self) -> String {
         self.lines('-')
     }
 
-    /// The lines that the change puts there.
+    /// Returns the lines that the change adds.
     pub fn becomes(&self) -> String {
         self.lines('+')
     }
@@ -48,7 +48,7 @@ impl Mutant {
         lines.map(|line| line.replace(MARK, "").trim().to_owned()).collect::<Vec<_>>().join("\n")
     }
 
-    /// What it is known by.
+    /// Returns a key that identifies the change.
     pub fn change(&self) -> String {
         format!("{}\n- {}\n+ {}", self.words(), self.was(), self.becomes())
     }
@@ -60,7 +60,7 @@ impl fmt::Display for Mutant {
     }
 }
 
-/// All changes of solutions/src.
+/// Lists all changes of solutions/src.
 pub fn all(root: &Path) -> Result<Vec<Mutant>> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(root)
@@ -75,5 +75,5 @@ pub fn all(root: &Path) -> Result<Vec<Mutant>> {
         );
     }
     serde_json::from_slice(&output.stdout)
-        .context("what cargo-mutants lists cannot be read; its version may be too new")
+        .context("the list of cargo-mutants cannot be read; its version may be too new")
 }

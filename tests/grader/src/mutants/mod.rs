@@ -1,10 +1,10 @@
-//! `grader mutants`: small changes of the solutions that nobody chose by hand, each of which the checks must notice.
+//! `grader mutants`: mutation testing. Small automatic changes of the solutions, each of which the checks must notice.
 //!
-//! The tool cargo-mutants lists the changes; each is built in a workshop of the corpus and asked every check, and for
-//! the pictures of all scenes. What survives is either a gap in the checks or a change that
-//! changes nothing: the latter stand in tests/corpus/equivalent.toml, each with a reason.
+//! The tool cargo-mutants lists the changes. A workshop of the corpus builds each change, runs all checks against it and
+//! renders all scenes. A change that survives is either a gap in the checks or equivalent to the original. Equivalent
+//! changes are listed in tests/corpus/equivalent.toml, each with a reason.
 //!
-//! `list` (the changes) · `journal` (what has been tried) · `reviewed` (those that change nothing)
+//! `list` (the changes) · `journal` (the tested changes) · `reviewed` (the equivalent changes)
 
 mod journal;
 mod list;
@@ -33,19 +33,16 @@ use std::sync::Mutex;
 /// `grader mutants`.
 pub static SPEC: Spec = Spec {
     name: "grader mutants",
-    about: "Try the checks on changes that cargo-mutants makes to the solutions (for authors).",
-    arguments: &[Argument::optional("FILE", "Only in files of solutions/src with this in their name.")],
+    about: "Test the checks with changes that cargo-mutants makes to the solutions (for authors).",
+    arguments: &[Argument::optional("FILE", "Only files of solutions/src whose names contain this.")],
     options: &[&[
-        Opt::flag(
-            "--resume",
-            "Continue the last run, which was stopped: changes that it has tried are skipped.",
-        ),
+        Opt::flag("--resume", "Continue the last run: skip the changes that it has tested."),
         Opt::flag("--again", "Only the changes that survived the last run."),
-        Opt::value("--jobs", "N", "How many to try at once [default: one per core]."),
+        Opt::value("--jobs", "N", "How many to test at the same time [default: one per core]."),
     ]],
 };
 
-/// Which changes to try.
+/// The options of `grader mutants`.
 pub struct Options {
     file: Option<String>,
     resume: bool,
@@ -54,7 +51,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// As they were given.
+    /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--again", "--resume")?;
         Ok(Options {
@@ -66,40 +63,42 @@ impl Options {
     }
 }
 
-/// How a change ended.
+/// The result of testing a change.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Fate {
-    /// It is no program.
+    /// It does not compile.
     DoesNotCompile,
     /// A check of its own stage failed.
     ByItsStage(String),
     /// A check of another stage failed.
     ByAnotherStage(String),
-    /// Every check passed, and the picture of this scene, or what it cost, is another one.
+    /// Every check passed, but the picture of this scene or its cost differs.
     ByPicture(String),
-    /// Pictures are the same, but not while this function is not written yet.
+    /// Pictures are the same, but they differ while this function is not written yet.
     ByGap(String),
-    /// Nobody noticed, and nobody can: it is reviewed.
+    /// No check or picture noticed it, and a review found that none can.
     Equivalent,
-    /// Nobody noticed.
+    /// No check or picture noticed it.
     Survived,
 }
 
-/// Tries the changes and reports; whether none survived that has not been reviewed.
+/// Tests the changes and prints a report. Returns whether every survivor is a reviewed one and no reviewed one was noticed.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let reviewed = Reviewed::read(root)?;
     let mut mutants = list::all(root)?;
     if let Some(file) = &options.file {
         mutants.retain(|mutant| mutant.file.contains(file.as_str()));
     }
+    // Choose the changes to test.
     let mut journal = Journal::open(root, options.resume || options.again)?;
     if options.again {
         mutants.retain(|mutant| journal.of(mutant) == Some(&Fate::Survived));
         journal.forget(&mutants);
     }
     if mutants.is_empty() {
-        bail!("no change is left to try");
+        bail!("there is no change to test");
     }
+    // Test them, and report the survivors that were not reviewed.
     try_all(root, &mutants, &mut journal, options.jobs.clamp(1, mutants.len()))?;
     let tried: Vec<(&Mutant, Fate)> = mutants
         .iter()
@@ -113,11 +112,12 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     for mutant in &survivors {
         println!("SURVIVED  {mutant}\n");
     }
+    // Report the reviewed changes that were noticed.
     let is_noticed = |fate: &Fate| !matches!(fate, Fate::Equivalent | Fate::DoesNotCompile);
     let noticed = tried.iter().filter(|(mutant, fate)| reviewed.has(mutant) && is_noticed(fate));
     let noticed: Vec<&Mutant> = noticed.map(|(mutant, _)| *mutant).collect();
     for mutant in &noticed {
-        println!("NOTICED, though reviewed as one that changes nothing: {mutant}\n");
+        println!("NOTICED, but reviewed as equivalent: {mutant}\n");
     }
     report(&tried);
     Ok(survivors.is_empty() && noticed.is_empty())
@@ -131,7 +131,7 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     let of_gaps = scenes.of_gaps();
     let of_gaps = (of_gaps.shown_by(&*reference), of_gaps);
     let bar = bar_of_steps(mutants.len());
-    bar.set_message("what gaps show");
+    bar.set_message("pictures of gaps");
     let needs_gaps = |mutant: &Mutant| mutant.stage().is_none() && journal.of(mutant).is_none();
     let gaps = if mutants.iter().any(needs_gaps) {
         gaps::that_show(root, &workshops, &of_gaps.1, &of_gaps.0)?
@@ -162,8 +162,8 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
-/// Asks what can notice: for an exercise the checks of its stage, then pictures, then the other stages; for other files
-/// pictures.
+/// Tests a change: for an exercise by the checks of its stage, then by pictures, then by the other stages; for other files
+/// by pictures.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
     let own = mutant.stage();
     let source = Source { which: Which::Solutions, program: worker.to_owned() };
@@ -190,8 +190,8 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     noticed.unwrap_or(Fate::Survived)
 }
 
-/// What decides which parts of a picture are left out does nothing while every function is written: each that makes
-/// another picture is left out in turn.
+/// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a
+/// function is not written.
 fn judge_by_gaps(
     mutant: &Mutant,
     workshop: &Workshop,
@@ -232,5 +232,5 @@ fn report(tried: &[(&Mutant, Fate)]) {
             100.0 * noticed as f64 / ((noticed + survived).max(1)) as f64,
         );
     }
-    println!("\nscore: percent noticed of those that are programs and not equivalent");
+    println!("\nscore: percent noticed, of the changes that compile and are not equivalent");
 }

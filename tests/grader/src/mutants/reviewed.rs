@@ -1,25 +1,25 @@
-//! Changes that change nothing anybody could see, each looked at by a person: tests/corpus/equivalent.toml.
+//! The equivalent changes, each reviewed by a person: tests/corpus/equivalent.toml.
 
 use super::list::Mutant;
 use anyhow::{Context, Result};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Changes of one line, and why they change nothing.
+/// Changes of one line, and why they are equivalent.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Review {
     /// A file of solutions/src.
     pub file: String,
-    /// The line as it is.
+    /// The original line.
     pub was: String,
-    /// What it may become.
+    /// The changed lines.
     pub becomes: Vec<String>,
-    /// Why nobody can notice.
+    /// The reason why no check can notice.
     pub because: String,
 }
 
-/// All of them.
+/// All reviewed changes.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reviewed {
@@ -36,7 +36,7 @@ impl Reviewed {
         toml::from_str(&text).with_context(|| file.display().to_string())
     }
 
-    /// Whether this change is one of them.
+    /// Returns whether this change is one of them.
     pub(super) fn has(&self, mutant: &Mutant) -> bool {
         let (was, becomes) = (mutant.was(), mutant.becomes());
         self.change.iter().any(|review| {

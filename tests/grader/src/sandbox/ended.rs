@@ -4,37 +4,37 @@ use crate::worker::Death;
 use std::process::ExitStatus;
 use std::time::Duration;
 
-/// What became of a command.
+/// The result of a command.
 #[derive(Debug)]
 pub struct Ended {
     /// How it ended.
     pub how: How,
-    /// What it said, up to the cap.
+    /// Its standard output, up to the cap.
     pub stdout: Vec<u8>,
-    /// What it complained about, up to the cap.
+    /// Its standard error, up to the cap.
     pub stderr: Vec<u8>,
-    /// Processor time, with its children.
+    /// Its processor time, with that of its children.
     pub cpu: Duration,
 }
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// By itself, with this code.
+    /// It exited with this code.
     Exited(i32),
-    /// By a signal that was not ours.
+    /// A signal ended it that the grader did not send.
     Signalled(i32),
-    /// It did not come to an end.
+    /// It exceeded the time limit.
     TookTooLong,
-    /// It has used all the processor time it was given.
+    /// It exceeded the limit of processor time.
     UsedUpCpu,
-    /// It wrote more than anybody wants to read.
+    /// It wrote more output than allowed.
     WroteTooMuch,
-    /// It started more and more processes.
+    /// It started too many processes.
     TooManyProcesses,
 }
 
-/// What a signal means for a process that was given so much memory; `None` if that was not the sandbox.
+/// Explains the signal that ended a process with this memory limit. Returns `None` if the sandbox did not cause it.
 #[cfg(target_os = "linux")]
 pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Option<Death> {
     use nix::libc;
@@ -43,18 +43,18 @@ pub(super) fn how_it_died(status: ExitStatus, stderr: &str, memory: u64) -> Opti
     Some(match status.signal()? {
         libc::SIGXCPU => Death::TimedOut,
         libc::SIGABRT if stderr.contains("memory allocation of") => {
-            Death::Crashed(format!("it took more memory than the {} it was given", size(memory)))
+            Death::Crashed(format!("it used more memory than its limit of {}", size(memory)))
         }
-        libc::SIGSYS => crashed("it asked the kernel for what no exercise needs"),
-        // There is no list of its memory in a sandbox, by which Rust tells one from the other.
+        libc::SIGSYS => crashed("it made a system call that no exercise needs"),
+        // Rust distinguishes the two by the process's memory map, which a sandbox hides.
         libc::SIGSEGV => crashed(
-            "the stack overflowed, or memory was touched that is not its own: a recursion that never ends?",
+            "the stack overflowed, or memory was touched outside of the program: look for infinite recursion",
         ),
         _ => return None,
     })
 }
 
-/// Nothing was sandboxed.
+/// Without a sandbox there is nothing to explain.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn how_it_died(_: ExitStatus, _: &str, _: u64) -> Option<Death> {
     None

@@ -1,4 +1,4 @@
-//! What a sandboxed program may read, write and execute: Landlock.
+//! Limits by Landlock which files a sandboxed program may read, write and execute.
 
 use super::Purpose;
 use anyhow::{Context, Result, bail};
@@ -9,10 +9,10 @@ use landlock::{
 };
 use std::path::Path;
 
-/// The newest that the library knows; older kernels enforce what they can of it.
+/// The newest version that the library knows. Older kernels enforce the part that they support.
 const NEWEST: ABI = ABI::V9;
 
-/// Where systems keep shared libraries.
+/// Folders with shared libraries.
 const LIBRARY_FOLDERS: [&str; 9] = [
     "/lib/x86_64-linux-gnu",
     "/usr/lib/x86_64-linux-gnu",
@@ -25,8 +25,8 @@ const LIBRARY_FOLDERS: [&str; 9] = [
     "/usr/local/lib",
 ];
 
-/// Those that a Rust program, or rustc, is linked to. Exact files, because the folders hold much that is nobody's
-/// business.
+/// The shared libraries of a Rust program and of rustc. They are listed one by one, because their folders contain other
+/// files that a submission must not read.
 const LIBRARIES: [&str; 9] = [
     "libc.so.6",
     "libm.so.6",
@@ -39,10 +39,10 @@ const LIBRARIES: [&str; 9] = [
     "libstdc++.so.6",
 ];
 
-/// What loads a program and its libraries, which counts as executing it.
+/// The dynamic loaders, which must be executable.
 const LOADERS: [&str; 2] = ["ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"];
 
-/// Compiler drivers, linkers, their libraries and the start of programs.
+/// Folders with compiler drivers, linkers, their libraries and start-up code.
 const TOOL_FOLDERS: [&str; 7] =
     ["/usr/bin", "/usr/lib", "/usr/lib64", "/usr/libexec", "/bin", "/lib", "/lib64"];
 
@@ -54,12 +54,12 @@ pub(super) fn restrict(
 ) -> Result<RestrictionStatus> {
     let read = make_bitflags!(AccessFs::{ReadFile | ReadDir});
     let run = make_bitflags!(AccessFs::{ReadFile | Execute});
-    // No links, sockets, pipes or devices: nothing that points elsewhere.
+    // Allow no links, sockets, pipes or devices, because they lead outside.
     let write = read
         | make_bitflags!(AccessFs::{
             WriteFile | Truncate | MakeReg | MakeDir | RemoveFile | RemoveDir | Refer
         });
-    let mut rules = handle_everything().context("Landlock is not to be had")?;
+    let mut rules = handle_everything().context("Landlock is not available")?;
     rules = allow(rules, program, run)?;
     for folder in LIBRARY_FOLDERS {
         for name in LIBRARIES {
@@ -80,7 +80,7 @@ pub(super) fn restrict(
         }
     }
     for path in readable {
-        // A linker finds some of its tools in the toolchain.
+        // Some tools of a linker are in the toolchain.
         rules = allow(rules, path.as_ref(), tool)?;
     }
     for path in writable {
@@ -99,7 +99,7 @@ fn handle_everything() -> Result<RulesetCreated> {
         .handle_access(AccessFs::from_all(ABI::V1))?
         .set_compatibility(CompatLevel::BestEffort)
         .handle_access(AccessFs::from_all(NEWEST))?
-        // Without these the filter of system calls still stands between it and the network and other processes.
+        // On kernels without these, the filter of system calls still blocks the network and other processes.
         .handle_access(AccessNet::from_all(NEWEST))?
         .scope(Scope::from_all(NEWEST))?
         .create()?)
@@ -116,12 +116,12 @@ fn allow(rules: RulesetCreated, path: &Path, access: BitFlags<AccessFs>) -> Resu
     rules.add_rule(PathBeneath::new(opened, access)).with_context(about)
 }
 
-/// The rights that make sense for a file that is no folder.
+/// Returns the rights that apply to files other than folders.
 fn of_files() -> BitFlags<AccessFs> {
     AccessFs::from_file(NEWEST)
 }
 
-/// In words. The process that asks is restricted afterwards.
+/// Returns the Landlock version in words. This restricts the calling process.
 pub(super) fn level() -> Result<String> {
     let myself = std::env::current_exe()?;
     let nothing: [&Path; 0] = [];

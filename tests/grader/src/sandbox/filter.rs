@@ -1,8 +1,8 @@
-//! What a sandboxed program may ask of the kernel: seccomp, as a list of what is allowed.
+//! Limits by seccomp which system calls a sandboxed program may make. The lists name the allowed calls.
 //!
-//! Everything else fails with "operation not permitted", so that Rust code gets an error and not a death; system calls
-//! of another architecture end the process. File names are Landlock's business, except that it does not know about
-//! permission bits, owners and times: no call that changes those is on any list.
+//! Any other call fails with "operation not permitted", so that Rust code gets an error instead of a crash. System calls of
+//! another architecture end the process. Landlock checks file names. It does not protect permission bits, owners and times,
+//! so no list contains a call that changes these.
 
 use super::Purpose;
 use anyhow::{Context, Result};
@@ -13,14 +13,14 @@ use seccompiler::{
 };
 use std::collections::BTreeMap;
 
-/// Start-up and end of a program, memory, reading, waiting, time.
+/// Calls for start-up and end of a program, memory, reading, waiting and time.
 const ALL: &[i64] = &[
     libc::SYS_brk,
     libc::SYS_clock_getres,
     libc::SYS_clock_gettime,
     libc::SYS_clock_nanosleep,
     libc::SYS_close,
-    libc::SYS_execve, // once for the launcher; after that Landlock says of what
+    libc::SYS_execve, // the launcher needs it once; after that Landlock limits it
     libc::SYS_exit,
     libc::SYS_exit_group,
     libc::SYS_faccessat,
@@ -66,7 +66,7 @@ const ALL: &[i64] = &[
     libc::SYS_writev,
 ];
 
-/// The older names of the same, which newer architectures do not have.
+/// Older variants of these calls, which newer architectures lack.
 #[cfg(target_arch = "x86_64")]
 const ALL_OLDER: &[i64] = &[
     libc::SYS_access,
@@ -81,10 +81,10 @@ const ALL_OLDER: &[i64] = &[
 #[cfg(not(target_arch = "x86_64"))]
 const ALL_OLDER: &[i64] = &[];
 
-/// The socket that a worker was given.
+/// Calls for the socket of a worker.
 const SOCKET: &[i64] = &[libc::SYS_getpeername, libc::SYS_getsockname, libc::SYS_recvfrom];
 
-/// Files in a scratch folder, pipes between threads.
+/// Calls for files in a scratch folder and pipes between threads.
 const COMPILER: &[i64] = &[
     libc::SYS_copy_file_range,
     libc::SYS_dup,
@@ -124,14 +124,14 @@ const COMPILER_OLDER: &[i64] = &[
 #[cfg(not(target_arch = "x86_64"))]
 const COMPILER_OLDER: &[i64] = &[];
 
-/// Other programs, and waiting for them.
+/// Calls to start other programs and wait for them.
 const LINKER: &[i64] = &[libc::SYS_recvfrom, libc::SYS_wait4, libc::SYS_waitid];
 #[cfg(target_arch = "x86_64")]
 const LINKER_OLDER: &[i64] = &[libc::SYS_fork, libc::SYS_vfork];
 #[cfg(not(target_arch = "x86_64"))]
 const LINKER_OLDER: &[i64] = &[];
 
-/// What no clone may ask for: name spaces of its own, or another parent than the one that can be held to account.
+/// Flags that no clone may have: new namespaces, or a parent other than the caller.
 const NO_CLONE: u64 = (libc::CLONE_NEWNS
     | libc::CLONE_NEWCGROUP
     | libc::CLONE_NEWUTS
@@ -145,14 +145,13 @@ const NO_CLONE: u64 = (libc::CLONE_NEWNS
 type Rules = BTreeMap<i64, Vec<SeccompRule>>;
 
 pub(super) fn install(purpose: Purpose) -> Result<()> {
-    // First the one that allows everything but one call: the list does not allow another filter.
+    // Install this filter first, because the list does not allow another filter.
     seccompiler::apply_filter(&newer_clone_is_unknown()?)?;
     seccompiler::apply_filter(&list(purpose)?)?;
     Ok(())
 }
 
-/// The flags of the newer clone lie in memory, where a filter cannot look. The C library takes the older one if the
-/// kernel does not know the newer.
+/// Makes `clone3` fail as unknown, because a filter cannot read its flags in memory. The C library then uses `clone`.
 fn newer_clone_is_unknown() -> Result<BpfProgram> {
     let rules: Rules = [(libc::SYS_clone3, vec![])].into();
     program(rules, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))
@@ -163,7 +162,7 @@ fn list(purpose: Purpose) -> Result<BpfProgram> {
     let mut allow = |calls: &[i64]| rules.extend(calls.iter().map(|call| (*call, vec![])));
     allow(ALL);
     allow(ALL_OLDER);
-    // The other filter answers it.
+    // The other filter handles this call.
     allow(&[libc::SYS_clone3]);
     match purpose {
         Purpose::Worker | Purpose::Reader => allow(SOCKET),
@@ -186,15 +185,15 @@ fn with_conditions(purpose: Purpose) -> Result<Rules> {
         commands.iter().map(|command| when(&[(1, Eq, *command as u64)])).collect()
     };
     let mut rules: Rules = [
-        // Who runs out of time has to die of it.
+        // The signal for too much processor time must end the process, so its handler cannot be set.
         (libc::SYS_rt_sigaction, vec![when(&[(0, Ne, libc::SIGXCPU as u64)])?]),
-        // Limits are read, not set, and one's own only.
+        // A process may only read its own limits.
         (libc::SYS_prlimit64, vec![when_wide(&[(0, Eq, 0), (2, Eq, 0)])?]),
         (libc::SYS_prctl, vec![when(&[(0, Eq, libc::PR_SET_NAME as u64)])?]),
-        // To abort, and to wake one's own threads.
+        // A process may signal only itself and its own threads, for example to abort.
         (libc::SYS_kill, vec![when(&[(0, Eq, myself)])?]),
         (libc::SYS_tgkill, vec![when(&[(0, Eq, myself)])?]),
-        // None that makes the kernel send signals or type on a terminal.
+        // These commands make the kernel neither send signals nor type on a terminal.
         (
             libc::SYS_fcntl,
             commands(&[
@@ -211,7 +210,7 @@ fn with_conditions(purpose: Purpose) -> Result<Rules> {
     .into();
     match purpose {
         Purpose::Worker | Purpose::Reader => {
-            // To the other end of what it was given, to no address.
+            // Allow sending only to the other end of its socket, without an address.
             rules.insert(libc::SYS_sendto, vec![when_wide(&[(4, Eq, 0)])?]);
         }
         Purpose::Compiler => {
@@ -220,19 +219,19 @@ fn with_conditions(purpose: Purpose) -> Result<Rules> {
         }
         Purpose::Linker => {
             rules.insert(libc::SYS_clone, vec![when(&[(0, MaskedEq(NO_CLONE), 0)])?]);
-            // How Rust's library learns whether a program could be started: a pair that leads nowhere else.
+            // Rust's library uses a socket pair to learn whether a program could be started.
             rules.insert(libc::SYS_socketpair, vec![when(&[(0, Eq, libc::AF_UNIX as u64)])?]);
         }
     }
     Ok(rules)
 }
 
-/// If each argument, as 32 bits, compares like that.
+/// Allows a call if all these comparisons of 32-bit arguments hold.
 fn when(conditions: &[(u8, SeccompCmpOp, u64)]) -> Result<SeccompRule> {
     rule(conditions, SeccompCmpArgLen::Dword)
 }
 
-/// The same with 64 bits, for pointers.
+/// The same with 64-bit arguments, for pointers.
 fn when_wide(conditions: &[(u8, SeccompCmpOp, u64)]) -> Result<SeccompRule> {
     rule(conditions, SeccompCmpArgLen::Qword)
 }
@@ -245,6 +244,7 @@ fn rule(conditions: &[(u8, SeccompCmpOp, u64)], length: SeccompCmpArgLen) -> Res
 }
 
 fn program(rules: Rules, otherwise: SeccompAction, on_match: SeccompAction) -> Result<BpfProgram> {
-    let architecture = std::env::consts::ARCH.try_into().context("not for this architecture")?;
+    let architecture =
+        std::env::consts::ARCH.try_into().context("the filter does not support this architecture")?;
     Ok(SeccompFilter::new(rules, otherwise, on_match, architecture)?.try_into()?)
 }

@@ -1,5 +1,5 @@
-//! Takes rights away from this process and becomes the program. Single-threaded, and safe code: nothing happens
-//! between a fork and an exec.
+//! Restricts this process and then replaces it by the program. The process has one thread and runs no code between a fork
+//! and an exec, so safe code is enough.
 
 use super::{Confinement, Limits, Purpose, files, filter};
 use anyhow::{Context, Result, bail, ensure};
@@ -13,22 +13,25 @@ use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// On top of the stack that a worker uses where it can have a thread: the program's own frames and its arguments.
+/// Extra stack for the program's first frames and its arguments, in bytes. A worker outside of a sandbox answers on a
+/// thread without these.
 const STACK_ROOM: u64 = 8 << 20;
 
-/// After the soft limit comes a signal that says what happened; the hard one kills without a word, as want of memory
-/// does, so it has to come later.
+/// Seconds between the soft and the hard limit of processor time. The soft limit sends a specific signal. The hard limit
+/// kills the process like a lack of memory does, so it must come later.
 const CPU_GRACE_SECONDS: u64 = 2;
 
 pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
     let mut arguments = arguments.into_iter();
     let asked = Asked::from(&mut arguments)?;
     close_inherited()?;
-    prctl::set_pdeathsig(Signal::SIGKILL).context("it cannot be made to end with its judge")?;
-    // The judge may have ended before that took effect.
+    // Make the kernel end this process together with the judge.
+    prctl::set_pdeathsig(Signal::SIGKILL).context("the process cannot be made to end with its judge")?;
+    // The judge may have ended before this took effect.
     ensure!(nix::unistd::getppid().as_raw() == asked.judge, "the judge has ended");
+    // Set all restrictions, then become the program.
     restrict_resources(asked.purpose, &asked.limits)?;
-    prctl::set_no_new_privs().context("privileges cannot be given up")?;
+    prctl::set_no_new_privs().context("privileges cannot be dropped")?;
     if asked.confinement == Confinement::Full {
         files::restrict(asked.purpose, &asked.program, &asked.readable, &asked.writable)?;
         filter::install(asked.purpose).context("system calls cannot be filtered")?;
@@ -48,11 +51,11 @@ struct Asked {
 }
 
 impl Asked {
-    /// Of what [`super::Sandbox::command`] writes.
+    /// Parses the arguments that [`super::Sandbox::command`] writes.
     fn from(arguments: &mut impl Iterator<Item = OsString>) -> Result<Asked> {
         let mut next = || arguments.next().context("an argument is missing");
-        let confinement = Confinement::of_word(&next()?).context("no such confinement")?;
-        let purpose = Purpose::of_word(&next()?).context("no such purpose")?;
+        let confinement = Confinement::of_word(&next()?).context("unknown confinement")?;
+        let purpose = Purpose::of_word(&next()?).context("unknown purpose")?;
         let judge = number(&next()?)? as i32;
         let limits = Limits {
             cpu_seconds: number(&next()?)?,
@@ -66,7 +69,7 @@ impl Asked {
             (0..count).map(|_| Ok(PathBuf::from(next()?))).collect()
         };
         let (readable, writable) = (paths()?, paths()?);
-        ensure!(writable.is_empty() || purpose.writes(), "a {} writes nothing", purpose.word());
+        ensure!(writable.is_empty() || purpose.writes(), "a {} must not write", purpose.word());
         Ok(Asked { confinement, purpose, judge, limits, readable, writable, program: next()?.into() })
     }
 }
@@ -76,7 +79,7 @@ fn number(word: &OsStr) -> Result<u64> {
     word.parse().with_context(|| format!("{word} is not a number"))
 }
 
-/// Whatever the judge has open, and its parents: all but the standard streams.
+/// Closes all open files of the judge and its parents, except the standard streams.
 fn close_inherited() -> Result<()> {
     let open = std::fs::read_dir("/proc/self/fd").context("open files cannot be listed (is /proc there?)")?;
     let open: Vec<RawFd> = open
@@ -85,7 +88,7 @@ fn close_inherited() -> Result<()> {
         .context("open files cannot be listed")?;
     for descriptor in open.into_iter().filter(|descriptor| *descriptor > 2) {
         match nix::unistd::close(descriptor) {
-            // The listing itself, which is closed by now.
+            // This is the listing itself, which is already closed.
             Ok(()) | Err(nix::errno::Errno::EBADF) => {}
             Err(error) => bail!("an open file cannot be closed: {error}"),
         }
@@ -95,9 +98,9 @@ fn close_inherited() -> Result<()> {
 
 fn restrict_resources(purpose: Purpose, limits: &Limits) -> Result<()> {
     let stack = match purpose {
-        // Answers on its first thread, as it can have no other.
+        // These answer on their first thread, because they may start no other.
         Purpose::Worker | Purpose::Reader => raykata::worker::STACK_BYTES as u64 + STACK_ROOM,
-        // What systems give; the threads of a compiler say how much they want.
+        // The usual size. The threads of a compiler set their own stack sizes.
         Purpose::Compiler | Purpose::Linker => 8 << 20,
     };
     let cpu = limits.cpu_seconds;
@@ -108,10 +111,10 @@ fn restrict_resources(purpose: Purpose, limits: &Limits) -> Result<()> {
         (Resource::RLIMIT_NOFILE, limits.open_files, limits.open_files),
         (Resource::RLIMIT_NPROC, limits.processes, limits.processes),
         (Resource::RLIMIT_STACK, stack, stack),
-        // No traces of a crash on disk.
+        // Write no core dumps.
         (Resource::RLIMIT_CORE, 0, 0),
     ] {
-        // A machine may allow less than we would; then that is the limit.
+        // If the machine has a lower limit, keep it.
         let (_, most) = nix::sys::resource::getrlimit(resource).context("limits cannot be read")?;
         setrlimit(resource, soft.min(most), hard.min(most))
             .with_context(|| format!("the limit {resource:?} cannot be set to {soft}"))?;

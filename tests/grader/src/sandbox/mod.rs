@@ -1,9 +1,9 @@
-//! The wall around everything that a submission makes run: the syntax check, the compiler, the linker, the worker.
+//! The sandbox around every program that handles a submission: the syntax check, the compiler, the linker, the worker.
 //!
-//! A launcher, which is this same program started with a hidden word, takes rights away from itself and then becomes
-//! the program: limits on resources, no new privileges, Landlock for files, seccomp for the rest of the kernel. None
-//! of it needs privileges, and none can be given back. Whatever cannot be set up ends the launcher: nothing ever runs
-//! half sandboxed.
+//! The launcher is this same program, started with a special first argument. It restricts itself and then becomes the
+//! sandboxed program. The restrictions are resource limits, no new privileges, Landlock for files and seccomp for other
+//! system calls. They need no privileges and cannot be removed. If one of them cannot be set up, the launcher ends and runs
+//! nothing.
 
 mod ended;
 #[cfg(target_os = "linux")]
@@ -38,51 +38,51 @@ use std::time::Duration;
 /// The first argument of a launcher.
 const LAUNCH: &str = "--in-a-sandbox";
 
-/// The first argument of a program that tries what should not work.
+/// The first argument of a program that tests the sandbox.
 const PROBE: &str = "--probe-the-sandbox";
 
-/// How a launcher that could not sandbox itself ends.
+/// The exit code of a launcher that could not sandbox itself.
 pub const NOT_LAUNCHED: i32 = 126;
 
-/// What its message begins with.
+/// The beginning of its message.
 pub const NOT_LAUNCHED_BECAUSE: &str = "the sandbox: ";
 
-/// What a sandboxed program is for, which decides what it may ask of the kernel.
+/// The purpose of a sandboxed program, which decides its rights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// Answers calls over the socket that is its standard input: no files to write, no threads, no processes, no
-    /// sockets of its own. It reads itself and the shared libraries of the system.
+    /// A worker: answers calls over the socket that is its standard input. It may not write files, start threads or
+    /// processes, or open sockets. It may read only itself and the system's shared libraries.
     Worker,
-    /// Reads text and says what it thinks: the syntax check. As a worker.
+    /// The syntax check: reads text and writes its findings. It has the rights of a worker.
     Reader,
-    /// rustc making a library or only metadata: threads, no processes.
+    /// rustc that makes a library: it may start threads but no processes.
     Compiler,
-    /// rustc linking a program: as the compiler, with processes (cc, ld).
+    /// rustc that links a program: it may also start processes (cc, ld).
     Linker,
 }
 
-/// How much of the machine a sandboxed process may use.
+/// The resource limits of a sandboxed process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Address space.
+    /// Most address space, in bytes.
     pub memory_bytes: u64,
-    /// Processor time, of each process.
+    /// Most processor time per process, in seconds.
     pub cpu_seconds: u64,
-    /// The longest file.
+    /// Longest file, in bytes.
     pub file_bytes: u64,
-    /// Open files, pipes and sockets.
+    /// Most open files, pipes and sockets.
     pub open_files: u64,
-    /// Processes and threads, counted over everything that the user runs. The kernel does not count those of root; a
-    /// worker is kept from starting any by its filter.
+    /// Most processes and threads, counted over all processes of the user. The kernel does not count those of root. The
+    /// seccomp filter prevents a worker from starting any.
     pub processes: u64,
 }
 
 impl Purpose {
-    /// What is enough for honest code.
+    /// Returns limits that are sufficient for honest code.
     pub fn limits(self) -> Limits {
         match self {
-            // A check needs some ten megabytes. Its calls have a patience of their own; the processor time is for all
-            // calls of a check together, and what a frame may take.
+            // A check needs about ten megabytes. Each call has its own time limit. This limit of processor time is for all
+            // calls of a process together, and for a frame.
             Purpose::Worker => Limits {
                 memory_bytes: 1 << 30,
                 cpu_seconds: 120,
@@ -90,10 +90,10 @@ impl Purpose {
                 open_files: 32,
                 processes: 1,
             },
-            // Milliseconds for the longest file that is taken.
+            // The longest allowed file takes milliseconds.
             Purpose::Reader => Limits { cpu_seconds: 10, ..Purpose::Worker.limits() },
-            // rustc maps half a gigabyte and needs a second; the results have a few megabytes. The user may have
-            // hundreds of processes of other kinds.
+            // rustc maps half a gigabyte and needs a second. Its output has a few megabytes. The user may run hundreds of
+            // other processes.
             Purpose::Compiler | Purpose::Linker => Limits {
                 memory_bytes: 3 << 30,
                 cpu_seconds: 10,
@@ -104,7 +104,7 @@ impl Purpose {
         }
     }
 
-    /// Whether it may write at all.
+    /// Returns whether the program may write files.
     fn writes(self) -> bool {
         matches!(self, Purpose::Compiler | Purpose::Linker)
     }
@@ -125,13 +125,13 @@ impl Purpose {
     }
 }
 
-/// How closed a sandbox is.
+/// The strictness of a sandbox.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Confinement {
-    /// Nothing gets through that is not allowed, or nothing runs.
+    /// All restrictions hold. If one of them cannot be set up, nothing runs.
     Full,
-    /// On the instructor's own word, where the kernel has no confinement: limits on resources hold, files, networks and other
-    /// processes are open.
+    /// Only resource limits hold; files, network and other processes are accessible. The instructor may choose this for
+    /// kernels without Landlock or seccomp.
     LimitsOnly,
 }
 
@@ -151,36 +151,36 @@ impl Confinement {
     }
 }
 
-/// Confinement around a program.
+/// A sandbox for a program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sandbox {
-    /// What it is for.
+    /// The purpose of the program.
     pub purpose: Purpose,
-    /// How closed it is.
+    /// The strictness.
     pub confinement: Confinement,
-    /// What it may use.
+    /// The resource limits.
     pub limits: Limits,
-    /// Files and folders that it may read, besides itself and the libraries of the system.
+    /// Files and folders that the program may read, besides itself and the system's libraries.
     pub readable: Vec<PathBuf>,
-    /// Folders that it may write, if it is a compiler or a linker. The first is where it starts and keeps its
-    /// temporary files.
+    /// Folders that a compiler or linker may write. The first one is its working folder and holds its temporary files.
     pub writable: Vec<PathBuf>,
 }
 
 impl Sandbox {
-    /// Closed, with the usual limits, and nothing to read or write.
+    /// Makes a full sandbox with the default limits and no files to read or write.
     pub fn new(purpose: Purpose) -> Sandbox {
         Sandbox::with(Confinement::Full, purpose)
     }
 
-    /// The same with other confinement.
+    /// Makes such a sandbox with another strictness.
     pub fn with(confinement: Confinement, purpose: Purpose) -> Sandbox {
         Sandbox { purpose, confinement, limits: purpose.limits(), readable: vec![], writable: vec![] }
     }
 
-    /// The command that runs `program` in here. Its environment is empty, but for where a linker looks for tools and
-    /// where temporary files go. Add arguments; do not change the environment.
+    /// Returns the command that runs `program` in this sandbox. Its environment contains only the search path of a linker
+    /// and the folder for temporary files. You may add arguments; do not change the environment.
     pub fn command(&self, program: &Path) -> Command {
+        // Pass strictness, purpose, parent, limits, paths and program to the launcher.
         let limits = &self.limits;
         let mut command = Command::new(launcher());
         command
@@ -195,6 +195,7 @@ impl Sandbox {
             command.arg(paths.len().to_string()).args(paths.iter().map(|path| absolute(path)));
         }
         command.arg(absolute(program)).env_clear();
+        // Set the working folder and the environment.
         let start = self.writable.first().map_or_else(|| PathBuf::from("/"), |folder| absolute(folder));
         if self.purpose.writes() {
             command.env("TMPDIR", &start);
@@ -219,7 +220,7 @@ impl Launcher for Sandbox {
     fn death(&self, status: ExitStatus, stderr: &str) -> Option<Death> {
         if status.code() == Some(NOT_LAUNCHED) && stderr.starts_with(NOT_LAUNCHED_BECAUSE) {
             let why = last_words(stderr).unwrap_or_default();
-            return Some(Death::Crashed(format!("it cannot be started: {why}")));
+            return Some(Death::Crashed(format!("the worker cannot be started: {why}")));
         }
         how_it_died(status, stderr, self.limits.memory_bytes)
     }
@@ -229,25 +230,25 @@ impl Launcher for Sandbox {
         processes::cpu_time(process).unwrap_or_default()
     }
 
-    /// Unknown: then all time counts.
+    /// The processor time is unknown here, so all elapsed time counts.
     #[cfg(not(target_os = "linux"))]
     fn cpu_time(&self, _: u32) -> Duration {
         Duration::MAX
     }
 }
 
-/// The program starts elsewhere than the command is made.
+/// Returns the absolute path, because the program starts in another working folder.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Where the processor time is among the arguments of a launcher; before it come confinement, purpose and parent.
+/// The index of the processor time among the arguments of a launcher, after confinement, purpose and parent.
 #[cfg(target_os = "linux")]
 const CPU_SECONDS_AT: usize = 4;
 
 static LAUNCHER: OnceLock<PathBuf> = OnceLock::new();
 
-/// The program that sandboxes itself: this one, or, for tests and benchmarks, the tool that cargo has put near them.
+/// Returns the program that sandboxes itself: this one, or, in tests and benchmarks, the grader that cargo has built.
 fn launcher() -> PathBuf {
     LAUNCHER.get().cloned().unwrap_or_else(|| {
         let here = std::env::current_exe().unwrap_or_default();
@@ -257,13 +258,14 @@ fn launcher() -> PathBuf {
     })
 }
 
-/// This program, as something to run in a sandbox: for a reader.
+/// Returns the path of this program, so that a reader can run it in a sandbox.
 pub fn this_program() -> PathBuf {
     let launcher = launcher();
     launcher.canonicalize().unwrap_or(launcher)
 }
 
-/// First thing in `main`: a process that was started as a launcher, or to probe a sandbox, goes no further.
+/// Runs the launcher or the sandbox test if this process was started for it, and does not return then. Call this at the
+/// start of `main`.
 pub fn launch_if_asked() {
     let mut arguments = std::env::args_os().skip(1);
     let word = arguments.next().unwrap_or_default();
@@ -275,14 +277,14 @@ pub fn launch_if_asked() {
         eprintln!("{NOT_LAUNCHED_BECAUSE}{}", launch(arguments.collect()));
         std::process::exit(NOT_LAUNCHED);
     }
-    // By way of the kernel and not by name: it stays the same program when cargo builds a new one meanwhile.
+    // Use the kernel's link to this program. It stays the same program even if cargo builds a new one.
     let myself = Path::new("/proc/self/exe");
     if let Some(launcher) = if myself.exists() { Some(myself.into()) } else { std::env::current_exe().ok() } {
         let _ = LAUNCHER.set(launcher);
     }
 }
 
-/// Comes back only with what went wrong.
+/// Runs the launcher. It returns only if there is an error.
 #[cfg(target_os = "linux")]
 fn launch(arguments: Vec<OsString>) -> anyhow::Error {
     match launcher::launch(arguments) {

@@ -1,4 +1,5 @@
-//! What a sandboxed program should not be able to do, tried. The program that tries is this one, so no compiler is needed.
+//! Tests the sandbox: tries actions that a sandboxed program must not be able to do. This program runs the tests itself, so
+//! no compiler is needed.
 
 use super::{Ended, How, PROBE, Purpose, Sandbox, run, this_program};
 use anyhow::{Context, Result, bail, ensure};
@@ -7,13 +8,13 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
 
-/// The probes need milliseconds and, for the processor time, a second; this is for a very busy machine.
+/// Time limit of the tests on a very busy machine. They need milliseconds, and the test of processor time needs a second.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// What the probes say fits many times.
+/// Most output of the tests, in bytes. They print far less.
 const CAP: usize = 64 << 10;
 
-/// How well this machine contains what it runs.
+/// The restrictions that hold on this machine, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Level(String);
 
@@ -23,35 +24,34 @@ impl fmt::Display for Level {
     }
 }
 
-/// Tries to break out of a sandbox like those of workers. Fails if anything gets through, or if there can be no sandbox.
+/// Tries to break out of a worker's sandbox. Returns an error if an action succeeds or if there is no sandbox.
 pub fn self_test() -> Result<Level> {
     ensure!(
         cfg!(target_os = "linux"),
-        "submissions can only be contained on Linux: grade them on a Linux machine"
+        "the sandbox works only on Linux: grade submissions on a Linux machine"
     );
     let sandbox = Sandbox::new(Purpose::Worker);
     let brief = Sandbox { limits: super::Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
+    // Run all tests at the same time.
     let (through, spun, flooded) = std::thread::scope(|scope| {
         let spun = scope.spawn(|| act_in(&brief, "spin", PATIENCE));
         let flooded = scope.spawn(|| act_in(&sandbox, "flood", PATIENCE));
         (got_through(&sandbox), spun.join(), flooded.join())
     });
-    let mut through = through.context("submissions cannot be contained on this machine")?;
+    // Collect the actions that succeeded.
+    let mut through = through.context("the sandbox does not work on this machine")?;
     let how = |ended: std::thread::Result<Result<Ended>>| match ended {
         Ok(Ok(ended)) => Some(ended.how),
         _ => None,
     };
     if how(spun) != Some(How::UsedUpCpu) {
-        through.push("use more processor time than it was given".into());
+        through.push("use more processor time than allowed".into());
     }
     if how(flooded) != Some(How::WroteTooMuch) {
         through.push("write without end".into());
     }
     if !through.is_empty() {
-        bail!(
-            "submissions cannot be contained on this machine: a sandboxed program could {}",
-            through.join(", ")
-        );
+        bail!("the sandbox does not hold on this machine: a sandboxed program could {}", through.join(", "));
     }
     Ok(Level(format!("{}, seccomp, resource limits, no new privileges", landlock_level()?)))
 }
@@ -63,20 +63,20 @@ fn landlock_level() -> Result<String> {
     Ok(String::from_utf8_lossy(&ended.stdout).trim().to_owned())
 }
 
-/// The things that a program could do in `sandbox` and should not, as ends of the sentence "it could …". A sandbox for
-/// compilers or linkers lets some through on purpose: threads, processes.
+/// Returns the tested actions that a program could do in `sandbox`, as ends of the sentence "it could …". A sandbox for
+/// compilers or linkers allows some on purpose: threads, processes.
 pub fn got_through(sandbox: &Sandbox) -> Result<Vec<String>> {
     let ended = act_in(sandbox, "all", PATIENCE)?;
     let said = String::from_utf8_lossy(&ended.stdout);
     let mut through = Vec::new();
-    // Line by line: a probe that was not tried has not been contained.
+    // Compare line by line, because an action that was not tried proves nothing.
     let mut lines = said.lines();
     for (name, _) in PROBES {
         match lines.next().and_then(|line| line.strip_suffix(name)) {
             Some("contained: ") => {}
             Some("through: ") => through.push((*name).to_owned()),
             _ => bail!(
-                "no probe of the sandbox could be run ({:?}): {}",
+                "the tests of the sandbox could not be run ({:?}): {}",
                 ended.how,
                 String::from_utf8_lossy(&ended.stderr).trim()
             ),
@@ -91,7 +91,7 @@ fn act_in(sandbox: &Sandbox, what: &str, patience: Duration) -> Result<Ended> {
     Ok(run(command, b"", patience, CAP)?)
 }
 
-/// In the sandboxed process.
+/// Runs a test in the sandboxed process.
 pub(super) fn act(what: &str) {
     match what {
         "spin" => loop {
@@ -120,8 +120,8 @@ pub(super) fn act(what: &str) {
     }
 }
 
-/// Refused, or there is nothing there. Any other error, such as nobody answering at the other end, means that the
-/// kernel has let it try.
+/// Returns whether the action was refused or found nothing. Any other error, such as no answer from the other end, means
+/// that the kernel allowed the attempt.
 fn is_contained(outcome: &io::Result<()>) -> bool {
     use io::ErrorKind::{NotFound, OutOfMemory, PermissionDenied};
     matches!(outcome, Err(error) if [NotFound, OutOfMemory, PermissionDenied].contains(&error.kind()))
@@ -167,9 +167,9 @@ const PROBES: &[Probe] = &[
         Vec::<u8>::new().try_reserve_exact(100 << 30).map_err(|_| io::ErrorKind::OutOfMemory.into())
     }),
     ("signal its judge", kernel::signal_judge),
-    ("signal everybody", kernel::signal_all),
+    ("signal all processes", kernel::signal_all),
     ("leave its group", kernel::leave_group),
-    ("enter a name space of its own", kernel::name_space),
+    ("enter a new namespace", kernel::name_space),
     ("raise its own limits", kernel::raise_limits),
     ("make a file in memory", kernel::file_in_memory),
 ];
@@ -219,7 +219,7 @@ mod kernel {
     use nix::unistd::{Pid, getppid, setsid};
     use std::io;
 
-    /// With no signal: only whether one could.
+    /// Sends signal 0, which only tests the permission.
     pub fn signal_judge() -> io::Result<()> {
         Ok(kill(getppid(), None)?)
     }

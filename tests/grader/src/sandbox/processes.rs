@@ -1,4 +1,4 @@
-//! What the kernel says about processes, and ending those that a program has left behind.
+//! Reads the kernel's data about processes, and ends processes that a program has left behind.
 
 use nix::errno::Errno;
 use nix::sys::signal::{Signal, kill};
@@ -7,7 +7,7 @@ use nix::unistd::{Pid, SysconfVar, sysconf};
 use std::io;
 use std::time::{Duration, Instant};
 
-/// How long the end of killed processes may take: they end at once unless the machine is in trouble.
+/// Time limit for the end of killed processes. They usually end at once.
 const END_PATIENCE: Duration = Duration::from_secs(10);
 
 struct Status {
@@ -18,11 +18,11 @@ struct Status {
 
 fn status(process: i32) -> Option<Status> {
     let line = std::fs::read(format!("/proc/{process}/stat")).ok()?;
-    // The name, in parentheses, may hold anything; what follows does not.
+    // The name in parentheses may contain any characters, so parse only the part after it.
     let after_name = line.iter().rposition(|byte| *byte == b')')? + 2;
     let fields: Vec<&str> = std::str::from_utf8(line.get(after_name..)?).ok()?.split(' ').collect();
     let number = |index: usize| fields.get(index)?.parse::<u64>().ok();
-    // Of the process and of the children it has waited for, in the kernel and outside.
+    // Times in user and kernel mode, of the process and of the children that it has waited for.
     let ticks = number(11)? + number(12)? + number(13)? + number(14)?;
     let ticks_per_second = sysconf(SysconfVar::CLK_TCK).ok()??.max(1) as f64;
     Some(Status {
@@ -32,12 +32,12 @@ fn status(process: i32) -> Option<Status> {
     })
 }
 
-/// The processor time that a process has used, also one that has ended and was not yet waited for.
+/// Returns the processor time of a process. The process may have ended if it was not yet waited for.
 pub fn cpu_time(process: u32) -> Option<Duration> {
     Some(status(process as i32)?.cpu)
 }
 
-/// The processes of a group besides its leader, with their parents.
+/// Returns the processes of a group except its leader, with their parents.
 fn members(group: i32) -> io::Result<Vec<(i32, i32)>> {
     let mut members = Vec::new();
     for entry in std::fs::read_dir("/proc")? {
@@ -54,15 +54,16 @@ fn members(group: i32) -> io::Result<Vec<(i32, i32)>> {
     Ok(members)
 }
 
-/// How many processes there are in a group besides its leader.
+/// Returns the number of processes in a group, except its leader.
 pub fn count(group: u32) -> usize {
     members(group as i32).map_or(0, |members| members.len())
 }
 
-/// Ends what is left of a group whose leader has ended and was not yet waited for, and waits for it.
+/// Ends the remaining processes of a group and waits for them. The leader must have ended and must not have been waited
+/// for.
 ///
-/// We are the reaper of orphans, so the top of what is left are children of ours: until we have waited for one, its
-/// number belongs to it and to nobody else. Their own children come to us in turn.
+/// This process is the reaper of orphans, so the topmost remaining processes are its children. The kernel does not reuse
+/// the id of a child before it was waited for. The children of an ended process then become children of this process.
 pub fn end_group(leader: u32) -> io::Result<()> {
     let until = Instant::now() + END_PATIENCE;
     let myself = std::process::id() as i32;

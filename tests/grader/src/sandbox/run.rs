@@ -1,4 +1,4 @@
-//! Runs a command to its end, whatever it does.
+//! Runs a command to its end, even if it does not end by itself.
 
 use super::{Ended, How, processes};
 use nix::errno::Errno;
@@ -13,33 +13,34 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Lerp two looks at a process: short at first, since some only need a millisecond.
+/// First pause between two looks at a process. It is short, because some processes need only a millisecond.
 const FIRST_PAUSE: Duration = Duration::from_micros(200);
 const LONGEST_PAUSE: Duration = Duration::from_millis(5);
 
-/// A linker needs four processes. The kernel's own limit does not hold for root.
+/// Most processes of a command. A linker needs four. The kernel's own limit does not apply to root.
 const MOST_PROCESSES: usize = 32;
 
-/// How often they are counted: looking at all processes of the machine takes a millisecond or so.
+/// The time between two counts of the processes. One count takes about a millisecond.
 const COUNT_EVERY: Duration = Duration::from_millis(50);
 
-/// Runs a command to its end: gives it `stdin`, keeps what it writes up to `cap` bytes from each of both streams, and
-/// ends it when it writes more or after `patience`. Nothing of it is left running.
+/// Runs a command to its end. Writes `stdin` to it and keeps up to `cap` bytes of its standard output and of its standard
+/// error. Ends the command if it writes more, or after `patience`. No process of it is left running.
 pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -> io::Result<Ended> {
     guard_this_process()?;
     let cpu_limit = cpu_limit(&command);
-    // A group of its own, which nothing in a sandbox can leave: by that its children are found.
+    // Start a new process group, which sandboxed programs cannot leave. All children are found by this group.
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).process_group(0);
     let mut child = spawn(command)?;
     let (to_it, stdout, stderr) = (child.stdin.take(), child.stdout.take(), child.stderr.take());
     let flooded = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        // What it does not read is its loss.
+        // Ignore errors: the program need not read its input.
         scope.spawn(move || to_it.map(|mut pipe| pipe.write_all(stdin)));
         let stdout = scope.spawn(|| keep(stdout, cap, &flooded));
         let stderr = scope.spawn(|| keep(stderr, cap, &flooded));
+        // Wait for the end of the process, or for a reason to end it.
         let verdict = wait(&child, patience, &flooded);
-        // Also if looking at it failed: nothing of it may stay, or the threads above never end.
+        // End the processes even after an error, because otherwise the threads above never end.
         let ended = end(&mut child);
         let (stdout, stderr) = (stdout.join().unwrap_or_default(), stderr.join().unwrap_or_default());
         let (status, cpu) = ended?;
@@ -52,14 +53,14 @@ pub fn run(mut command: Command, stdin: &[u8], patience: Duration, cap: usize) -
     })
 }
 
-/// Starts a sandboxed command whose end is its owner's business.
+/// Starts a sandboxed command. The caller must end it.
 pub fn spawn_guarded(mut command: Command) -> io::Result<Child> {
     guard_this_process()?;
     command.process_group(0);
     spawn(command)
 }
 
-/// From a thread that lasts as long as the program: a sandboxed process ends with the thread that has
+/// Starts a command on a thread that lasts as long as the program, because a sandboxed process ends with the thread that
 /// started it.
 fn spawn(command: Command) -> io::Result<Child> {
     type Order = (Command, Sender<io::Result<Child>>);
@@ -69,7 +70,7 @@ fn spawn(command: Command) -> io::Result<Child> {
         std::thread::Builder::new().name("spawner".into()).spawn(move || {
             for (mut command, answer) in inbox {
                 let child = command.spawn();
-                // Closes our copies of the pipes that it was given.
+                // Close this process's copies of the child's pipes.
                 drop(command);
                 let _ = answer.send(child);
             }
@@ -83,7 +84,7 @@ fn spawn(command: Command) -> io::Result<Child> {
     answered.recv().map_err(|_| gone())?
 }
 
-/// Orphans of what we start come to us, and nobody reads our memory.
+/// Makes this process the reaper of its orphaned descendants, and its memory unreadable for others.
 fn guard_this_process() -> io::Result<()> {
     static GUARDED: OnceLock<nix::Result<()>> = OnceLock::new();
     let guarded =
@@ -91,7 +92,7 @@ fn guard_this_process() -> io::Result<()> {
     guarded.map_err(io::Error::from)
 }
 
-/// Of the arguments of a launcher.
+/// Returns the limit of processor time in the arguments of a launcher.
 fn cpu_limit(command: &Command) -> Option<Duration> {
     let mut arguments = command.get_args();
     if arguments.next()? != super::LAUNCH {
@@ -100,7 +101,7 @@ fn cpu_limit(command: &Command) -> Option<Duration> {
     Some(Duration::from_secs(arguments.nth(super::CPU_SECONDS_AT - 1)?.to_str()?.parse().ok()?))
 }
 
-/// Reads to the end, or to `cap`.
+/// Reads to the end, or up to `cap` bytes.
 fn keep(pipe: Option<impl Read>, cap: usize, flooded: &AtomicBool) -> Vec<u8> {
     let mut kept = Vec::new();
     if let Some(pipe) = pipe {
@@ -113,7 +114,7 @@ fn keep(pipe: Option<impl Read>, cap: usize, flooded: &AtomicBool) -> Vec<u8> {
     kept
 }
 
-/// Until it has ended by itself, which is `None`, or has to be ended.
+/// Waits until a process has ended by itself (`None`) or must be ended for the returned reason.
 fn wait(child: &Child, patience: Duration, flooded: &AtomicBool) -> io::Result<Option<How>> {
     let started = Instant::now();
     let (mut pause, mut counted) = (FIRST_PAUSE, started);
@@ -136,7 +137,7 @@ fn wait(child: &Child, patience: Duration, flooded: &AtomicBool) -> io::Result<O
     Ok(None)
 }
 
-/// Without waiting for it in the sense of the kernel: its number stays its own.
+/// Returns whether a process has ended, without reaping it, so that its id is not reused.
 fn has_ended(child: &Child, flag: WaitPidFlag) -> io::Result<bool> {
     let child = Pid::from_raw(child.id() as i32);
     loop {
@@ -148,11 +149,13 @@ fn has_ended(child: &Child, flag: WaitPidFlag) -> io::Result<bool> {
     }
 }
 
-/// Ends a process and whatever it has started.
+/// Ends a process and all processes that it has started.
 fn end(child: &mut Child) -> io::Result<(ExitStatus, Duration)> {
+    // Kill the leader and wait for its end, but do not reap it, so that its id stays that of the group.
     child.kill()?;
     has_ended(child, WaitPidFlag::empty())?;
     let cpu = processes::cpu_time(child.id()).unwrap_or_default();
+    // End the rest of the group, then reap the leader.
     let group_ended = processes::end_group(child.id());
     let status = child.wait()?;
     group_ended?;

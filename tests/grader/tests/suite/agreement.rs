@@ -1,4 +1,4 @@
-//! Every search of the reference finds what exact predicates say is met first, on scenes that are hard to search.
+//! Every search of the reference finds the first hit by exact predicates, on scenes that are hard to search.
 
 use grader::gauntlet::agreement;
 use grader::kits::{self, Need, Source, Which};
@@ -10,7 +10,7 @@ fn every_search_finds_a_triangle_that_is_exactly_met_first() {
     let all = agreement::all(&reference, 1, 500).expect("answers");
     for one in &all {
         assert_eq!(one.mismatches, 0, "{one:#?}");
-        // Exactly through an edge that has no neighbour a rounding decides, and of these rays there are a few.
+        // At an edge without a neighbour, a rounding error may decide. Only a few rays hit such an edge exactly.
         assert!(one.roundings * 10 <= one.rays, "{one:#?}");
     }
     let of =

@@ -1,4 +1,5 @@
-//! The catalogue of hard cases: all 81, each with a check or a test that exists, or with the stage that it waits for.
+//! Tests the catalogue of hard cases: there are 81, each with an existing check or test, or with a stage that does not
+//! exist yet.
 
 use grader::cases::read;
 use std::path::{Path, PathBuf};
@@ -7,7 +8,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The texts of all Rust files below a folder.
+/// Returns the texts of all Rust files below a folder.
 fn sources(folder: &Path) -> String {
     let mut text = String::new();
     for entry in std::fs::read_dir(folder).expect("a folder") {
@@ -39,8 +40,8 @@ fn every_case_is_seen_to() {
             assert!(sources.contains(&format!("fn {test}()")), "{}: there is no test `{test}`", case.name);
         }
         match case.awaits {
-            None => assert!(case.checks.len() + case.tests.len() > 0, "{}: nobody sees to it", case.name),
-            Some(stage) => assert!(!stages.contains(&stage), "{}: stage {stage} is there", case.name),
+            None => assert!(case.checks.len() + case.tests.len() > 0, "{}: no check or test", case.name),
+            Some(stage) => assert!(!stages.contains(&stage), "{}: stage {stage} exists", case.name),
         }
     }
 }

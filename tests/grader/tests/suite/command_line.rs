@@ -1,4 +1,4 @@
-//! Every command explains itself, and a command line that is not understood ends the program with code 2.
+//! Every command has a help text, and a wrong command line ends the program with code 2.
 use super::program_runs::{grader, printed};
 use std::process::Command;
 
@@ -77,7 +77,7 @@ fn what_is_not_understood_ends_with_2() {
     for (line, complaint) in [
         ("", "a command is missing"),
         ("exprot", "there is no command `exprot`; did you mean `export`?"),
-        ("export", "known are gradescope, classroom"),
+        ("export", "the commands are gradescope, classroom"),
         ("export gradescop", "did you mean `gradescope`?"),
         ("export classroom", "`--out` is missing"),
         ("export gradescope --stages 12", "there is no stage 12"),
@@ -110,7 +110,7 @@ fn what_is_not_understood_ends_with_2() {
     }
 }
 
-/// The command line is looked at first: what is wrong with it is the same wherever the program is started.
+/// The command line is checked first, so its errors are the same in every working folder.
 #[test]
 fn outside_of_a_kit_the_same_is_wrong() {
     let folder = tempfile::tempdir().expect("a folder");

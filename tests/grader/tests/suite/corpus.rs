@@ -1,5 +1,5 @@
-//! The corpus as it lies there: every patch fits, every named check exists, and what is kept of the last full run is
-//! about just these entries. Building and trying them is `cargo run -p grader -- corpus --check`, which takes minutes.
+//! Tests the files of the corpus: every patch fits, every named check exists, and the stored results are of exactly these
+//! entries. `cargo run -p grader -- corpus --check` builds and tests the entries, which takes minutes.
 
 use grader::corpus::entry::{Claim, Entry, read_all};
 use grader::corpus::records::{Matrix, message_file};
@@ -57,7 +57,7 @@ fn the_matrix_is_about_these_entries_and_all_is_as_it_must_be() {
     for entry in &entries {
         let failed = &matrix.0[&entry.to_string()];
         match &entry.claim {
-            Claim::Right => assert_eq!(failed, "-", "{entry} is right, and is rejected"),
+            Claim::Right => assert_eq!(failed, "-", "{entry} is right but rejected"),
             Claim::Wrong { caught_by, .. } => {
                 assert!(
                     failed.split(' ').any(|check| check == format!("={caught_by}")),
@@ -97,7 +97,7 @@ fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
         for file in std::fs::read_dir(stage.path()).expect("messages of a stage") {
             let (folder, file) = (stage.file_name(), file.expect("a file").file_name());
             let name = format!("{}/{}", folder.to_string_lossy(), file.to_string_lossy());
-            assert!(told.contains(&name), "tests/corpus/messages/{name} is of an entry that is gone");
+            assert!(told.contains(&name), "tests/corpus/messages/{name} belongs to no entry");
         }
     }
 }

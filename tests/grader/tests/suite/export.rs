@@ -1,4 +1,4 @@
-//! What is written for Gradescope and GitHub Classroom, and that grading one submission always ends in an answer.
+//! Tests the files for Gradescope and GitHub Classroom, and that grading one submission always writes a result.
 
 use super::program_runs::{grader, printed, root};
 use serde_json::Value;
@@ -80,10 +80,10 @@ fn classroom_gets_workflows_whose_steps_are_scripts() {
         }
         assert!(scripts >= 1, "{name}");
     }
-    // What is there is somebody's work by now.
+    // The files exist, and the instructor may have edited them.
     let out = folder.path().join("out");
     let again = grader(&["export", "classroom", "--out", &out.to_string_lossy()]);
-    assert!(printed(&again).1.contains("is there already"), "{}", printed(&again).1);
+    assert!(printed(&again).1.contains("already exists"), "{}", printed(&again).1);
 }
 
 /// Runs the bundle's entry point with another program in place of the grader.
@@ -112,7 +112,7 @@ fn gradescope_is_told_even_by_a_grader_that_dies() {
 fn what_breaks_in_the_grader_is_an_answer_too() {
     let folder = tempfile::tempdir().expect("a folder");
     let (gradescope, classroom) = (folder.path().join("g.json"), folder.path().join("c.json"));
-    // No kit is here, nor above the program.
+    // There is no kit in this folder or above the program.
     let program = folder.path().join("grader");
     fs::copy(env!("CARGO_BIN_EXE_grader"), &program).expect("copied");
     let output = Command::new(&program)
@@ -127,7 +127,7 @@ fn what_breaks_in_the_grader_is_an_answer_too() {
     let results = json(&gradescope);
     assert_eq!(results["score"], 0);
     let said = results["output"].as_str().expect("text");
-    assert!(said.contains("the grader broke, tell your instructor: "), "{said}");
+    assert!(said.contains("the grader failed, tell your instructor: "), "{said}");
     let result = json(&classroom);
     assert_eq!((&result["version"], &result["status"]), (&1.into(), &"error".into()));
     assert_eq!(result["tests"][0]["score"], 0);

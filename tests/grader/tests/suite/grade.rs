@@ -1,4 +1,4 @@
-//! `grader grade` and `merge` as instructors run them: a class of a few, on stage 1.
+//! Tests `grader grade` and `merge` as instructors run them, with a small class on stage 1.
 
 use grader::kits::root;
 use grader::sync;
@@ -32,7 +32,7 @@ fn done(mut command: Command) -> String {
     said(&output)
 }
 
-/// Stage 1 as the reference has it, without the marks.
+/// Returns the reference's stage 1 without the marks.
 fn right() -> String {
     let file = root().unwrap().join("solutions/src/stage1_shapes.rs");
     sync::answer(&fs::read_to_string(&file).unwrap(), &file).unwrap()
@@ -44,7 +44,8 @@ fn hand_in(class: &Path, student: &str, text: &str) {
     fs::write(folder.join("stage1_shapes.rs"), text).unwrap();
 }
 
-/// A class of five: one right, one that does not compile, one that has not begun, one that exits, and one that is no archive.
+/// A class of five submissions: a right one, one that does not compile, an untouched one, one that exits, and a malformed
+/// archive.
 fn class() -> tempfile::TempDir {
     let class = tempfile::tempdir().unwrap();
     let (right, stub) =
@@ -57,7 +58,7 @@ fn class() -> tempfile::TempDir {
     class
 }
 
-/// Student and points, as the table says.
+/// Returns students and points from the table.
 fn points(out: &Path) -> Vec<(String, u32)> {
     let table = fs::read_to_string(out.join("grades.csv")).unwrap();
     let row = |line: &str| {
@@ -100,7 +101,7 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
     let handed_in = files(class.path());
 
     let output = grade(class.path(), whole, &["--jobs", "2"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "one of them is no archive:\n{}", said(&output));
+    assert_eq!(output.status.code(), Some(1), "one of them is a malformed archive:\n{}", said(&output));
     assert!(said(&output).contains("eve: cannot be unpacked"), "{}", said(&output));
     let all = points(whole).into_iter().map(|(name, points)| (name, points > 0)).collect::<Vec<_>>();
     let expected = [("ann", true), ("bob", false), ("cat", false), ("dan", false), ("eve", false)];
@@ -115,11 +116,11 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
         .sum();
     assert_eq!(points(whole)[0].1, full);
 
-    // Killed as soon as something has been written down, by its process id.
+    // Kill the run by its process id as soon as it has stored a grade.
     let mut run = grade(class.path(), killed, &["--jobs", "1"]).stderr(Stdio::null()).spawn().unwrap();
     let late = Instant::now() + Duration::from_secs(300);
     while graded(killed).is_empty() && run.try_wait().unwrap().is_none() {
-        assert!(Instant::now() < late, "nothing is written down");
+        assert!(Instant::now() < late, "no grade is stored");
         std::thread::sleep(Duration::from_millis(20));
     }
     run.kill().unwrap();
@@ -129,7 +130,7 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
     let again = said(&grade(class.path(), killed, &[]).output().unwrap());
     assert!(again.contains("--resume"), "{again}");
     assert_eq!(grade(class.path(), killed, &["--resume"]).status().unwrap().code(), Some(1));
-    // What was there is what is there, the milliseconds included: it was not done twice.
+    // The stored grades are unchanged, with their milliseconds: nothing was graded twice.
     assert!(before.iter().all(|row| graded(killed).contains(row)));
     assert_eq!(results(killed), results(whole));
 
@@ -143,7 +144,7 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
     assert_eq!(merge.status().unwrap().code(), Some(1));
     assert_eq!(results(merged.path()), results(whole));
 
-    // One hands in again: nobody else is graded again.
+    // One student hands in again. No other submission is graded again.
     let before = graded(whole);
     hand_in(class.path(), "cat", &right());
     assert_eq!(grade(class.path(), whole, &["--resume"]).status().unwrap().code(), Some(1));
@@ -161,7 +162,8 @@ fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_i
     assert_eq!(files(class.path()), handed_in, "a submission was changed");
 }
 
-/// Cargo takes files of one age for the same, and a target folder that two share then holds the program of the other.
+/// Cargo takes files with the same modification time for unchanged. In a shared target folder, one submission would get the
+/// program of another.
 #[test]
 fn submissions_of_one_age_are_not_taken_for_each_other() {
     let (class, out) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
@@ -171,7 +173,7 @@ fn submissions_of_one_age_are_not_taken_for_each_other() {
         "pub fn plane(_: &Ray, _: Vec3, _: Vec3) -> Option<f32> {\n    None\n}\n\nfn unused(",
     );
     assert_ne!(right, wrong);
-    // Before and behind each other, whichever comes first.
+    // Alternate right and wrong submissions, so that each kind follows the other.
     for (student, text) in [("a", &right), ("b", &wrong), ("c", &right), ("d", &wrong)] {
         hand_in(class.path(), student, text);
         let file = class.path().join(student).join("exercises/src/stage1_shapes.rs");
@@ -182,7 +184,7 @@ fn submissions_of_one_age_are_not_taken_for_each_other() {
     assert!(points[1] < points[0] && points[1] > 0, "{points:?}");
     assert_eq!(points, [points[0], points[1], points[0], points[1]]);
 
-    // What submissions are compiled against: whatever lies beside it can be linked.
+    // A submission can link every library in the folder, so it must not contain the solutions.
     let folders = fs::read_dir(root().unwrap().join("target/grade")).unwrap();
     let folders = folders.map(|entry| entry.unwrap().path());
     let libraries: Vec<PathBuf> = folders
@@ -213,7 +215,7 @@ fn what_cannot_be_graded_is_said_in_words() {
     let empty = said(&grade(class.path(), out.path(), &[]).output().unwrap());
     assert!(empty.contains("no submission"), "{empty}");
     let none = grader().arg("merge").arg(class.path()).arg("--out").arg(out.path()).output().unwrap();
-    assert!(said(&none).contains("holds no grades"), "{}", said(&none));
+    assert!(said(&none).contains("contains no grades"), "{}", said(&none));
 }
 
 #[test]

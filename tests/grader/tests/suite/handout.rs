@@ -1,4 +1,4 @@
-//! The student's repository: what is in it, and what must not be.
+//! Tests the content of the student's repository.
 
 use super::program_runs::{grader, printed, root};
 use grader::handout::{answers, leaks};
@@ -41,11 +41,11 @@ fn nothing_is_handed_out_but_what_is_listed_and_no_answer_is_in_it() {
     });
 
     assert_eq!(leaks(&root(), &folder).expect("readable files"), Vec::<String>::new());
-    // Those are looked for by lines that tell them: most of the answers, in every file that has any.
+    // The search finds most answers, in every file that has any.
     let answers = answers(&root()).expect("readable solutions");
     assert!(answers.len() >= 17, "{:?}", answers.keys());
     for (file, lines) in answers.iter().filter(|(file, _)| file.starts_with("stage")) {
-        assert!(lines.len() >= 15, "{file}: only {} lines tell its answers", lines.len());
+        assert!(lines.len() >= 15, "{file}: only {} lines identify its answers", lines.len());
         let text = fs::read_to_string(folder.join("exercises/src").join(file)).expect("its exercise");
         assert!(text.contains("todo!("), "{file}");
     }
@@ -67,7 +67,7 @@ fn an_answer_and_the_canary_are_found_wherever_they_are() {
 fn manifests_name_nothing_that_is_missing() {
     let (_around, folder) = handed_out();
     let manifest = |path: &str| -> toml::Table {
-        let text = fs::read_to_string(folder.join(path)).unwrap_or_else(|_| panic!("no {path}"));
+        let text = fs::read_to_string(folder.join(path)).unwrap_or_else(|_| panic!("there is no {path}"));
         toml::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
     };
     let workspace = manifest("Cargo.toml");
@@ -78,7 +78,7 @@ fn manifests_name_nothing_that_is_missing() {
         }
     }
     for name in ["rusqlite", "syn", "landlock", "solutions", "nix", "zip", "seccompiler", "sha2"] {
-        assert!(!shared.contains_key(name), "{name} is of no use to students");
+        assert!(!shared.contains_key(name), "{name} is useless for students");
     }
     let members = workspace["workspace"]["members"].as_array().expect("members");
     let mut packages = BTreeSet::new();
@@ -109,7 +109,7 @@ fn manifests_name_nothing_that_is_missing() {
     }
 }
 
-/// Every command that the student's README names is one.
+/// The student's README names only existing commands.
 #[test]
 fn the_readme_names_only_what_is_there() {
     let (_around, folder) = handed_out();
@@ -125,9 +125,9 @@ fn the_readme_names_only_what_is_there() {
     for part in readme.split(" -- ").skip(1) {
         let command = part.split([' ', '`', '\n']).next().unwrap_or_default();
         let known = tool.contains(&format!("name: \"raykata {command}\""));
-        // Those that have files of their own below.
+        // Commands with files of their own are listed below.
         let known = known || folder.join("src/cli/src").join(command).is_dir();
-        assert!(known, "`{command}` is no command of the student's program");
+        assert!(known, "`{command}` is not a command of the student's program");
     }
     for link in readme.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
         assert!(link.starts_with("https://") || folder.join(link).exists(), "{link}");
@@ -142,13 +142,13 @@ fn what_is_there_is_not_overwritten() {
     assert_eq!(output.status.code(), Some(1));
     assert!(printed(&output).1.contains("is not empty"), "{}", printed(&output).1);
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 1);
-    // A folder with nothing in it will do.
+    // An empty folder is allowed.
     fs::remove_file(folder.path().join("mine")).expect("removed");
     assert!(grader(&["handout", &folder.path().to_string_lossy()]).status.success());
     assert!(folder.path().join("Cargo.toml").is_file());
 }
 
-/// Builds what a student gets, as a student does. Takes minutes, so it runs with `CI_LONG=1`.
+/// Builds the hand-out as a student does. This takes minutes, so it runs only with `CI_LONG=1`.
 #[test]
 fn a_student_can_begin() {
     if std::env::var_os("CI_LONG").is_none() {

@@ -1,4 +1,4 @@
-//! The tests of the grader in one program, so that it is linked once and slow tests run beside each other.
+//! All tests of the grader in one program, so that it is linked once and slow tests run in parallel.
 
 mod agreement;
 mod cases;

@@ -1,8 +1,8 @@
-//! What the first picture and a student's first check build is not built again for the tests of the whole workspace.
+//! Packages that were built for the first picture and the first check are not built again for the tests of the workspace.
 //!
-//! Cargo builds a package once per set of features. The features depend on which packages of the workspace are built
-//! together, because they add up. So one more dependency of the grader can make cargo build serde, and everything that
-//! depends on it, twice. If this test fails, name the feature in the workspace's manifest, as is done for `serde_core`.
+//! Cargo builds a package once per set of features. The features add up over all packages that are built together. So one
+//! more dependency of the grader can make cargo build serde, and every package that depends on it, twice. If this test
+//! fails, name the feature in the workspace's manifest, as for `serde_core`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -11,7 +11,7 @@ use std::process::Command;
 /// The kit and the exercises, which are built with and without frames on purpose.
 const TWO_BUILDS: [&str; 2] = ["exercises ", "solutions "];
 
-/// All packages that this selection builds, each with its version and its features.
+/// Returns all packages that this selection builds, each with its version and its features.
 fn packages(selection: &[&str]) -> BTreeSet<String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -44,7 +44,7 @@ fn nothing_is_built_twice() {
         &["normal,build", "--package", "grader"],
     ] {
         let built = packages(selection);
-        assert!(built.len() > 30, "{selection:?} builds only {built:?}");
+        assert!(built.len() > 30, "{selection:?} builds too few packages: {built:?}");
         let again: Vec<&String> = built
             .difference(&tests)
             .filter(|package| !TWO_BUILDS.iter().any(|name| package.starts_with(name)))
@@ -56,7 +56,7 @@ fn nothing_is_built_twice() {
             .collect();
         assert!(
             again.is_empty(),
-            "`cargo test --workspace` builds these once more, with other features, and all packages that depend on \
+            "`cargo test --workspace` builds these again with other features, and all packages that depend on \
              them:\n{selection:?}: {again:#?}\nthe tests: {others:#?}"
         );
     }

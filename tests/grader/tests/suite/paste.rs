@@ -1,6 +1,6 @@
-//! No answer stands in what students receive: whatever function there fits an exercise is pasted into it, and the checks of
-//! that stage must refuse it. Which functions fit is recorded in `paste/candidates.snap`; the long run builds them in and
-//! asks the checks.
+//! Tests that the hand-out contains no function that answers an exercise. Every function with fitting types is pasted into
+//! the exercise, and the checks of that stage must reject it. `paste/candidates.snap` records which functions fit. The long
+//! run builds them in and runs the checks.
 
 mod call;
 mod collect;
@@ -55,22 +55,22 @@ fn crates() -> Vec<(String, String)> {
     named.chain(stages).collect()
 }
 
-/// The programs that students receive. No exercise can call a function of them: the copy does not build them, because they
-/// and what they need would take most of its time. So none of their functions may fit an exercise.
+/// The programs that students receive. The copy does not build them, because they and their dependencies would take most of
+/// its time. So no exercise can call their functions, and none of these may fit an exercise.
 const PROGRAMS: [(&str, &str); 2] = [("src/cli/src", "raykata_cli"), ("tests/judge/src", "judge")];
 
-/// Whether a function is of one of the programs.
+/// Returns whether a function belongs to one of the programs.
 fn is_of_a_program(function: &Function) -> bool {
     PROGRAMS.iter().any(|(_, name)| function.path.starts_with(&format!("{name}::")))
 }
 
-/// The functions of those crates, in the kit or in a copy of it.
+/// Returns the functions of those crates, in the kit or in a copy of it.
 fn handed_out(root: &Path) -> Vec<Function> {
     let bundles = bundles(root);
     crates().iter().flat_map(|(folder, name)| functions(root, folder, name, &bundles)).collect()
 }
 
-/// The functions that students write.
+/// Returns the functions that students write.
 fn exercises(root: &Path) -> Vec<Function> {
     let texts = sync::pristine(root).expect("readable solutions");
     let (mut exercises, bundles) = (Vec::new(), bundles(root));
@@ -86,13 +86,12 @@ fn exercises(root: &Path) -> Vec<Function> {
     exercises
 }
 
-/// What the names of the checks of an exercise's stage begin with.
+/// Returns the prefix of the names of the checks of an exercise's stage.
 fn stage(exercise: &Function) -> String {
     format!("{}::", exercise.path.split('_').next().unwrap_or_default())
 }
 
-/// Two answers that stand nowhere, so that the test can be seen to find answers: the file, where other crates find it, its
-/// text and the exercise.
+/// Two planted answers, which the test must find: the file, the path for other crates, the text and the exercise.
 const PLANTED: [(&str, &str, &str, &str); 2] = [
     (
         "tests/checks/src/tree/mod.rs",
@@ -125,7 +124,7 @@ fn what_fits_an_exercise_is_recorded() {
     for (folder, name) in PROGRAMS {
         assert!(all.iter().filter(|function| function.file.starts_with(folder)).count() > 10, "{folder}");
         if !fitting.iter().any(|(_, function)| function.file.starts_with(folder)) {
-            lines.insert(format!("{name}: nothing fits"));
+            lines.insert(format!("{name}: no function fits"));
         }
     }
     insta::with_settings!({ snapshot_path => "paste", prepend_module_to_snapshot => false, omit_expression => true }, {
@@ -165,7 +164,7 @@ fn no_function_that_students_receive_is_an_answer() {
             calls.clear();
         }
         if calls.is_empty() {
-            // Only a person can judge what nobody else can call.
+            // Skip functions that other crates cannot call. Only a person can judge these.
             answers.insert(format!("{} in {}", function.path, exercise.path));
         }
         for call in calls {
@@ -187,7 +186,7 @@ fn no_function_that_students_receive_is_an_answer() {
          *PASTED\n}\n",
     );
     let program = copy::build(&folder);
-    assert!(copy::passes(&program, &folder, "stage", 0), "the copy fails as it is");
+    assert!(copy::passes(&program, &folder, "stage", 0), "the unchanged copy fails");
     for (index, (exercise, function)) in pasted.iter().enumerate() {
         if copy::passes(&program, &folder, &stage(exercise), index + 1) {
             answers.insert(format!("{} in {}", function.path, exercise.path));

@@ -1,5 +1,5 @@
-//! Small pictures of the scenes of the kit, bit by bit, with what they cost: whoever changes one, looks at it and blesses it
-//! with `INSTA_UPDATE=always cargo test -p grader --test suite pictures`.
+//! Compares small pictures of the kit's scenes bit by bit, with their cost. If your change is meant to alter a picture,
+//! look at the picture and accept it with `INSTA_UPDATE=always cargo test -p grader --test suite pictures`.
 
 use grader::kits::{Need, Source, Which};
 use grader::pictures::Scenes;
@@ -13,7 +13,7 @@ fn every_scene_looks_and_costs_as_before() {
     let shown = scenes.shown_by(&*reference);
     assert!(shown.iter().all(|one| one.pixels.is_ok()));
     let text: String = shown.iter().map(|one| format!("{one}\n")).collect();
-    // Sines and powers are those of the system, so the last bits are known on one kind of machine only.
+    // The system computes sines and powers, so the last bits are reproducible on one kind of machine only.
     let exact = cfg!(all(target_arch = "x86_64", target_os = "linux", target_env = "gnu"));
     if exact {
         let mut settings = insta::Settings::clone_current();
@@ -22,5 +22,5 @@ fn every_scene_looks_and_costs_as_before() {
         settings.set_omit_expression(true);
         settings.bind(|| insta::assert_snapshot!("pictures", text));
     }
-    assert_eq!(shown, scenes.shown_by(&*reference), "the same again is the same");
+    assert_eq!(shown, scenes.shown_by(&*reference), "a second run gives the same result");
 }

@@ -1,4 +1,4 @@
-//! What runs in a sandbox stays in it.
+//! Tests that a sandboxed program cannot leave its sandbox.
 
 use grader::sandbox::{
     self, Confinement, Ended, How, Limits, Purpose, Sandbox, got_through, run, this_program,
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Far more than anything here needs: a limit for a machine in trouble, not a measure.
+/// Time limit per command. The tests need far less; the limit only matters on a very slow machine.
 const PATIENCE: Duration = Duration::from_secs(60);
 const CAP: usize = 1 << 20;
 
@@ -31,7 +31,7 @@ fn this_machine_contains_submissions() {
     let started = Instant::now();
     let level = sandbox::self_test().expect("contained").to_string();
     assert!(level.starts_with("Landlock ABI ") && level.contains("seccomp"), "{level}");
-    eprintln!("{level}, found out in {:?}", started.elapsed());
+    eprintln!("{level}, tested in {:?}", started.elapsed());
 }
 
 #[test]
@@ -57,14 +57,14 @@ fn what_is_not_asked_for_is_not_there() {
     assert_eq!(said(&probe(&worker, "descriptors")), "Exited(0): 0\n");
 }
 
-/// What an instructor gets who says `--insecure` where the kernel has no walls.
+/// The sandbox with `--insecure` on a kernel without Landlock or seccomp.
 #[test]
 fn without_walls_limits_still_hold() {
     let open = Sandbox::with(Confinement::LimitsOnly, Purpose::Worker);
     let all = probe(&open, "all");
     let said = String::from_utf8_lossy(&all.stdout).into_owned();
     assert!(said.contains("through: read a file of the system"), "{said}");
-    // A worker's files may have no byte: the probe that writes one is its last (SIGXFSZ).
+    // A worker may not write a single byte to a file, so the test that writes one ends it (SIGXFSZ).
     assert_eq!(all.how, How::Signalled(25), "{said}");
     let brief = Sandbox { limits: Limits { cpu_seconds: 1, ..open.limits }, ..open };
     assert_eq!(probe(&brief, "spin").how, How::UsedUpCpu);
@@ -72,7 +72,8 @@ fn without_walls_limits_still_hold() {
 
 #[test]
 fn an_open_file_of_the_judge_is_not_inherited() {
-    // A redirection of the shell is not closed on exec, unlike what Rust opens. The shell is the launcher's parent.
+    // A file opened by a shell redirection stays open on exec, unlike files that Rust opens. The shell is the launcher's
+    // parent.
     let script = "exec 7</etc/passwd 9</etc/passwd
         launcher=$1 word=$2 walls=$3 purpose=$4; shift 5
         \"$launcher\" \"$word\" \"$walls\" \"$purpose\" $$ \"$@\"; exit $?";
@@ -98,7 +99,7 @@ fn endless_work_output_and_sleep_end() {
     assert_eq!(ended.how, How::TookTooLong);
 }
 
-/// Processes whose command line holds `word`.
+/// Returns the processes whose command line contains `word`.
 fn running(word: &str) -> Vec<String> {
     let entries = std::fs::read_dir("/proc").expect("/proc");
     entries
@@ -108,7 +109,7 @@ fn running(word: &str) -> Vec<String> {
         .collect()
 }
 
-/// Children of this process that have ended and wait for somebody to notice.
+/// Counts the children of this process that have ended and were not waited for.
 fn zombies() -> usize {
     let myself = format!(" Z {} ", std::process::id());
     let entries = std::fs::read_dir("/proc").expect("/proc");
@@ -126,19 +127,19 @@ fn shell(script: &str) -> Command {
 
 #[test]
 fn nothing_is_left_of_a_tree_of_processes() {
-    // Each number of seconds appears nowhere else on the machine.
+    // Use numbers of seconds that no other process on the machine has in its command line.
     let script = "sleep 7261 & (sleep 7262 & (sleep 7263 & sleep 7264) & sleep 7265) & wait";
     let ended = run(shell(script), b"", Duration::from_millis(500), CAP).expect("it runs");
     assert_eq!(ended.how, How::TookTooLong, "{}", said(&ended));
     assert_eq!(running("sleep 726"), Vec::<String>::new());
-    // One that ends by itself and leaves others behind.
+    // Test a process that ends by itself and leaves others behind.
     let ended = run(shell("sleep 7361 & sleep 7362 & exit 3"), b"", PATIENCE, CAP).expect("it runs");
     assert_eq!(ended.how, How::Exited(3), "{}", said(&ended));
     assert_eq!(running("sleep 736"), Vec::<String>::new());
-    // Other tests run at the same time, and theirs are waited for soon.
+    // Other tests run at the same time. Their processes are waited for soon.
     let until = Instant::now() + PATIENCE;
     while zombies() > 0 {
-        assert!(Instant::now() < until, "processes that nobody waits for");
+        assert!(Instant::now() < until, "no process was waited for in time");
         std::thread::sleep(Duration::from_millis(10));
     }
 }
@@ -162,7 +163,7 @@ fn what_cannot_be_sandboxed_does_not_run() {
         said(&ended)
     );
     let writes = Sandbox { writable: vec!["/tmp".into()], ..Sandbox::new(Purpose::Worker) };
-    assert!(said(&probe(&writes, "environment")).contains("a worker writes nothing"));
+    assert!(said(&probe(&writes, "environment")).contains("a worker must not write"));
     let command = Sandbox::new(Purpose::Worker).command(Path::new("/no/such/program"));
     let ended = run(command, b"", PATIENCE, CAP).expect("it runs");
     assert!(said(&ended).contains("the sandbox: /no/such/program"), "{}", said(&ended));
@@ -219,7 +220,7 @@ fn a_program_is_linked_and_runs() {
 #[test]
 fn a_recursion_as_deep_as_a_worker_may_go_returns() {
     let scratch = tempfile::tempdir().expect("a folder");
-    // 100,000 calls of some five hundred bytes each.
+    // 100,000 calls of about five hundred bytes each.
     let source = "use std::hint::black_box;
         fn deep(n: u32) -> u32 { let room = black_box([n; 100]); if n == 0 { 0 } else { 1 + deep(n - 1) + room[9] - n } }
         fn main() { println!(\"{}\", deep(100_000)); }";
@@ -228,7 +229,7 @@ fn a_recursion_as_deep_as_a_worker_may_go_returns() {
     assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): 100000\n");
 }
 
-/// With native code, as a hole in the compiler would allow it.
+/// Runs native code, as a bug in the compiler would allow it.
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn code_beyond_the_rules_of_rust_gets_no_further() {
@@ -242,7 +243,7 @@ fn code_beyond_the_rules_of_rust_gets_no_further() {
         assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Exited(0): tried\n");
         let mut command = sandbox.command(&scratch.path().join("native"));
         command.arg("other-architecture");
-        // SIGSYS.
+        // Signal 31 is SIGSYS.
         assert_eq!(said(&run(command, b"", PATIENCE, CAP).expect("it runs")), "Signalled(31): ");
     }
 }

@@ -1,4 +1,5 @@
-//! What the judge makes of sandboxed workers that do everything wrong: one error for the call, never a wait without end.
+//! Tests the judge with sandboxed workers that misbehave: each bad call gives one error, and the judge never waits for
+//! ever.
 
 #[path = "../../../misbehaving/tests/asking/mod.rs"]
 mod asking;
@@ -17,7 +18,7 @@ fn sandboxed(program: impl Into<PathBuf>, seconds: u64) -> Door<Worker> {
     Door(Worker::sandboxed(program.into(), Duration::from_secs(seconds), Sandbox::new(Purpose::Worker)))
 }
 
-/// The program that misbehaves. It is in a package of its own, because it links the solutions.
+/// The program that misbehaves. It is a separate package, because it links the solutions.
 fn misbehaving() -> PathBuf {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let build = || {
@@ -40,7 +41,7 @@ fn crash(door: &Door<Worker>, radius: f32) -> String {
 fn an_honest_worker_passes_every_check_in_a_sandbox() {
     for (_, checks) in all_checks::STAGES {
         for check in *checks {
-            // The patience of the tool: some checks take a while where others run at the same time.
+            // Use the time limit of the student's program: some checks are slow while other tests run.
             let kit = sandboxed(misbehaving(), 10);
             let kit: std::sync::Arc<dyn raykata::kit::Kit + Send + Sync> = std::sync::Arc::new(kit);
             assert_eq!(checks::run(check, &kit, 0), checks::Verdict::Passed, "{}", check.name);
@@ -55,7 +56,7 @@ fn each_death_is_told_in_words_and_the_next_call_is_answered() {
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     assert!(crash(&door, -3.0).contains("SIGABRT"));
     assert!(crash(&door, -4.0).starts_with("the stack overflowed, or memory was touched"));
-    assert_eq!(crash(&door, -10.0), "it took more memory than the 1 GiB it was given");
+    assert_eq!(crash(&door, -10.0), "it used more memory than its limit of 1 GiB");
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
     assert!(
         crash(&sandboxed("/no/such/worker", 1), 10.0)
@@ -77,7 +78,7 @@ fn loops_and_sleepers_end_and_a_slow_machine_is_no_loop() {
     for radius in [-5.0, -11.0] {
         assert_eq!(ask(&door, radius), Err(KitError::TimedOut { seconds: 1 }));
     }
-    // It sleeps for three seconds, as if others had the processor: twice that is granted.
+    // It sleeps for three seconds, as on a busy machine. The limit counts processor time, so the call succeeds.
     assert!(ask(&sandboxed(misbehaving(), 2), -14.0).is_ok());
 }
 
@@ -93,12 +94,12 @@ fn what_is_no_answer_is_an_error() {
 
 #[test]
 fn a_worker_that_does_not_read_does_not_stop_the_judge() {
-    // More than any socket holds, so that writing it has to wait.
+    // Send more than a socket buffers, so that writing blocks.
     let many: Vec<SphereQuery> = std::iter::repeat_n(query(10.0), 200_000).collect();
-    // Says nothing on the pipe and reads nothing.
+    // This program neither answers nor reads.
     let outcome = kit_error::catch(|| sandboxed("/usr/bin/yes", 1).sphere_algebraic(&many));
     assert_eq!(outcome, Err(KitError::TimedOut { seconds: 1 }));
-    // Answers this and all that follows without reading it.
+    // This worker answers this question and all later ones without reading them.
     let door = door();
     assert_eq!(ask(&door, -24.0), Ok(vec![Some(1.0)]));
     let outcome = kit_error::catch(|| door.sphere_algebraic(&many));
@@ -110,12 +111,12 @@ fn a_frame_in_a_sandbox_is_the_frame_outside() {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/stage2.toml"));
     let mut scene = raykata::scene::load::load(file).expect("the scene");
     (scene.film.width, scene.film.height) = (40, 25);
-    // Two threads are asked for; there are none in a sandbox.
+    // Ask for two threads. A sandbox allows none.
     let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 2, count: true };
     let watch: &dyn Watch = &Unwatched;
     let kit = sandboxed(misbehaving(), 10);
-    let sandboxed = kit.render(&job, watch).expect("nobody cancels");
+    let sandboxed = kit.render(&job, watch).expect("the frame is not cancelled");
     let solutions = Source::prepare(&kits::root().expect("a kit"), Which::Solutions, Need::Frames);
-    let free = solutions.expect("it builds").fresh().render(&job, watch).expect("nobody cancels");
+    let free = solutions.expect("it builds").fresh().render(&job, watch).expect("the frame is not cancelled");
     assert_eq!((sandboxed.film, sandboxed.counts, sandboxed.notes), (free.film, free.counts, free.notes));
 }

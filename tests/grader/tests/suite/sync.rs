@@ -1,4 +1,4 @@
-//! Exercises are made of solutions, and hold no line of an answer.
+//! Exercises are made from solutions and contain no line of an answer.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,15 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Answers are what is between the marks; no line of them may be left in an exercise.
+/// Whether `line` is `name: Type,` and no more.
+fn is_parameter(line: &str) -> bool {
+    let name = |text: &str| text.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
+    line.strip_suffix(',')
+        .and_then(|line| line.split_once(": "))
+        .is_some_and(|(left, right)| name(left) && name(right))
+}
+
+/// The lines between the marks are answers. None of them may occur in an exercise.
 #[test]
 fn no_line_of_an_answer_is_in_an_exercise() {
     for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
@@ -17,8 +25,8 @@ fn no_line_of_an_answer_is_in_an_exercise() {
             match line {
                 "// <solution>" => inside = true,
                 "// </solution>" => inside = false,
-                // Short lines are brackets and such, which are nobody's answer.
-                _ if inside && line.len() > 12 && !line.starts_with("// <stub>") => {
+                // Skip short lines, such as brackets, and parameters. They are not answers.
+                _ if inside && line.len() > 12 && !is_parameter(line) && !line.starts_with("// <stub>") => {
                     let left = exercise.stub.lines().any(|stub| stub.trim() == line);
                     assert!(!left, "{}: {line}", exercise.path.display());
                 }
@@ -32,7 +40,7 @@ fn no_line_of_an_answer_is_in_an_exercise() {
 fn sync_is_the_same_every_time() {
     for exercise in grader::sync::exercises(&root()).expect("the kit is whole") {
         assert!(!exercise.stub.contains("<solution>") && !exercise.stub.contains("<stub>"));
-        // A file without marks is its own stub: generating twice changes nothing.
+        // A file without marks is its own stub, so generating twice changes nothing.
         let again = grader::sync::stub(&exercise.stub, &exercise.path).expect("no marks are left");
         assert_eq!(again, exercise.stub);
     }

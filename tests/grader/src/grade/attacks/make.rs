@@ -1,4 +1,4 @@
-//! Makes the submission of an attack: files first, then one step after the other.
+//! Makes the submission of an attack: first its base files, then one step after the other.
 
 use super::step::{Act, Content, Encoding, Step, bytes_of, need, path_of};
 use super::{Attack, Base, remember, source};
@@ -14,30 +14,30 @@ use std::time::SystemTime;
 
 mod archives;
 
-/// Where students write.
+/// The folder of the exercise files.
 const SOURCES: &str = "exercises/src";
 
-/// The file that most attacks are in.
+/// The file that most attacks change.
 const SHAPES: &str = "exercises/src/stage1_shapes.rs";
 
-/// What lies in a file beside every submission, and may be seen in no report.
+/// The content of a secret file beside every submission. No report may contain it.
 pub const CANARY: &str = "canary-7c1e-of-somebody-else";
 
-/// Where a submission is made, and of what.
+/// The folders in which a submission is made.
 pub struct Place<'a> {
-    /// The kit.
+    /// The root of the kit.
     pub root: &'a Path,
-    /// An empty folder. `submissions` will hold the submission and `beside` what is none of its business.
+    /// An empty folder. The submission goes into `submissions`, and the files that it must not reach into `beside`.
     pub folder: &'a Path,
 }
 
-/// Makes the submission of an attack and says where it is.
+/// Makes the submission of an attack and returns its path.
 pub fn make(attack: &Attack, place: &Place<'_>) -> Result<PathBuf> {
     let name = match (&attack.student, &attack.student_hex) {
         (Some(name), None) => name.into(),
         (None, Some(hex)) => OsString::from_vec(bytes_of(hex)?),
         (None, None) => attack.name.clone().into(),
-        _ => bail!("{}: either `student` or `student_hex`", attack.name),
+        _ => bail!("{}: use either `student` or `student_hex`", attack.name),
     };
     let beside = place.folder.join("beside");
     fs::create_dir_all(&beside)?;
@@ -60,7 +60,7 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// The files of students before the first step.
+    /// Returns the exercise files before the first step.
     fn base(&self) -> Result<BTreeMap<String, String>> {
         let mut files = match self.attack.base {
             Base::Nothing => BTreeMap::new(),
@@ -151,7 +151,7 @@ impl Maker<'_> {
                 self.become_archive(format, &content)?;
             }
         }
-        ensure!(step == Step { act, ..Step::default() }, "it has what it does not need: {step:?}");
+        ensure!(step == Step { act, ..Step::default() }, "the step has keys that it does not need: {step:?}");
         Ok(())
     }
 
@@ -193,18 +193,18 @@ impl Maker<'_> {
         self.write(Path::new(path), change(text)?.as_bytes())
     }
 
-    /// The place of a path, with nothing there and a folder around.
+    /// Returns the absolute path. Its folder exists, and there is no file at the path.
     fn fresh(&self, path: &Path) -> Result<PathBuf> {
         let path = self.submission.join(path);
         fs::create_dir_all(path.parent().unwrap_or(&path))?;
-        // Never through a link that an earlier step has made.
+        // Do not write through a link of an earlier step.
         if fs::symlink_metadata(&path).is_ok_and(|metadata| !metadata.is_dir()) {
             fs::remove_file(&path)?;
         }
         Ok(path)
     }
 
-    /// The text with the places that attacks are after.
+    /// Returns the text with the paths of kit, neighbour folder and secret filled in.
     fn filled(&self, text: &str) -> String {
         let beside = self.place.folder.join("beside");
         let shown = |path: &Path| path.display().to_string();
@@ -213,13 +213,13 @@ impl Maker<'_> {
             .replace("@beside@", &shown(&beside))
     }
 
-    /// What a step writes.
+    /// Returns the bytes that a step writes.
     fn content(&self, step: &mut Step) -> Result<Vec<u8>> {
         let content = match (step.content.take(), step.text.take(), step.fragment.take()) {
             (Some(content), None, None) => content,
             (None, None, None) => bail!("`text`, `fragment` or `content` is missing"),
             (None, text, fragment) => Content { text, fragment, ..Content::default() },
-            _ => bail!("`content`, `text` or `fragment`, but not several of them"),
+            _ => bail!("use only one of `content`, `text` and `fragment`"),
         };
         self.bytes(content)
     }
@@ -235,7 +235,7 @@ impl Maker<'_> {
                 self.filled(&fs::read_to_string(&file).with_context(|| file.display().to_string())?)
             }
             (None, None, None, Some(hex)) => return Ok(bytes_of(&hex)?.repeat(n)),
-            _ => bail!("`text`, `fragment`, `solution` or `hex`, but not several of them"),
+            _ => bail!("use only one of `text`, `fragment`, `solution` and `hex`"),
         };
         let repeated: String = match text.contains("@n@") {
             true => (0..n).map(|index| text.replace("@n@", &index.to_string())).collect(),

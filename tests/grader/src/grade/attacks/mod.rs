@@ -1,10 +1,11 @@
-//! The attack corpus: submissions that want points they have not earned, or harm, and honest ones that look as if they did.
-//! `tests/corpus/attack/NAME/attack.toml` says how one is made and what must come of it; see its neighbour `README.md`.
+//! The attack corpus: submissions that try to get points without earning them or to do harm, and honest ones that look
+//! suspicious. `tests/corpus/attack/NAME/attack.toml` says how one is made and what result it must get; see `README.md`
+//! there.
 //!
 //! `step` (what attack.toml says) · `make` (the folder or archive) · `source` (changes of a source file) · `pack` (archives
-//! that no archiver makes) · `remember` (answers known by heart) · `verdict` (what came of it) · `run` (all of them)
+//! that no archiver makes) · `remember` (memorised answers) · `verdict` (compares the result) · `run` (runs all attacks)
 //!
-//! Nothing here runs or compiles an attack: that is for the sandbox alone.
+//! This module neither runs nor compiles an attack. Only the sandbox may do that.
 
 mod make;
 mod pack;
@@ -23,95 +24,95 @@ use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Below the root of the kit.
+/// The folder of the attacks, below the root of the kit.
 const FOLDER: &str = "tests/corpus/attack";
 
-/// What an attack is after.
+/// The target of an attack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Family {
-    /// Nothing: it is honest, and must get what it has earned.
+    /// No target: the submission is honest and must get the points that it has earned.
     Honest,
-    /// A verdict that it writes itself.
+    /// The verdict: the attack forges one.
     Forging,
-    /// The processor, the memory or the end of its worker.
+    /// Processor time, memory, or the end of the worker's process.
     Exhausting,
-    /// Processes, files, memory and networks of others, while it runs.
+    /// Processes, files, memory and networks of others, at run time.
     Escaping,
-    /// Files of others, while it is compiled.
+    /// Files of others, at compile time.
     Including,
-    /// The symbols and sections of the program that it is linked into.
+    /// Symbols and sections of the linked program.
     Linking,
-    /// What cargo, the compiler and the tests are told by files and variables.
+    /// The configuration of cargo, compiler and tests, in files and environment variables.
     Settings,
     /// The time and memory of the compiler.
     Compiling,
-    /// Whoever opens the archive or walks through the folder.
+    /// The code that unpacks the archive or traverses the folder.
     Packing,
-    /// Whoever judges the answers.
+    /// The judge, by malformed answers.
     Answers,
-    /// Whoever reads the messages of the worker.
+    /// The code that reads the worker's messages.
     Protocol,
-    /// Points for what is right on known inputs only.
+    /// Points for answers that are right on public inputs only.
     Guessing,
-    /// Whoever reads the report.
+    /// The readers of the report.
     Words,
 }
 
-/// What all files of a submission are before the first step.
+/// The files of a submission before the first step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Base {
-    /// As nobody has begun them.
+    /// Untouched exercises.
     #[default]
     Stubs,
-    /// Those of the stages in question are right.
+    /// The files of the graded stages are right.
     Solutions,
-    /// Those of the stages in question give answers that no check accepts, so that every point is a forged one.
+    /// The files of the graded stages give answers that no check accepts, so that every point is forged.
     Wrong,
-    /// There are none.
+    /// There are no files.
     Nothing,
 }
 
-/// A submission and what must come of it.
+/// A submission and the result that it must get.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Attack {
-    /// Name of its folder.
+    /// The name of its folder.
     #[serde(skip)]
     pub name: String,
-    /// Where its description and its fragments are.
+    /// The folder with its description and its fragments.
     #[serde(skip)]
     pub folder: PathBuf,
-    /// What it is, in a few words.
+    /// The attack in a few words.
     pub title: String,
-    /// What it tries, and what a grader that trusts it would do.
+    /// What the attack tries, and what a grader that trusts it would do.
     pub what: String,
-    /// What it is after.
+    /// Its target.
     pub family: Family,
-    /// Its number in the catalogue of attacks that this corpus began with, if it is from there.
+    /// Its number in the first catalogue of attacks, if it is from there.
     pub catalogue: Option<u8>,
-    /// What `cargo test` says of it as it was handed in.
+    /// The result of `cargo test` on the submission as it was handed in.
     pub naive: Option<String>,
-    /// What its files are before the first step.
+    /// Its files before the first step.
     #[serde(default)]
     pub base: Base,
-    /// The name of the submission, if it is another one than that of the attack.
+    /// The name of the submission, if it differs from that of the attack.
     pub student: Option<String>,
-    /// The same as bytes in hexadecimal, for names that are no text.
+    /// The same name as hexadecimal bytes, for names that are not valid UTF-8.
     pub student_hex: Option<String>,
-    /// What is graded.
+    /// The graded stages.
     #[serde(default = "stage_one")]
     pub stages: Vec<u8>,
-    /// How long it may take to grade, on an idle machine.
+    /// The time limit for grading it on an idle machine, in seconds.
     #[serde(default = "a_minute")]
     pub most_seconds: u64,
-    /// How it is made, one thing after the other.
+    /// The steps that make the submission, in order.
     #[serde(default)]
     pub step: Vec<step::Step>,
-    /// What must come of it.
+    /// The result that it must get.
     pub expect: Expectation,
-    /// What must come of it if the syntax check lets it pass, so that the sandbox itself is tried.
+    /// The result that it must get with rules of the syntax check switched off. This tests the sandbox itself.
     pub without_lint: Option<Expectation>,
 }
 
@@ -123,7 +124,7 @@ fn a_minute() -> u64 {
     60
 }
 
-/// All attacks of the kit at `root`, by name.
+/// Loads all attacks of the kit at `root`, sorted by name.
 pub fn load(root: &Path) -> Result<Vec<Attack>> {
     let folder = root.join(FOLDER);
     let entries = fs::read_dir(&folder).with_context(|| folder.display().to_string())?;
@@ -133,7 +134,7 @@ pub fn load(root: &Path) -> Result<Vec<Attack>> {
     folders.iter().map(|folder| read(folder)).collect()
 }
 
-/// Those of these names; all, if none is named.
+/// Returns the attacks with these names, or all if `names` is empty.
 pub fn choose(attacks: Vec<Attack>, names: &[String]) -> Result<Vec<Attack>> {
     for name in names {
         ensure!(attacks.iter().any(|attack| attack.name == *name), "{FOLDER} has no attack `{name}`");

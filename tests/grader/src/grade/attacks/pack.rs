@@ -1,26 +1,26 @@
-//! Archives, byte by byte: those that matter here are ones that no archiver would make.
+//! Writes archives byte by byte, because the attacks need malformed archives that no archiver makes.
 
 use anyhow::{Context, Result};
 use flate2::{Compression, Crc, write::DeflateEncoder, write::GzEncoder};
 use serde::Deserialize;
 use std::io::{self, Write};
 
-/// What an archive is.
+/// The format of an archive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Format {
-    /// Deflated, with a directory at the end.
+    /// Deflated entries, with a directory at the end.
     #[serde(rename = "zip")]
     Zip,
     /// Blocks of 512 bytes.
     #[serde(rename = "tar")]
     Tar,
-    /// The same, compressed as a whole.
+    /// A tar file, compressed as a whole.
     #[serde(rename = "tar.gz")]
     TarGz,
 }
 
 impl Format {
-    /// How file names of it end.
+    /// Returns the file extension.
     pub(super) fn ending(self) -> &'static str {
         match self {
             Format::Zip => ".zip",
@@ -30,7 +30,7 @@ impl Format {
     }
 }
 
-/// What an entry of an archive claims to be.
+/// The kind that an entry of an archive claims to have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -49,20 +49,20 @@ pub enum Kind {
     LongName,
 }
 
-/// An entry as it is written.
+/// An entry of an archive.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Entry {
-    /// Its name, whatever that is.
+    /// Its name, as any bytes.
     pub name: Vec<u8>,
-    /// What it claims to be.
+    /// The kind that it claims to have.
     pub kind: Kind,
-    /// What it holds, or where it leads.
+    /// Its content, or the target of a link.
     pub content: Vec<u8>,
-    /// So many zeros follow.
+    /// The number of zero bytes after the content.
     pub zeros: u64,
-    /// The size that is stated, if it is another one.
+    /// The stated size, if it differs from the real one.
     pub stated: Option<u64>,
-    /// Whether it is said to need a password.
+    /// Whether it claims to need a password.
     pub encrypted: bool,
 }
 
@@ -112,7 +112,7 @@ impl Header {
 
 fn zip(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
     const DEFLATED: u16 = 8;
-    // Without a time: midnight of the first day of 1980.
+    // Midnight of 1 January 1980, the date of zip entries without a time.
     const DATE: u16 = 0x21;
     let (mut offset, mut directory) = (0u32, Vec::new());
     for entry in entries {
@@ -134,7 +134,7 @@ fn zip(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
         out.write_all(&entry.name)?;
         out.write_all(&data)?;
         let mode: u32 = if entry.kind == Kind::Symlink { 0o120_777 } else { 0o100_644 };
-        // Made by Unix, whose modes are in the upper half of the attributes.
+        // Entries from Unix have the mode in the upper half of the attributes.
         let central = common(Header::default().four(&[0x0201_4b50]).two(&[3 << 8 | 20]));
         directory.extend(central.two(&[0, 0, 0]).four(&[mode << 16, offset]).0);
         directory.extend(&entry.name);
@@ -200,7 +200,7 @@ fn tar(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
     out.write_all(&[0; 2 * BLOCK as usize])
 }
 
-/// In octal if it fits, else in binary with the highest bit set, as GNU tar does.
+/// Encodes a number in octal if it fits, otherwise in binary with the highest bit set, as GNU tar does.
 fn tar_number(number: u64) -> Vec<u8> {
     if number < 1 << 33 {
         return format!("{number:011o}\0").into_bytes();

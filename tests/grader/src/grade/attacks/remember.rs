@@ -1,7 +1,7 @@
-//! A file that knows by heart what was asked: right for every input that students have, and for no other.
+//! Makes a file with memorised answers: right for every public input, wrong for all others.
 //!
-//! The answers come from the reference, which is asked by the checks themselves. So the attack keeps its teeth when checks
-//! ask something else one day.
+//! The answers are recorded while the checks run against the reference. So the attack still works after checks change their
+//! inputs.
 
 use super::source::{self, Function};
 use crate::kits::{Need, Source, Which, root};
@@ -12,22 +12,22 @@ use raykata::kit::{Answer, Door, Kit, Request, Transport};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Answers by what was asked: the bits of all arguments, and the bits of the answer.
+/// Maps the bits of all arguments to the bits of the answer.
 type Known = BTreeMap<Vec<u32>, Vec<u32>>;
 
-/// The file with functions that look up what they were asked. What is not found gets a wrong answer.
+/// Returns the file with functions that look their answers up. For unknown inputs they return a wrong answer.
 pub(super) fn by_heart(text: &str, names: &[String]) -> Result<String> {
     let mut changed = source::with_top(text, HELPERS);
     for name in names {
         let known = known(name)?;
-        ensure!(!known.is_empty(), "no check of stage 1 asks `{name}` anything");
+        ensure!(!known.is_empty(), "no check of stage 1 calls `{name}`");
         let table = table(&known);
         changed = source::with_bodies(&changed, name, |function| body(function, &table))?;
     }
     Ok(changed)
 }
 
-/// Finds what is known. Keys and answers are words of 32 bits, in a text of six characters each.
+/// The code that looks answers up. Keys and answers are 32-bit words, each written as six characters.
 const HELPERS: &str = r#"
 use std::collections::HashMap;
 
@@ -82,7 +82,7 @@ fn body(function: &Function, table: &str) -> Result<String> {
         "plane" => ("[ray.words(), point.words(), normal.words()]", "found", 2),
         "sphere_normal" => ("[center.words(), point.words()]", "vector", 3),
         "face_forward" => ("[normal.words(), direction.words()]", "vector", 3),
-        other => bail!("nobody knows how to learn `{other}` by heart"),
+        other => bail!("memorising the answers of `{other}` is not supported"),
     };
     let answer = match answer {
         "found" => "if answer[0] == 1 { Some(f32::from_bits(answer[1])) } else { None }",
@@ -96,7 +96,7 @@ fn body(function: &Function, table: &str) -> Result<String> {
     ))
 }
 
-/// The table as text: for each entry the digest of the question, then the answer.
+/// Writes the table as text: per entry the digest of the question, then the answer.
 fn table(known: &Known) -> String {
     let mut text = String::new();
     for (asked, answer) in known {
@@ -108,12 +108,12 @@ fn table(known: &Known) -> String {
     text
 }
 
-/// The same as in [`HELPERS`].
+/// The same function as in [`HELPERS`].
 fn digest(words: &[u32]) -> u32 {
     words.iter().fold(0x811c_9dc5u32, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(13))
 }
 
-/// All that the checks of stage 1 ask this function with the inputs that students have, answered by the reference.
+/// Returns all public inputs with which the checks of stage 1 call this function, and the reference's answers.
 fn known(name: &str) -> Result<Known> {
     let heard = Arc::new(Heard { name: name.to_owned(), known: Mutex::default() });
     let reference = Source::prepare(&root()?, Which::Solutions, Need::Checks)?.fresh();
@@ -133,7 +133,7 @@ struct Heard {
     known: Mutex<Known>,
 }
 
-/// The reference, with somebody who writes down what it answers.
+/// The reference, with a record of its answers.
 struct Listener {
     reference: Arc<dyn Kit + Send + Sync>,
     heard: Arc<Heard>,
@@ -192,7 +192,7 @@ fn ray(ray: &raykata::ray::Ray) -> Vec<f32> {
     [&ray.origin.to_array()[..], &ray.direction.to_array(), &[ray.t_min, ray.t_max]].concat()
 }
 
-/// Whether there is an answer, and which.
+/// Encodes whether there is an answer, and which.
 fn option(found: Option<f32>) -> Vec<u32> {
     vec![u32::from(found.is_some()), found.unwrap_or_default().to_bits()]
 }

@@ -1,4 +1,4 @@
-//! Hands all attacks to a grader.
+//! Grades all attacks.
 
 use super::{Attack, Expectation, Place, complaints, make};
 use crate::grade::result::Graded;
@@ -11,19 +11,19 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// An attack, and what came of it.
+/// An attack and its result.
 pub struct Tried {
     /// The attack.
     pub attack: Attack,
-    /// Its grade with everything switched on; the error if the grader gave up.
+    /// Its grade with the whole syntax check, or the error if the grader failed.
     pub graded: Result<Graded>,
-    /// What is not as it must be, a sentence each.
+    /// The differences from the expected result, one sentence each.
     pub complaints: Vec<String>,
 }
 
-/// Makes these attacks, hands each to `grade` (submission, stages, rules of the syntax check that are switched off), and
-/// tells `done` of each. Those that also name what must come of them without the syntax check are graded twice. The
-/// result is sorted by name.
+/// Makes these attacks and grades each by `grade(submission, stages, rules of the syntax check to switch off)`. Calls
+/// `done` after each. An attack with an expected result without the syntax check is graded twice. The result is sorted by
+/// name.
 pub fn run_all(
     root: &Path,
     mut attacks: Vec<Attack>,
@@ -31,7 +31,7 @@ pub fn run_all(
     done: impl Fn(&Tried) + Sync,
 ) -> Result<Vec<Tried>> {
     let root = root.canonicalize().with_context(|| root.display().to_string())?;
-    // The longest first, or everybody waits for the last one.
+    // Start with the longest ones, so that no long attack runs alone at the end.
     attacks.sort_by_key(|attack| Reverse(attack.most_seconds));
     let mut tried = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
         let tried = try_one(&root, attack, &grade)?;
@@ -49,17 +49,18 @@ fn try_one(
 ) -> Result<Tried> {
     let folder = tempfile::tempdir()?;
     let submission = make(attack, &Place { root, folder: folder.path() })?;
+    // Grade the submission, with and without the syntax check.
     let before = fingerprints(folder.path())?;
     let try_it = |expected: &Expectation| {
         let begin = Instant::now();
         let graded = grade(&submission, &attack.stages, &expected.allow);
         let mut found = match &graded {
             Ok(graded) => complaints(&attack.stages, expected, graded),
-            Err(error) => vec![format!("the grader gave up: {error:#}")],
+            Err(error) => vec![format!("the grader failed: {error:#}")],
         };
         let seconds = begin.elapsed().as_secs();
         if seconds > attack.most_seconds {
-            found.push(format!("it took {seconds} s, and {} should do", attack.most_seconds));
+            found.push(format!("it took {seconds} s, more than {} s", attack.most_seconds));
         }
         (graded, found)
     };
@@ -68,12 +69,13 @@ fn try_one(
         let (_, found) = try_it(expected);
         all.extend(found.into_iter().map(|what| format!("without the syntax check: {what}")));
     }
+    // Report changed files.
     let changed = changes(&before, &fingerprints(folder.path())?);
-    all.extend(changed.into_iter().map(|path| format!("it changed {}", path.display())));
+    all.extend(changed.into_iter().map(|path| format!("the attack changed {}", path.display())));
     Ok(Tried { attack: attack.clone(), graded, complaints: all })
 }
 
-/// What lies in a folder: kind, size and content of everything, links not followed.
+/// Returns kind, size and content of everything in a folder. Links are not followed.
 pub(super) fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
     let mut found = BTreeMap::new();
     let mut waiting = vec![folder.to_owned()];
@@ -89,7 +91,7 @@ pub(super) fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
         } else if metadata.is_file() {
             Sha256::digest(fs::read(&path)?).iter().map(|byte| format!("{byte:02x}")).collect()
         } else {
-            // A pipe may never end.
+            // Do not read pipes: they may never end.
             String::new()
         };
         found.insert(path, format!("{:?} {content}", metadata.permissions()));
@@ -97,7 +99,7 @@ pub(super) fn fingerprints(folder: &Path) -> Result<BTreeMap<PathBuf, String>> {
     Ok(found)
 }
 
-/// What is new, gone or different.
+/// Returns the paths that are new, gone or different.
 pub(super) fn changes(before: &BTreeMap<PathBuf, String>, after: &BTreeMap<PathBuf, String>) -> Vec<PathBuf> {
     let paths = before.keys().chain(after.keys().filter(|path| !before.contains_key(*path)));
     paths.filter(|path| before.get(*path) != after.get(*path)).cloned().collect()

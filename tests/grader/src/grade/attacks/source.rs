@@ -1,24 +1,24 @@
-//! Changes of a source file: where the body of a function is, and what could stand there instead.
+//! Changes source files: finds the bodies of functions and replaces them.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use std::ops::Range;
 use std::str::FromStr;
 
-/// A function that anybody may call.
+/// A public function.
 #[derive(Debug, PartialEq)]
 pub(super) struct Function {
     /// Its name.
     pub name: String,
-    /// Its body, braces included, in bytes of the text.
+    /// The byte range of its body, with the braces.
     pub body: Range<usize>,
-    /// What it returns, as the compiler would print it.
+    /// Its return type, as the compiler would print it.
     pub returns: String,
 }
 
-/// The `pub fn` of a file that stand in no module or block.
+/// Returns the `pub fn` items at the top level of a file.
 pub(super) fn functions(text: &str) -> Result<Vec<Function>> {
-    let tokens = TokenStream::from_str(text).map_err(|error| anyhow!("it is no Rust: {error}"))?;
+    let tokens = TokenStream::from_str(text).map_err(|error| anyhow!("it is not valid Rust: {error}"))?;
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let is = |at: usize, word: &str| tokens.get(at).is_some_and(|token| token.to_string() == word);
     let mut functions = Vec::new();
@@ -45,7 +45,7 @@ pub(super) fn functions(text: &str) -> Result<Vec<Function>> {
     Ok(functions)
 }
 
-/// The file with other bodies: `body` is asked for those of the function `name`, or of all for `*`.
+/// Returns the file with the body of the function `name` replaced by `body`, or those of all functions for `*`.
 pub(super) fn with_bodies(
     text: &str,
     name: &str,
@@ -61,22 +61,22 @@ pub(super) fn with_bodies(
     Ok(changed)
 }
 
-/// The body of the function of this name, braces included.
+/// Returns the body of the function of this name, with the braces.
 pub(super) fn body_of<'a>(text: &'a str, name: &str) -> Result<&'a str> {
     let found = functions(text)?.into_iter().find(|function| function.name == name);
     Ok(&text[found.with_context(|| format!("there is no `pub fn {name}`"))?.body])
 }
 
-/// A body that gives an answer which no check of stage 1 accepts.
+/// Returns a body whose answer no check of stage 1 accepts.
 pub(super) fn wrong_body(function: &Function) -> Result<String> {
     match function.returns.as_str() {
         "Option<f32>" => Ok("{ Some(-1.25) }".into()),
         "Vec3" => Ok("{ Vec3::splat(-7.25) }".into()),
-        other => bail!("nobody knows a wrong answer of `{}`, which is {other}", function.name),
+        other => bail!("there is no wrong answer for `{}` of type {other}", function.name),
     }
 }
 
-/// The file with more text where its first item begins: behind what documents the file as a whole.
+/// Returns the file with a text inserted before its first item, after the file's own doc comment.
 pub(super) fn with_top(text: &str, top: &str) -> String {
     let head = |line: &&str| line.starts_with("//!") || line.starts_with("#![") || line.trim().is_empty();
     let end: usize = text.split_inclusive('\n').take_while(head).map(str::len).sum();

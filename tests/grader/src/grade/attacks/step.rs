@@ -1,4 +1,4 @@
-//! What `attack.toml` says of a step.
+//! A step of `attack.toml`.
 
 use super::pack::{Format, Kind};
 use anyhow::{Context, Result, ensure};
@@ -16,36 +16,36 @@ pub(super) enum Act {
     Write,
     /// Writes `times` files `path`, in which `@n@` counts from 0.
     Many,
-    /// Puts text before the first item of `path`, stage 1 if none is named.
+    /// Puts text before the first item of `path` (default: the file of stage 1).
     Top,
     /// Puts text at the end of `path`.
     Append,
-    /// Gives `function` of `path` another body, or all for `*`. `@right@` is the body of the reference, `@wrong@` a wrong
-    /// one.
+    /// Replaces the body of `function` of `path`, or of all functions for `*`. `@right@` is the body of the reference,
+    /// `@wrong@` a wrong one.
     Body,
-    /// Takes `path` away, a file or a folder.
+    /// Removes the file or folder `path`.
     Remove,
     /// Saves `path` again in another `encoding`.
     Encode,
-    /// Makes `path` a link that leads `to` somewhere.
+    /// Makes `path` a link that leads `to` a place.
     Link,
     /// Makes `path` a named pipe.
     Pipe,
-    /// Makes folders in each other, `times` of them, each called `path`.
+    /// Makes `times` nested folders, each called `path`.
     Deep,
-    /// Gives `path` the age of 1970.
+    /// Sets the modification time of `path` to 1970.
     Old,
     /// Writes the file `path` outside of the submission.
     Beside,
-    /// Writes `path` such that it knows the answers to all known inputs of these `functions`, and none other.
+    /// Gives these `functions` of `path` a table with the answers to all public inputs, and to no others.
     Remember,
-    /// Packs what is there, and `entries`, into an archive of this `format`.
+    /// Packs the exercise files, and `entries`, into an archive of this `format`.
     Pack,
-    /// The submission is one file of this `format`, whatever is in it.
+    /// Makes the submission one file with the extension of this `format` and any content.
     Raw,
 }
 
-/// How a file is saved.
+/// The encoding of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Encoding {
@@ -55,8 +55,8 @@ pub(super) enum Encoding {
     Utf16,
 }
 
-/// Text or bytes: one of `text`, `fragment` (a file beside attack.toml), `solution` (a file of the reference) and `hex`,
-/// `times` times, between `before` and `after`. `@n@` counts from 0.
+/// Text or bytes: one of `text`, `fragment` (a file beside attack.toml), `solution` (a file of the reference) and `hex`. It
+/// is repeated `times` times, between `before` and `after`. `@n@` counts from 0.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Content {
@@ -69,14 +69,14 @@ pub(super) struct Content {
     pub(super) after: Option<String>,
 }
 
-/// One step. What it does not need it may not have.
+/// One step. A key that its act does not need is an error.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
     #[serde(rename = "do")]
     pub(super) act: Act,
     pub(super) path: Option<String>,
-    /// The last part of the path, in bytes that are no text.
+    /// The last part of the path as hexadecimal bytes, for names that are not valid UTF-8.
     pub(super) path_hex: Option<String>,
     pub(super) to: Option<String>,
     pub(super) function: Option<String>,
@@ -84,17 +84,17 @@ pub struct Step {
     pub(super) encoding: Option<Encoding>,
     pub(super) times: Option<usize>,
     pub(super) content: Option<Content>,
-    /// Short for a content that is nothing but text.
+    /// Short for a content of only text.
     pub(super) text: Option<String>,
-    /// Short for a content that is nothing but a file beside attack.toml.
+    /// Short for a content of only a file beside attack.toml.
     pub(super) fragment: Option<String>,
     pub(super) format: Option<Format>,
-    /// What stands before the names of packed files.
+    /// The prefix of the names of packed files.
     pub(super) prefix: Option<String>,
     pub(super) entries: Option<Vec<Packed>>,
-    /// Only `entries` are packed.
+    /// Whether only `entries` are packed.
     pub(super) alone: Option<bool>,
-    /// So many bytes are missing at the end of the archive.
+    /// The number of bytes that are missing at the end of the archive.
     pub(super) cut: Option<usize>,
 }
 
@@ -109,22 +109,22 @@ pub(super) struct Packed {
     #[serde(default)]
     pub(super) content: Content,
     pub(super) to: Option<String>,
-    /// Mebibytes of zeros behind the content.
+    /// Mebibytes of zeros after the content.
     pub(super) zeros: Option<u64>,
-    /// The size that is stated, in bytes.
+    /// The stated size, in bytes.
     pub(super) stated: Option<u64>,
     #[serde(default)]
     pub(super) encrypted: bool,
-    /// So many of them; `@n@` in the name counts from 0.
+    /// The number of such entries; `@n@` in the name counts from 0.
     pub(super) times: Option<usize>,
 }
 
-/// The value, which the step must have.
+/// Returns the value, or an error if the step lacks it.
 pub(super) fn need<T>(value: Option<T>, name: &str) -> Result<T> {
     value.with_context(|| format!("`{name}` is missing"))
 }
 
-/// The path of a step.
+/// Returns the path of a step.
 pub(super) fn path_of(step: &mut Step) -> Result<PathBuf> {
     let mut path = PathBuf::from(step.path.take().unwrap_or_default());
     if let Some(hex) = step.path_hex.take() {
@@ -134,12 +134,12 @@ pub(super) fn path_of(step: &mut Step) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// The bytes of hexadecimal digits, in which spaces do not matter.
+/// Decodes hexadecimal digits. Spaces are ignored.
 pub(super) fn bytes_of(hex: &str) -> Result<Vec<u8>> {
     let digits: Vec<u8> = hex.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
     let pair = |pair: &[u8]| {
         let text = std::str::from_utf8(pair)?;
-        u8::from_str_radix(text, 16).with_context(|| format!("`{text}` is no byte in hexadecimal"))
+        u8::from_str_radix(text, 16).with_context(|| format!("`{text}` is not a byte in hexadecimal"))
     };
     digits.chunks(2).map(pair).collect()
 }

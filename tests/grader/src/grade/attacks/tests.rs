@@ -28,7 +28,7 @@ fn shapes_of(text: &str) -> String {
     fs::read_to_string(path.join("exercises/src/stage1_shapes.rs")).unwrap()
 }
 
-/// A submission of which stage 1 ended like this.
+/// A graded submission with these outcomes in stage 1.
 fn graded(outcome: impl Fn(&str) -> Outcome) -> Graded {
     let stage = STAGES.iter().find(|(stage, _)| *stage == 1).unwrap();
     let result = |check: &checks::Check| {
@@ -63,7 +63,7 @@ fn every_attack_can_be_read_and_made() {
         let path = make(attack, &Place { root: &root(), folder: folder.path() })?;
         ensure!(fs::symlink_metadata(&path).is_ok(), "{}: there is no submission", attack.name);
         ensure!(!attack.title.is_empty() && attack.what.ends_with('.'), "{}: words are missing", attack.name);
-        // What is to be compiled should at least be Rust; what confuses compilers would confuse this test as well.
+        // Files that are meant to compile must be valid Rust. Files that attack the compiler would also break this test.
         let rust = !matches!(attack.family, Family::Compiling | Family::Packing);
         for entry in fs::read_dir(path.join("exercises/src")).into_iter().flatten().filter(|_| rust) {
             let file = entry?.path();
@@ -144,7 +144,9 @@ fn a_step_that_lacks_something_or_has_too_much_is_an_error() {
     assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"").contains("`content` is missing"));
     assert!(error("[[step]]\ndo = \"write\"\npath = \"/a\"\ntext = \"\"").contains("`path` is missing"));
     assert!(error("[[step]]\ndo = \"body\"\nfunction = \"spher\"\ntext = \"\"").contains("`pub fn spher`"));
-    assert!(error("[[step]]\ndo = \"write\"\npath = \"a\"\ncontent = { hex = \"0x\" }").contains("no byte"));
+    assert!(
+        error("[[step]]\ndo = \"write\"\npath = \"a\"\ncontent = { hex = \"0x\" }").contains("not a byte")
+    );
 }
 
 #[test]
@@ -192,9 +194,9 @@ fn words_are_looked_for_in_everything_that_is_told() {
     assert_eq!(message("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
     let missing =
         message("earned = \"none\"\nsays = [\"sorry\"]\nnever_says = [\"build.rs\"]\ntrouble = true", &wrong);
-    assert!(missing.iter().any(|one| one == "nobody is told `sorry`"), "{missing:?}");
-    assert!(missing.iter().any(|one| one == "somebody is told `build.rs`"), "{missing:?}");
-    assert!(missing.iter().any(|one| one.contains("nobody is told why")), "{missing:?}");
+    assert!(missing.iter().any(|one| one == "no message says `sorry`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one == "a message says `build.rs`"), "{missing:?}");
+    assert!(missing.iter().any(|one| one.contains("there is no reason")), "{missing:?}");
 }
 
 #[test]
@@ -207,12 +209,12 @@ fn reports_that_leak_obey_or_are_endless_are_complained_about() {
     assert_eq!(with(|_| ()), [""; 0]);
     type Spoil = fn(&mut Graded);
     let cases: [(Spoil, &str); 7] = [
-        (|graded| graded.checks[3].message = format!("found {CANARY}"), "somebody is told"),
+        (|graded| graded.checks[3].message = format!("found {CANARY}"), "a message says"),
         (|graded| graded.remarks[0].file = "\u{1b}[2J".into(), "control characters"),
         (|graded| graded.compiler = "\u{202e}".into(), "control characters"),
         (|graded| graded.compiler = "x".repeat(2 << 20), "the report has"),
         (|graded| graded.checks[3].message.clear(), "without a message"),
-        (|graded| graded.checks[3].earned = 1, "has 1 of"),
+        (|graded| graded.checks[3].earned = 1, "earned 1 of"),
         (|graded| drop(graded.checks.pop()), "checks were graded"),
     ];
     for (change, says) in cases {
@@ -237,13 +239,13 @@ fn a_run_names_what_went_wrong_and_what_was_changed() {
     assert!(text.iter().any(|one| one.starts_with("without the syntax check: ")), "{text:?}");
     let broken = run(&|_, allowed| bail_out(allowed));
     let text = &broken[0].complaints;
-    assert!(text.iter().any(|one| one.contains("gave up: out of paper with 1 rule")), "{text:?}");
+    assert!(text.iter().any(|one| one.contains("failed: out of paper with 1 rule")), "{text:?}");
     let harmful = run(&|path, _| {
         fs::write(path.join("../../beside/secret.txt"), "gone")?;
         Ok(graded(|_| Outcome::Passed))
     });
     let text = &harmful[1].complaints;
-    assert!(text.iter().any(|one| one.starts_with("it changed ") && one.ends_with("secret.txt")));
+    assert!(text.iter().any(|one| one.starts_with("the attack changed ") && one.ends_with("secret.txt")));
     assert!(choose(load(&root()).unwrap(), &["nobody".into()]).is_err());
 }
 

@@ -1,4 +1,4 @@
-//! What came of an attack, held against what must.
+//! Compares the result of an attack with the expected one.
 
 use super::make::CANARY;
 use crate::grade::result::{Graded, Outcome};
@@ -6,50 +6,51 @@ use all_checks::STAGES;
 use checks::rubric;
 use serde::Deserialize;
 
-/// A report of one student is a few pages, whatever the student does.
+/// Longest report about one student, in bytes.
 const LONGEST_REPORT: usize = 1 << 20;
 
-/// Which points may be earned. Names of checks may have one `*`, which stands for anything.
+/// The checks whose points may be earned. One `*` in a name matches any text.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Earned {
-    /// All: it is honest.
+    /// All points: the submission is honest.
     All,
-    /// None.
+    /// No points.
     None,
-    /// All but those of these checks, none of which passes.
+    /// Exactly these checks fail.
     AllBut(Vec<String>),
-    /// All but those of these checks, each of which may pass or not.
+    /// These checks may pass or fail; all others pass.
     AtLeastAllBut(Vec<String>),
-    /// None but those of these checks, each of which may pass or not.
+    /// These checks may pass or fail; all others fail.
     AtMost(Vec<String>),
-    /// Whatever the answers are worth: they are not what this is about.
+    /// Any points: the attack is not about them.
     Any,
 }
 
-/// What must come of an attack.
+/// The expected result of an attack.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
     /// Rules of the syntax check that are switched off.
     #[serde(default)]
     pub allow: Vec<String>,
-    /// Which points.
+    /// The points that may be earned.
     pub earned: Earned,
-    /// How checks that do not pass may end; anyhow, if nothing is said.
+    /// The allowed outcomes of checks that do not pass. An empty list allows all.
     #[serde(default)]
     pub outcomes: Vec<Outcome>,
-    /// Whether nothing can be graded, and the reason is told; either way, if nothing is said.
+    /// Whether grading as a whole must fail with a reason. Without a value both are allowed.
     pub trouble: Option<bool>,
-    /// Words that somebody must be told: in the message of a check, a remark, the compiler's messages or the trouble.
+    /// Words that must appear in the message of a check, a remark, the compiler's messages or the reason for failed
+    /// grading.
     #[serde(default)]
     pub says: Vec<String>,
-    /// Words that nobody may be told.
+    /// Words that must not appear there.
     #[serde(default)]
     pub never_says: Vec<String>,
 }
 
-/// What is not as it must be, a sentence each.
+/// Returns the differences from the expected result, one sentence each.
 pub fn complaints(stages: &[u8], expected: &Expectation, graded: &Graded) -> Vec<String> {
     let mut complaints = Vec::new();
     completeness(stages, graded, &mut complaints);
@@ -58,14 +59,14 @@ pub fn complaints(stages: &[u8], expected: &Expectation, graded: &Graded) -> Vec
     complaints
 }
 
-/// Every check is there once and is worth what the rubric says, whatever was handed in.
+/// Requires that every check is present once and is worth the points of the rubric.
 fn completeness(stages: &[u8], graded: &Graded, complaints: &mut Vec<String>) {
     let all = STAGES.iter().filter(|(stage, _)| stages.contains(stage)).flat_map(|(_, checks)| *checks);
     let wanted: Vec<(u8, &str)> = all.map(|check| (check.stage, check.name)).collect();
     let present: Vec<(u8, &str)> =
         graded.checks.iter().map(|check| (check.stage, check.name.as_str())).collect();
     if wanted != present {
-        complaints.push(format!("{} checks were graded, and there are {}", present.len(), wanted.len()));
+        complaints.push(format!("{} checks were graded, but there are {}", present.len(), wanted.len()));
         return;
     }
     for check in &graded.checks {
@@ -73,7 +74,7 @@ fn completeness(stages: &[u8], graded: &Graded, complaints: &mut Vec<String>) {
         let right = if check.outcome == Outcome::Passed { points } else { 0 };
         if (check.points, check.earned) != (points, right) {
             complaints.push(format!(
-                "{} has {} of {} points, and its outcome is worth {right} of {points}",
+                "{} earned {} of {} points, but its outcome is worth {right} of {points}",
                 check.name, check.earned, check.points
             ));
         }
@@ -82,9 +83,9 @@ fn completeness(stages: &[u8], graded: &Graded, complaints: &mut Vec<String>) {
 
 fn points(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) {
     match (expected.trouble, graded.trouble.as_str()) {
-        (Some(true), "") => complaints.push("nothing should have been graded, and nobody is told why".into()),
+        (Some(true), "") => complaints.push("grading should have failed, but there is no reason".into()),
         (Some(false), trouble) if !trouble.is_empty() => {
-            complaints.push(format!("nothing could be graded: {trouble}"));
+            complaints.push(format!("grading failed: {trouble}"));
         }
         _ => {}
     }
@@ -107,7 +108,7 @@ fn points(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>)
                 check.outcome.words(),
                 check.message
             )),
-            Some(false) if passed => complaints.push(format!("{} passes, which is not earned", check.name)),
+            Some(false) if passed => complaints.push(format!("{} passes but was not earned", check.name)),
             _ => {}
         }
         if !passed && !expected.outcomes.is_empty() && !expected.outcomes.contains(&check.outcome) {
@@ -128,17 +129,17 @@ fn words(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) 
     let one_line = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in &expected.says {
         if !text.iter().any(|text| one_line(text).contains(&one_line(words))) {
-            complaints.push(format!("nobody is told `{words}`"));
+            complaints.push(format!("no message says `{words}`"));
         }
     }
     for words in expected.never_says.iter().map(String::as_str).chain([CANARY]) {
         if text.iter().any(|text| text.contains(words)) {
-            complaints.push(format!("somebody is told `{words}`"));
+            complaints.push(format!("a message says `{words}`"));
         }
     }
     if let Some(text) = text.iter().find(|text| text.chars().any(is_dangerous)) {
         let shown: String = text.escape_debug().take(200).collect();
-        complaints.push(format!("control characters were left in: {shown}"));
+        complaints.push(format!("a message contains control characters: {shown}"));
     }
     let length: usize = text.iter().map(|text| text.len()).sum();
     if length > LONGEST_REPORT {
@@ -146,14 +147,14 @@ fn words(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>) 
     }
 }
 
-/// Whether a terminal would obey the character, or show others in another order.
+/// Returns whether the character controls a terminal or the direction of text.
 fn is_dangerous(character: char) -> bool {
     let bidi =
         matches!(character, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     bidi || character.is_control() && !matches!(character, '\n' | '\t')
 }
 
-/// Whether a name is like a pattern, in which one `*` stands for anything.
+/// Returns whether a name matches a pattern, in which one `*` matches any text.
 pub(super) fn is_like(name: &str, pattern: &str) -> bool {
     match pattern.split_once('*') {
         None => name == pattern,

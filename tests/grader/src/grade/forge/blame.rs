@@ -1,24 +1,24 @@
-//! Whose fault it is that the exercises do not compile, by what the compiler says.
+//! Finds the files that cause compile errors, from the compiler's messages.
 
 use crate::sandbox::Ended;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How much of the compiler's messages a student is shown about a file.
+/// Most bytes of compiler messages that a student sees per file.
 const SHOWN: usize = 4000;
 
-/// Which of the suspects an error speaks against.
+/// Returns the suspects that an error points to.
 type Sign = fn(&Value, &[&String]) -> BTreeSet<String>;
 
-/// The files to blame, each with the messages about it. Empty if the compiler has said nothing that helps.
+/// Returns the files that cause the errors, each with the messages about it. The map is empty if the messages name no file.
 pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
     let errors: Vec<Value> = String::from_utf8_lossy(&ended.stderr)
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
         .filter(|message| message["level"] == "error" && message["spans"].is_array())
         .collect();
-    // The surest sign first: where errors are; then where they point to; then which modules they name. An exercise that
-    // is missing or has other arguments is an error of the glue that calls it.
+    // Try the most reliable sign first: the place of the error, then the places it points to, then the modules it names. If
+    // an exercise is missing or has other arguments, the error lies in the glue that calls it.
     let signs: [Sign; 3] = [primary, pointed_to, named];
     for sign in signs {
         let mut blamed: BTreeMap<String, String> = BTreeMap::new();
@@ -62,7 +62,7 @@ fn spans(message: &Value) -> Vec<&Value> {
     message["spans"].as_array().into_iter().flatten().collect()
 }
 
-/// The file of a span, or of the call of the macro that it is in.
+/// Returns the file of a span, or of the macro call around it.
 fn file(span: &Value, suspects: &[&String]) -> Option<String> {
     let name = span["file_name"].as_str().unwrap_or_default().rsplit('/').next().unwrap_or_default();
     match suspects.iter().find(|suspect| suspect.as_str() == name) {

@@ -1,4 +1,4 @@
-//! What submissions are compiled against.
+//! Builds the libraries against which submissions are compiled.
 
 use super::hex;
 use anyhow::{Context, Result, ensure};
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Builds the scaffold with the crates that it needs, and puts what came of it into a folder of its own.
+/// Builds the scaffold with the crates that it needs, and copies the compiled libraries into a separate folder.
 pub fn build(root: &Path) -> Result<PathBuf> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(root)
@@ -18,12 +18,13 @@ pub fn build(root: &Path) -> Result<PathBuf> {
         .stderr(Stdio::inherit())
         .output()
         .context("cargo, which builds the scaffold, cannot be started")?;
-    ensure!(output.status.success(), "the scaffold does not compile: the compiler says above what is wrong");
+    ensure!(output.status.success(), "the scaffold does not compile: see the compiler's messages above");
     let artifacts: Vec<Value> = String::from_utf8_lossy(&output.stdout)
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
         .filter(|message| message["reason"] == "compiler-artifact")
         .collect();
+    // Collect the compiled libraries and compute their fingerprint.
     let files: BTreeSet<(String, PathBuf)> = artifacts
         .iter()
         .flat_map(|artifact| {
@@ -40,7 +41,7 @@ pub fn build(root: &Path) -> Result<PathBuf> {
     let folder = root.join("target/grade").join(format!("libraries-{}", &hex(&hash.finalize())[..16]));
     if !folder.exists() {
         fs::create_dir_all(root.join("target/grade"))?;
-        // Whole or not at all, also if two of us do it at the same time.
+        // Write a draft and rename it, so that the folder is complete even if two graders make it at the same time.
         let draft = tempfile::tempdir_in(root.join("target/grade"))?;
         for (name, file) in &files {
             let direct = ["raykata", "glam"].contains(&name.as_str());

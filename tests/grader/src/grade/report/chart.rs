@@ -1,16 +1,16 @@
-//! Drawings of numbers: a histogram, and bars of outcomes. Colours are those of `style.css`.
+//! Charts: a histogram of points, and bars of outcomes. `style.css` sets the colours.
 
 use super::tally::Tally;
 use crate::grade::result::Outcome;
 use maud::{Markup, html};
 
-/// Drawing area of the histogram, in units of its own.
+/// Size of the histogram, in SVG units.
 const WIDTH: u32 = 520;
 const HEIGHT: u32 = 190;
 const ABOVE: u32 = 20;
 const BELOW: u32 = 24;
 
-/// How many students have how many points.
+/// Draws how many students have how many points.
 pub(super) fn histogram(points: &[u32], of: u32) -> Markup {
     let step = step(of);
     let n_bins = of / step + 1;
@@ -33,7 +33,7 @@ pub(super) fn histogram(points: &[u32], of: u32) -> Markup {
         }
     });
     html! {
-        svg.histogram viewBox=(format!("0 0 {} {HEIGHT}", slot * n_bins)) role="img" aria-label="How many submissions have how many points" {
+        svg.histogram viewBox=(format!("0 0 {} {HEIGHT}", slot * n_bins)) role="img" aria-label="Number of submissions per range of points" {
             @for bin in bins {
                 g {
                     title { (bin.from) "–" (bin.to) " points: " (bin.n) }
@@ -58,13 +58,13 @@ struct Bin {
     height: u32,
 }
 
-/// A round number of points, so that there are about twelve columns.
+/// Chooses a round column width, in points, that gives about twelve columns.
 fn step(of: u32) -> u32 {
     let steps = [1, 2, 5, 10, 20, 25, 50, 100, 200, 500];
     steps.into_iter().find(|step| of / step <= 13).unwrap_or(of.max(1).div_ceil(12))
 }
 
-/// Which part of the class ended how.
+/// Draws the share of the class per outcome.
 pub(super) fn outcomes(tally: &Tally) -> Markup {
     html! {
         span.bar {
@@ -75,7 +75,7 @@ pub(super) fn outcomes(tally: &Tally) -> Markup {
     }
 }
 
-/// How much of something was earned.
+/// Draws the share of points that was earned.
 pub(super) fn share(earned: u32, of: u32) -> Markup {
     html! {
         span.bar {
@@ -85,7 +85,7 @@ pub(super) fn share(earned: u32, of: u32) -> Markup {
     }
 }
 
-/// What the colours mean.
+/// Explains the colours.
 pub(super) fn legend() -> Markup {
     html! {
         p.legend {
@@ -96,7 +96,7 @@ pub(super) fn legend() -> Markup {
     }
 }
 
-/// The class that gives an outcome its colour.
+/// Returns the CSS class of an outcome.
 pub(super) fn class(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Passed => "passed",

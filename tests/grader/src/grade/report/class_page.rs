@@ -1,4 +1,4 @@
-//! `index.html`: the class at a glance, for the instructor.
+//! `index.html`: the overview of the class for the instructor.
 
 use super::chart;
 use super::page::{page, session_line, with_code};
@@ -6,10 +6,10 @@ use super::tally::{self, Tally};
 use crate::grade::result::{Class, Graded, Outcome, sum};
 use maud::{Markup, html};
 
-/// How many of the worst checks and of the slowest submissions are listed.
+/// Number of listed checks that fail most often, and of listed slow submissions.
 const N_WORST: usize = 10;
 
-/// The page. `pages` are the names of the students' pages.
+/// Returns the page as HTML. `pages` are the file names of the students' pages.
 pub(super) fn class_page(class: &Class, tallies: &[Tally], pages: &[String]) -> String {
     let students: Vec<(&Graded, &str)> =
         class.students.iter().zip(pages.iter().map(String::as_str)).collect();
@@ -20,8 +20,8 @@ pub(super) fn class_page(class: &Class, tallies: &[Tally], pages: &[String]) -> 
             (session_line(&class.session))
         }
         nav {
-            a href="#reteach" { "What to teach again" }
-            a href="#look" { "To look at" }
+            a href="#reteach" { "Most failed checks" }
+            a href="#look" { "Problems" }
             a href="#stages" { "Checks" }
             a href="#slowest" { "Slowest" }
             a href="#students" { "Students" }
@@ -59,11 +59,11 @@ fn worst(tallies: &[Tally]) -> Markup {
     let worst = tally::worst(tallies, N_WORST);
     html! {
         section #reteach {
-            h2 { "What to teach again" }
+            h2 { "Most failed checks" }
             @if worst.is_empty() {
                 p { "Every submission passes every check." }
             } @else {
-                p.note { "The checks that most submissions tried and failed, and the slides they are about." }
+                p.note { "The checks that most submissions tried and failed, with their slides in the lecture." }
                 table.checks {
                     thead { tr { th { "check" } th { "slide" } th.number { "fail" } th.number { "pass" } th.wide { "outcomes" } } }
                     tbody {
@@ -83,7 +83,7 @@ fn worst(tallies: &[Tally]) -> Markup {
     }
 }
 
-/// The outcomes that are no pass, in words.
+/// Lists how often each outcome other than `passed` occurred.
 fn failures(tally: &Tally) -> Markup {
     let words: Vec<String> = tally
         .outcomes()
@@ -96,10 +96,10 @@ fn failures(tally: &Tally) -> Markup {
 fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
     let kinds = [
         (Outcome::DoesNotCompile, "A file does not compile"),
-        (Outcome::Refused, "A file was refused, for what no exercise needs"),
+        (Outcome::Refused, "A file was refused by the syntax check"),
         (Outcome::Crashed, "A check crashed"),
         (Outcome::TooLong, "A check took too long"),
-        (Outcome::NotTried, "All time was used up"),
+        (Outcome::NotTried, "The submission used up its time"),
     ];
     let troubled: Vec<_> = students.iter().filter(|(student, _)| !student.trouble.is_empty()).collect();
     let kinds = kinds.map(|(outcome, words)| {
@@ -108,9 +108,9 @@ fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
     });
     html! {
         section #look {
-            h2 { "To look at" }
+            h2 { "Problems" }
             @if troubled.is_empty() && kinds.iter().all(|(_, such)| such.is_empty()) {
-                p { "Nothing: every submission compiles and answers." }
+                p { "None: every submission compiles and answers." }
             }
             @if !troubled.is_empty() {
                 h3 { "Could not be graded " small { (troubled.len()) } }
@@ -155,7 +155,7 @@ fn slowest(students: &[(&Graded, &str)]) -> Markup {
     html! {
         section #slowest {
             h2 { "Slowest" }
-            p.note { "Processor time of everything; it differs from run to run and is all of this page that does." }
+            p.note { "Time of the build and the checks. Only this part of the page differs from run to run." }
             table.plain {
                 thead { tr { th { "student" } th.number { "seconds" } } }
                 tbody {

@@ -1,16 +1,16 @@
-//! Text that students had a hand in, made harmless for terminals, editors and readers. Escaping is up to each format.
+//! Makes text from students harmless for terminals, editors and readers. Escaping is up to each format.
 
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// `text` without what cannot be seen and what moves or recolours other text (control characters but for line ends and tabs,
-/// escape sequences of terminals, overrides of the writing direction, invisible characters), in at most `cap` bytes.
-/// What was cut is told at the end. Cleaning twice is cleaning once.
+/// Returns at most `cap` bytes of `text`, without invisible characters and without characters that move or recolour other
+/// text: control characters (except line ends and tabs), terminal escape sequences, bidirectional overrides. If text was
+/// cut, a note at the end says how much. Cleaning a cleaned text changes nothing.
 pub fn clean(text: &str, cap: usize) -> String {
     cut(visible(text), cap, "\n")
 }
 
-/// The same for a name or a cell of a table: one line, with single spaces.
+/// Cleans a name or a cell of a table: the result is one line with single spaces.
 pub fn clean_line(text: &str, cap: usize) -> String {
     let words: Vec<String> = visible(text).split_whitespace().map(str::to_owned).collect();
     cut(words.join(" "), cap, " ")
@@ -24,7 +24,7 @@ fn visible(text: &str) -> String {
             '\n' | '\t' => kept.push(c),
             '\u{1b}' => skip_escape(&mut rest),
             '\u{9b}' => skip_control_sequence(&mut rest),
-            // A line end of Windows is one line end; one of an old Macintosh would let lines overwrite each other.
+            // CRLF is one line end. A single CR would let lines overwrite each other on a terminal.
             '\r' if rest.peek() == Some(&'\n') => {}
             '\r' | '\u{85}' | '\u{2028}' | '\u{2029}' => kept.push('\n'),
             _ if c.is_control() || is_invisible(c) => {}
@@ -34,7 +34,7 @@ fn visible(text: &str) -> String {
     kept
 }
 
-/// Skips what belongs to an escape character: a control sequence, a string for the terminal, or a character.
+/// Skips the rest of an escape sequence: a control sequence, a string for the terminal, or one character.
 fn skip_escape(rest: &mut Peekable<Chars>) {
     match rest.peek() {
         Some('[') => {
@@ -54,7 +54,8 @@ fn skip_control_sequence(rest: &mut Peekable<Chars>) {
     rest.next_if(|c| matches!(c, '@'..='~'));
 }
 
-/// A title of the window, a link, … At the end of a line at the latest it is over, so that it cannot hide the lines below.
+/// Skips a terminal string, such as a window title or a link. It stops at the end of the line at the latest, so that an
+/// unfinished string cannot hide the lines below.
 fn skip_terminal_string(rest: &mut Peekable<Chars>) {
     while let Some(c) = rest.next_if(|&c| c != '\n') {
         match c {
@@ -68,7 +69,7 @@ fn skip_terminal_string(rest: &mut Peekable<Chars>) {
     }
 }
 
-/// Characters without a shape that may reorder, join or hide others, and code points that are no characters.
+/// Returns whether a character is invisible and may reorder, join or hide others, or is not a character at all.
 fn is_invisible(c: char) -> bool {
     matches!(
         c,
@@ -99,8 +100,8 @@ fn cut(text: String, cap: usize, before_mark: &str) -> String {
     if text.len() <= cap {
         return text;
     }
-    let mark = |n: usize| format!("{before_mark}[… {n} bytes more were cut]");
-    // The longest mark there can be is the one for the whole text. Where not even that fits, the text is just cut.
+    let mark = |n: usize| format!("{before_mark}[… {n} more bytes were cut]");
+    // The note for the whole text is the longest possible one. If even that does not fit, cut the text without a note.
     let room = cap.checked_sub(mark(text.len()).len());
     let kept = upto(&text, room.unwrap_or(cap)).trim_end();
     match room {
@@ -139,9 +140,9 @@ mod tests {
 
     #[test]
     fn what_is_cut_is_told() {
-        assert_eq!(clean(&"é".repeat(50), 60), format!("{}\n[… 70 bytes more were cut]", "é".repeat(15)));
+        assert_eq!(clean(&"é".repeat(50), 60), format!("{}\n[… 70 more bytes were cut]", "é".repeat(15)));
         assert_eq!(clean("äöü", 3), "ä");
-        assert_eq!(clean_line(&"x".repeat(100), 30), "[… 100 bytes more were cut]");
+        assert_eq!(clean_line(&"x".repeat(100), 30), "[… 100 more bytes were cut]");
         assert_eq!(clean_line("  two\n\twords ", 100), "two words");
     }
 

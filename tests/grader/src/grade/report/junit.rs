@@ -1,4 +1,4 @@
-//! `junit.xml`: what CI servers show. A test suite is a submission, a test case a check.
+//! `junit.xml`, for CI servers. A test suite is a submission, a test case is a check.
 
 use super::machines::is_error;
 use super::messages;
@@ -6,7 +6,7 @@ use crate::grade::result::{CheckResult, Class, Graded, Outcome};
 use anyhow::Result;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-/// The whole file. It says nothing of time, which differs from run to run.
+/// Returns the whole file. It contains no times, because they differ from run to run.
 pub(super) fn junit(class: &Class) -> Result<Vec<u8>> {
     let mut report = Report::new("raykata grade");
     report.add_test_suites(class.students.iter().map(suite));

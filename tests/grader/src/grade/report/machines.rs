@@ -1,4 +1,4 @@
-//! For programs: `results.json`, and the files of Gradescope and GitHub Classroom.
+//! Reports for programs: `results.json`, and the files for Gradescope and GitHub Classroom.
 
 use super::clean::clean_line;
 use super::{messages, presentable};
@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// A class without what differs from run to run, and without pictures.
+/// A class without pictures and without values that differ from run to run.
 #[derive(Serialize)]
 struct ClassView<'a> {
     session: &'a Session,
@@ -28,7 +28,7 @@ struct GradedView<'a> {
     trouble: &'a str,
 }
 
-/// The class as it is, for tools of the instructor; it can be read back as a [`Class`].
+/// Writes the class as JSON for the instructor's tools. It can be read back as a [`Class`].
 pub(super) fn results(class: &Class) -> Result<Vec<u8>> {
     let students = class.students.iter().map(|graded| {
         let (earned, of) = graded.points();
@@ -47,14 +47,14 @@ pub(super) fn results(class: &Class) -> Result<Vec<u8>> {
     pretty(&ClassView { session: &class.session, students: students.collect() })
 }
 
-/// JSON for people too.
+/// Returns indented JSON.
 pub(super) fn pretty(value: &impl Serialize) -> Result<Vec<u8>> {
     let mut bytes = serde_json::to_vec_pretty(value)?;
     bytes.push(b'\n');
     Ok(bytes)
 }
 
-/// What Gradescope reads as `/autograder/results/results.json`. All of it may be shown to the student.
+/// Returns the content of Gradescope's `/autograder/results/results.json`. The student may see all of it.
 pub fn gradescope(graded: &Graded, session: &Session) -> Value {
     let graded = &presentable(graded);
     let mut place = (0, 0);
@@ -87,15 +87,15 @@ pub fn gradescope(graded: &Graded, session: &Session) -> Value {
         "stdout_visibility": "hidden",
         "tests": tests,
     });
-    // Gradescope adds up the tests; only where there are none does it want to be told.
+    // Gradescope adds up the points of the tests. It needs a score only if there are no tests.
     if graded.checks.is_empty() {
         results["score"] = json!(0);
     }
     results
 }
 
-/// What GitHub Classroom reads from a runner, before base64. Its score is the sum over `tests`; the share of tests that it
-/// prints counts each test alike, whatever it is worth.
+/// Returns the result that GitHub Classroom reads from a runner, before base64. Classroom adds up the scores of `tests`.
+/// The share of tests that it prints does not weight them by points.
 pub fn classroom(graded: &Graded) -> Value {
     let graded = &presentable(graded);
     let (earned, of) = graded.points();
@@ -117,7 +117,7 @@ pub fn classroom(graded: &Graded) -> Value {
     json!({ "version": 1, "status": status, "max_score": of, "tests": tests })
 }
 
-/// The same as a step of a workflow has to put it into its output `result`.
+/// Returns the same in base64, as a workflow step must write it to its output `result`.
 pub fn classroom_output(graded: &Graded) -> String {
     BASE64.encode(classroom(graded).to_string())
 }
@@ -136,7 +136,7 @@ fn classroom_test(name: &str, status: &str, message: &str, score: u32) -> Value 
     })
 }
 
-/// `pass`, `fail` where there is a wrong answer or none yet, `error` where nothing could be judged.
+/// Returns `pass`, `fail` for a wrong answer or an unwritten function, or `error` if no answer could be judged.
 fn status(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Passed => "pass",
@@ -149,12 +149,12 @@ fn status(outcome: Outcome) -> &'static str {
     }
 }
 
-/// The law and the name of the check, since several checks are about the same law.
+/// Returns the title and the name of the check, because several checks may share a title.
 fn title(check: &CheckResult) -> String {
     format!("{} ({})", messages::entry(check).title, check.name)
 }
 
-/// Whether JUnit counts it as an error, and not as a failure.
+/// Returns whether JUnit counts the outcome as an error instead of a failure.
 pub(super) fn is_error(outcome: Outcome) -> bool {
     status(outcome) == "error"
 }

@@ -1,20 +1,20 @@
-//! What a student is told about a check: the same in every format.
+//! The text about a check that a student reads. It is the same in every format.
 
 use crate::grade::result::{CheckResult, Graded, Outcome};
 use checks::rubric::{self, Entry, Visibility};
 
-/// What the rubric says of a check.
+/// Returns the rubric entry of a check.
 pub fn entry(check: &CheckResult) -> Entry {
     rubric::entry(check.stage, &check.name)
 }
 
-/// What went wrong, and nothing of what is hidden. Empty if nothing did.
+/// Returns why a check failed, without any hidden input. The text is empty for a passed check.
 pub fn message(check: &CheckResult) -> String {
     if check.outcome == Outcome::Passed {
         return String::new();
     }
     if check.outcome == Outcome::WrongOnHidden {
-        return "wrong on hidden inputs: it holds for the inputs that you have, and not for all".to_owned();
+        return "wrong on hidden inputs: right on the inputs that you have, wrong on others".to_owned();
     }
     if entry(check).visibility == Visibility::Hidden {
         return format!("a hidden check: {}", check.outcome.words());
@@ -25,11 +25,11 @@ pub fn message(check: &CheckResult) -> String {
     }
 }
 
-/// The same without the lines that a page shows as headings.
+/// Returns the same text without the lines that a page shows as headings.
 pub fn message_without_header(check: &CheckResult) -> String {
     let text = message(check);
     match text.strip_prefix(&entry(check).header()) {
-        // What follows the header is indented below it.
+        // The lines below the header are indented.
         Some(rest) => {
             let lines: Vec<&str> = rest.lines().map(|line| line.strip_prefix("  ").unwrap_or(line)).collect();
             lines.join("\n")
@@ -38,31 +38,31 @@ pub fn message_without_header(check: &CheckResult) -> String {
     }
 }
 
-/// What an outcome means, for checks about which there is no more to say.
+/// Explains an outcome, for checks without a message of their own.
 fn in_a_sentence(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Passed => "",
-        Outcome::NotWritten => "there is no code to judge: the gap is still empty",
+        Outcome::NotWritten => "not written yet: the function still contains `todo!`",
         Outcome::Wrong => "the answer is wrong",
         Outcome::WrongOnHidden => "wrong on hidden inputs",
-        Outcome::TooLong => "no answer in time: does a loop, or a recursion, ever end?",
+        Outcome::TooLong => "no answer in time: look for a loop or a recursion that never ends",
         Outcome::Crashed => {
-            "the program was gone before it answered: it crashed, ended itself, or took too much memory"
+            "the program ended before it answered: it crashed, exited, or took too much memory"
         }
         Outcome::DoesNotCompile => "the file does not compile",
-        Outcome::Refused => "the file holds what no exercise needs, and was not taken",
-        Outcome::NotTried => "not tried: the submission had used up its time before",
+        Outcome::Refused => "the file was refused: it contains code that no exercise needs",
+        Outcome::NotTried => "not tried: earlier checks used up the time of the submission",
     }
 }
 
-/// For each stage that has any: how many checks fail on hidden inputs only.
+/// Counts per stage the checks that fail on hidden inputs only. Stages without such a check are left out.
 pub fn failing_on_hidden(graded: &Graded) -> Vec<(u8, usize)> {
     let count =
         |stage| graded.of_stage(stage).filter(|check| check.outcome == Outcome::WrongOnHidden).count();
     graded.stages().into_iter().map(|stage| (stage, count(stage))).filter(|(_, n)| *n > 0).collect()
 }
 
-/// What is told of a submission as a whole, as plain text.
+/// Summarises a submission as plain text: points, reasons and the compiler's messages.
 pub fn summary(graded: &Graded) -> String {
     let mut lines = Vec::new();
     if !graded.checks.is_empty() {
@@ -81,11 +81,11 @@ pub fn summary(graded: &Graded) -> String {
         lines.push(format!("stage {stage}: {checks} on hidden inputs only"));
     }
     if !graded.remarks.is_empty() {
-        lines.push("\nWhat was not taken as it is:".to_owned());
+        lines.push("\nIgnored or changed files:".to_owned());
     }
     lines.extend(graded.remarks.iter().map(|remark| format!("{}: {}", remark.file, remark.what)));
     if !graded.compiler.is_empty() {
-        lines.push(format!("\nThe compiler says:\n{}", graded.compiler));
+        lines.push(format!("\nCompiler messages:\n{}", graded.compiler));
     }
     lines.join("\n")
 }

@@ -1,7 +1,7 @@
 //! Reports of a graded class: tables, files for other programs, and pages to read.
 //!
-//! Much of what they show was written by students. Each text is cleaned once, in `presentable`, before any format sees
-//! it; escaping is then up to the libraries that write CSV, JSON, XML and HTML.
+//! Much of their text comes from students. `presentable` cleans each text once, before it goes into any format. The
+//! libraries that write CSV, JSON, XML and HTML do the escaping.
 
 mod chart;
 mod class_page;
@@ -28,7 +28,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-/// Longest name, and longest text of one line, in bytes.
+/// Longest name or other text of one line, in bytes.
 const LINE: usize = 300;
 
 /// Longest message, in bytes.
@@ -37,20 +37,21 @@ const MESSAGE: usize = 2048;
 /// Longest output of the compiler, in bytes.
 const COMPILER: usize = 16 * 1024;
 
-/// Most remarks that are shown of a submission; one may have thousands of files.
+/// Most remarks that are shown per submission. A submission may have thousands of files.
 const REMARKS: usize = 50;
 
 /// Writes all reports of a class into `folder`: `grades.csv`, `checks.csv`, `timings.csv`, `results.json`, `junit.xml`,
 /// `index.html`, and for each student a file in `students`, `gradescope` and `classroom`.
 ///
-/// The same results give the same bytes in whatever order the students come. Processor time is in `timings.csv` and in
-/// `index.html` only. A file is replaced as a whole or not at all.
+/// The same results give the same bytes in any order of the students. Only `timings.csv` and `index.html` contain times.
+/// Each file is replaced atomically.
 pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     let mut students: Vec<&Graded> = class.students.iter().collect();
-    // Two submissions may have the same name, a folder and an archive; what was in them puts them in order.
+    // Two submissions may have the same name. Sort these by their content.
     students.sort_by_key(|&graded| (&graded.student, &graded.content, &graded.trouble));
     let students: Vec<Graded> = students.into_iter().cloned().collect();
     let pages = names::file_names(&students);
+    // Clean all texts.
     let session = Session {
         kit: clean_line(&class.session.kit, LINE),
         isolation: clean_line(&class.session.isolation, LINE),
@@ -59,11 +60,13 @@ pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
     let class = &Class { session, students: students.iter().map(presentable).collect() };
     let tallies = tally::tallies(class);
 
+    // Write the tables and the files for programs.
     write(folder, "grades.csv", &tables::grades(class, &tallies, &pages)?)?;
     write(folder, "checks.csv", &tables::checks(class)?)?;
     write(folder, "timings.csv", &tables::timings(class, &pages)?)?;
     write(folder, "results.json", &machines::results(class)?)?;
     write(folder, "junit.xml", &junit::junit(class)?)?;
+    // Write the files of each student.
     for (graded, name) in class.students.iter().zip(&pages) {
         let page = student_page::student_page(graded, &class.session);
         write(folder, &format!("students/{name}.html"), page.as_bytes())?;
@@ -71,15 +74,15 @@ pub fn write_all(class: &Class, folder: &Path) -> Result<()> {
         write(folder, &format!("gradescope/{name}.json"), &results)?;
         write(folder, &format!("classroom/{name}.json"), &machines::pretty(&classroom(graded))?)?;
     }
-    // Last, so that it links to nothing that is not there yet.
+    // Write the index last, so that all its links work.
     let index = class_page::class_page(class, &tallies, &pages);
     write(folder, "index.html", index.as_bytes())
 }
 
-/// A submission with every text cleaned. Doing it twice changes nothing.
+/// Returns the submission with every text cleaned. Cleaning it again changes nothing.
 fn presentable(graded: &Graded) -> Graded {
     let n_more = graded.remarks.len().saturating_sub(REMARKS + 1);
-    // One too many is not worth a line that says so.
+    // If there is only one remark too many, show it instead of a note.
     let n_shown = if n_more == 0 { graded.remarks.len() } else { REMARKS };
     let mut remarks: Vec<Remark> = graded.remarks[..n_shown].iter().map(presentable_remark).collect();
     if n_more > 0 {

@@ -1,17 +1,17 @@
-//! Names of the files that belong to a student, made of a name that may be any text.
+//! Makes file names from the names of students, which may be any text.
 
 use crate::grade::result::Graded;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 
-/// Longest part of a name that is kept.
+/// Longest part of a name that is kept, in bytes.
 const LONGEST: usize = 60;
 
-/// What some systems take for devices, and what would be mistaken for a page of the class.
+/// Reserved names: device names of some systems, and the page of the class.
 const RESERVED: [&str; 5] = ["con", "prn", "aux", "nul", "index"];
 
-/// A name for each student, in the order of `students`: letters, digits, `-`, `_` and `.` only, and different also where a
-/// file system takes upper and lower case for the same. A name that had to be changed gets a fingerprint of the old one.
+/// Returns a file name for each student, in the order of `students`. It contains only letters, digits, `-`, `_` and `.`.
+/// The names also differ on file systems that ignore case. A changed name ends in a fingerprint of the old one.
 pub fn file_names(students: &[Graded]) -> Vec<String> {
     let mut taken = BTreeSet::new();
     students.iter().map(|student| free_name(&student.student, &mut taken)).collect()
@@ -23,7 +23,7 @@ fn free_name(student: &str, taken: &mut BTreeSet<String>) -> String {
     let numbered = (2..).map(|n: usize| format!("{marked}-{n}"));
     let unchanged = (plain == student).then(|| plain.clone());
     let name = unchanged.into_iter().chain([marked.clone()]).chain(numbered);
-    // There are more numbers than students, so one of the names is free.
+    // There are more numbers than students, so one of these names is free.
     let name = name.into_iter().find(|name| taken.insert(name.to_lowercase()));
     name.unwrap_or_default()
 }

@@ -1,13 +1,14 @@
-//! What all pages share. A page is one file that asks the network for nothing.
+//! The parts that all pages share. A page is one file that loads nothing from the network.
 
 use crate::grade::result::Session;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-/// Nothing but what is in the page: should a text of a student ever be taken for more than text, it can do nothing.
+/// A content security policy that forbids scripts and all outside resources. It protects readers even if a student's text
+/// were not escaped.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'";
 
-/// A page with a title and a body.
+/// Returns a page with a title and a body.
 pub(super) fn page(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -27,16 +28,16 @@ pub(super) fn page(title: &str, body: &Markup) -> String {
     page.into_string()
 }
 
-/// With what a submission was graded.
+/// Describes kit, stages and sandbox of the grading, in one line.
 pub(super) fn session_line(session: &Session) -> Markup {
     html! {
         p.session {
-            "Kit " (session.kit) " · " (stages(&session.stages)) " · contained by " (session.isolation)
+            "Kit " (session.kit) " · " (stages(&session.stages)) " · sandbox: " (session.isolation)
         }
     }
 }
 
-/// Stages as a range, or one by one if there are gaps.
+/// Describes stages as a range, or one by one if there are gaps.
 fn stages(stages: &[u8]) -> String {
     match stages {
         [] => "no stages".to_owned(),
@@ -51,7 +52,7 @@ fn stages(stages: &[u8]) -> String {
     }
 }
 
-/// A law, with what it says of code in `code`.
+/// Formats a title: text between backticks becomes `code`.
 pub(super) fn with_code(text: &str) -> Markup {
     html! {
         @for (i, part) in text.split('`').enumerate() {

@@ -1,4 +1,4 @@
-//! `students/NAME.html`: what one student gets to read.
+//! `students/NAME.html`: the report for one student.
 
 use super::chart;
 use super::page::{page, session_line, with_code};
@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD as BASE64;
 use checks::rubric::Visibility;
 use maud::{Markup, html};
 
-/// The page.
+/// Returns the page of a student as HTML.
 pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
     let (earned, of) = graded.points();
     let body = html! {
@@ -24,7 +24,7 @@ pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
         (overview(graded))
         (remarks(graded))
         @if !graded.compiler.is_empty() {
-            section { h2 { "The compiler says" } pre { (graded.compiler) } }
+            section { h2 { "Compiler messages" } pre { (graded.compiler) } }
         }
         @for stage in graded.stages() { (stage_section(graded, stage)) }
     };
@@ -54,7 +54,7 @@ fn remarks(graded: &Graded) -> Markup {
     html! {
         @if !graded.remarks.is_empty() {
             section {
-                h2 { "What was not taken as it is" }
+                h2 { "Ignored or changed files" }
                 ul { @for remark in &graded.remarks { li { code { (remark.file) } ": " (remark.what) } } }
             }
         }
@@ -78,7 +78,8 @@ fn stage_section(graded: &Graded, stage: u8) -> Markup {
     }
 }
 
-/// The checks that did not pass; those that failed together for one reason that is no answer stand together.
+/// Groups the checks that did not pass. Checks with the same outcome and message form one group if no answer was judged,
+/// for example because the file does not compile.
 fn groups<'a>(checks: impl Iterator<Item = &'a CheckResult>) -> Vec<Vec<&'a CheckResult>> {
     let mut groups: Vec<Vec<&CheckResult>> = Vec::new();
     for check in checks.filter(|check| check.outcome != Outcome::Passed) {
@@ -112,13 +113,13 @@ fn card(group: &[&CheckResult]) -> Markup {
     }
 }
 
-/// A check that did not pass: its law, where to read on, and a nudge where it stands alone.
+/// Shows a check that did not pass: its title, its slides, and a hint if it is the only one of its group.
 fn failed(check: &CheckResult, alone: bool) -> Markup {
     let entry = messages::entry(check);
     html! {
         h3 { (heading(check)) }
-        @if !entry.slide.is_empty() { p.slide { "Read on: " (entry.slide) } }
-        @if alone && !entry.hints[0].is_empty() { details { summary { "a hint" } p { (with_code(&entry.hints[0])) } } }
+        @if !entry.slide.is_empty() { p.slide { "Slides: " (entry.slide) } }
+        @if alone && !entry.hints[0].is_empty() { details { summary { "Hint" } p { (with_code(&entry.hints[0])) } } }
     }
 }
 
@@ -133,7 +134,7 @@ fn shows_pictures(check: &CheckResult) -> bool {
     check.outcome != Outcome::WrongOnHidden && messages::entry(check).visibility == Visibility::Visible
 }
 
-/// A picture inside the page, if it is one.
+/// Embeds a picture in the page if its data is valid.
 fn figure(picture: &Picture) -> Markup {
     let is_png = BASE64.decode(&picture.png).is_ok_and(|bytes| bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
     html! {

@@ -4,7 +4,7 @@ use super::tally::{self, Tally};
 use crate::grade::result::{Class, sum};
 use anyhow::{Result, anyhow};
 
-/// One row a student: points in all and for each stage.
+/// Writes one row per student: points in total and per stage.
 pub(super) fn grades(class: &Class, tallies: &[Tally], pages: &[String]) -> Result<Vec<u8>> {
     let stages = tally::stages(tallies);
     let header = ["name", "points", "of"].map(str::to_owned).into_iter();
@@ -20,7 +20,7 @@ pub(super) fn grades(class: &Class, tallies: &[Tally], pages: &[String]) -> Resu
     table(rows)
 }
 
-/// One row for each check of each student.
+/// Writes one row per check of each student.
 pub(super) fn checks(class: &Class) -> Result<Vec<u8>> {
     let mut rows =
         vec![["name", "stage", "check", "outcome", "points", "earned"].map(str::to_owned).to_vec()];
@@ -34,7 +34,7 @@ pub(super) fn checks(class: &Class) -> Result<Vec<u8>> {
     table(rows)
 }
 
-/// One row a student: processor time. Alone in its file, because it differs from run to run.
+/// Writes one row per student: the time of grading. It has its own file, because it differs from run to run.
 pub(super) fn timings(class: &Class, pages: &[String]) -> Result<Vec<u8>> {
     let mut rows = vec![["name", "cpu_ms", "page"].map(str::to_owned).to_vec()];
     for (student, page) in class.students.iter().zip(pages) {
@@ -51,7 +51,7 @@ fn table(rows: Vec<Vec<String>>) -> Result<Vec<u8>> {
     writer.into_inner().map_err(|error| anyhow!("{error}"))
 }
 
-/// A cell that no spreadsheet takes for a formula.
+/// Returns the cell in a form that no spreadsheet takes for a formula.
 fn defused(cell: &str) -> String {
     match cell.trim_start().starts_with(['=', '+', '-', '@', '＝', '＋', '－', '＠']) {
         true => format!("'{cell}"),

@@ -1,4 +1,4 @@
-//! What a class did, counted.
+//! Counts the results of a class.
 
 use super::messages;
 use crate::grade::result::{CheckResult, Class, Graded, Outcome};
@@ -6,14 +6,14 @@ use checks::rubric::{Entry, RUBRIC};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
-/// How a check went in the class.
+/// The results of a check in the class.
 pub(super) struct Tally {
     pub stage: u8,
     pub name: String,
     pub points: u32,
-    /// What the rubric says of it.
+    /// The rubric entry of the check.
     pub entry: Entry,
-    /// For each of [`Outcome::ALL`], how many submissions ended so.
+    /// The number of submissions per outcome, in the order of [`Outcome::ALL`].
     pub counts: [usize; Outcome::ALL.len()],
 }
 
@@ -23,29 +23,29 @@ impl Tally {
         Tally { stage, name, points, entry: messages::entry(check), counts: [0; Outcome::ALL.len()] }
     }
 
-    /// How many submissions passed.
+    /// Returns how many submissions passed.
     pub fn passed(&self) -> usize {
         self.outcomes().filter(|(outcome, _)| *outcome == Outcome::Passed).map(|(_, n)| n).sum()
     }
 
-    /// How many submissions gave an answer that is none.
+    /// Returns how many submissions tried the check and failed.
     pub fn tried_in_vain(&self) -> usize {
         let in_vain = [Outcome::Wrong, Outcome::WrongOnHidden, Outcome::TooLong, Outcome::Crashed];
         self.outcomes().filter(|(outcome, _)| in_vain.contains(outcome)).map(|(_, n)| n).sum()
     }
 
-    /// How many submissions there were.
+    /// Returns the number of submissions.
     pub fn of(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// The outcomes that occurred.
+    /// Returns the outcomes that occurred, with their counts.
     pub fn outcomes(&self) -> impl Iterator<Item = (Outcome, usize)> {
         Outcome::ALL.into_iter().zip(self.counts).filter(|(_, n)| *n > 0)
     }
 }
 
-/// A tally for each check, in the order of the lecture.
+/// Counts the results of each check, in the order of the lecture.
 pub(super) fn tallies(class: &Class) -> Vec<Tally> {
     let mut places = BTreeMap::new();
     let mut tallies: Vec<Tally> = Vec::new();
@@ -58,24 +58,24 @@ pub(super) fn tallies(class: &Class) -> Vec<Tally> {
             tallies[place].counts[which] += 1;
         }
     }
-    // The checks of each stage stay in their order.
+    // The sort is stable: the checks of each stage stay in their order.
     tallies.sort_by_key(|tally| tally.stage);
     tallies
 }
 
-/// The stages that were graded, in order.
+/// Returns the graded stages in ascending order.
 pub(super) fn stages(tallies: &[Tally]) -> Vec<u8> {
     let mut stages: Vec<u8> = tallies.iter().map(|tally| tally.stage).collect();
     stages.dedup();
     stages
 }
 
-/// All points that there were.
+/// Returns the sum of all possible points.
 pub(super) fn of(tallies: &[Tally]) -> u32 {
     tallies.iter().map(|tally| tally.points).sum()
 }
 
-/// A stage as a heading.
+/// Returns the heading of a stage.
 pub(super) fn stage_title(stage: u8) -> String {
     match RUBRIC.get(&format!("stage{stage}")) {
         Some(known) => format!("Stage {stage} · {}", known.title),
@@ -83,8 +83,8 @@ pub(super) fn stage_title(stage: u8) -> String {
     }
 }
 
-/// The checks that most submissions tried and failed, worst first. What nobody has written yet says more about time than
-/// about the lecture; among equals it counts.
+/// Returns the `n` checks that most submissions tried and failed, worst first. Unwritten functions only break ties, because
+/// they say more about lack of time than about the lecture.
 pub(super) fn worst(tallies: &[Tally], n: usize) -> Vec<&Tally> {
     let mut worst: Vec<&Tally> = tallies.iter().filter(|tally| tally.passed() < tally.of()).collect();
     worst.sort_by_key(|tally| (Reverse(tally.tried_in_vain()), tally.passed()));
@@ -92,7 +92,7 @@ pub(super) fn worst(tallies: &[Tally], n: usize) -> Vec<&Tally> {
     worst
 }
 
-/// The student in the middle, or the mean of the two in the middle.
+/// Returns the median of the points.
 pub(super) fn median(class: &Class) -> f64 {
     let mut points: Vec<u32> = class.students.iter().map(|student| student.points().0).collect();
     points.sort_unstable();
@@ -102,13 +102,13 @@ pub(super) fn median(class: &Class) -> f64 {
     }
 }
 
-/// Points of a student on average.
+/// Returns the mean of the points.
 pub(super) fn mean(class: &Class) -> f64 {
     let sum: u32 = class.students.iter().map(|student| student.points().0).sum();
     f64::from(sum) / class.students.len().max(1) as f64
 }
 
-/// Whether a check of the submission ended so.
+/// Returns whether a check of the submission has this outcome.
 pub(super) fn has(student: &Graded, outcome: Outcome) -> bool {
     student.checks.iter().any(|check| check.outcome == outcome)
 }

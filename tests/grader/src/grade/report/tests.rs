@@ -34,7 +34,7 @@ fn student(name: &str, outcomes: [(Outcome, &str); 4]) -> Graded {
     }
 }
 
-/// A class whose students write what breaks reports.
+/// A class whose students write text that could break reports.
 fn class() -> Class {
     use Outcome::*;
     let nasty_message =
@@ -145,7 +145,7 @@ fn no_format_lets_through_what_cannot_be_seen() -> Result<()> {
 #[test]
 fn a_check_that_fails_on_hidden_inputs_tells_no_more_than_that() -> Result<()> {
     let mut files = files_of(&class())?;
-    // What the instructor keeps.
+    // The instructor's file may contain the hidden input.
     files.remove("results.json");
     assert!(files.iter().all(|(_, text)| !text.contains("0.1234")));
     let text = files.values().filter(|text| text.contains("stage 1: 1 check fails on hidden inputs only"));

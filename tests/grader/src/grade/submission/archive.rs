@@ -1,18 +1,18 @@
-//! Submissions that come packed. What an archive says of itself is not believed: sizes are counted as they come, and names
-//! decide nothing but which text is whose.
+//! Reads submissions in archives. The grader does not trust stated sizes: it counts bytes while it unpacks. Names only
+//! decide which file is which exercise; nothing is written to the disk.
 
 use super::Gathering;
 use std::io::{self, BufReader, Read, Seek};
 use std::path::Path;
 
-/// What can be unpacked.
+/// Extensions of the archives that can be unpacked.
 pub const ENDINGS: [&str; 4] = [".zip", ".tar.gz", ".tgz", ".tar"];
 
-/// How many bytes of an archive are unpacked. All exercises together have a fifth of a megabyte; a working copy with
-/// what cargo has built may have more than this, and is not meant to be handed in.
+/// Most bytes that are unpacked from an archive. All exercises together have a fifth of a megabyte. A working copy with its
+/// target folder may be larger than this limit; students should not hand that in.
 const MOST_UNPACKED: u64 = 256 << 20;
 
-/// Offers the files of an archive.
+/// Offers the files of an archive to `gathering`.
 pub fn gather(path: &Path, gathering: &mut Gathering<'_>) -> io::Result<()> {
     let file = BufReader::new(super::open(path).map_err(io::Error::other)?);
     let name = path.to_string_lossy();
@@ -53,23 +53,22 @@ fn tar(stream: impl Read, gathering: &mut Gathering<'_>) -> io::Result<()> {
     Ok(())
 }
 
-/// A file of an archive under the path that the archive gives it.
+/// Offers one file of an archive under the path that the archive gives it.
 fn offer(path: &str, regular: bool, content: impl Read, gathering: &mut Gathering<'_>) {
     let plain: Vec<&str> = path.split(['/', '\\']).filter(|part| !part.is_empty() && *part != ".").collect();
     let plain = plain.join("/");
     if !gathering.wants(&plain) {
         gathering.ignore(&plain);
     } else if path.starts_with('/') || plain.split('/').any(|part| part == "..") {
-        gathering
-            .offer(&plain, Err::<io::Empty, _>("was not taken: its path leads out of the archive".into()));
+        gathering.offer(&plain, Err::<io::Empty, _>("was ignored: its path leads out of the archive".into()));
     } else if !regular {
-        gathering.offer(&plain, Err::<io::Empty, _>("was not taken: it is no regular file".into()));
+        gathering.offer(&plain, Err::<io::Empty, _>("was ignored: it is not a regular file".into()));
     } else {
         gathering.offer(&plain, Ok(content));
     }
 }
 
-/// A stream that ends in an error after so many bytes.
+/// A stream that returns an error after a given number of bytes.
 struct Bounded<R> {
     stream: R,
     left: u64,
@@ -80,7 +79,7 @@ impl<R: Read> Read for Bounded<R> {
         let read = self.stream.read(buffer)?;
         self.left = self.left.checked_sub(read as u64).ok_or_else(|| {
             io::Error::other(format!(
-                "it holds more than {} MiB; hand in exercises/src alone",
+                "it contains more than {} MiB; hand in only exercises/src",
                 MOST_UNPACKED >> 20
             ))
         })?;

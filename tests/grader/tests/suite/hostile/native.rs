@@ -1,5 +1,5 @@
-//! What code could ask of the kernel that is not bound by Rust's rules, for `sandbox.rs`. Compiled by a test, not by cargo.
-//! Says what was not refused.
+//! Makes system calls as native code can that ignores Rust's rules, for `sandbox.rs`. A test compiles this file; cargo does
+//! not. It prints the calls that were not refused.
 
 use std::arch::asm;
 
@@ -15,7 +15,7 @@ fn ask(call: u64, arguments: [u64; 6]) -> i64 {
 
 fn main() {
     if std::env::args().nth(1).is_some_and(|word| word == "other-architecture") {
-        // getpid of i386.
+        // The number of getpid on i386.
         let answer: i64;
         unsafe { asm!("int 0x80", inlateout("rax") 20_i64 => answer) };
         println!("answered {answer}");
@@ -95,7 +95,7 @@ fn main() {
         ("reboot", 169, [0; 6]),
     ] {
         let answer = ask(call, arguments);
-        // Not permitted, access denied, no such call.
+        // These errors mean: not permitted, access denied, no such call.
         if ![-1, -13, -38].contains(&answer) {
             println!("{what}: {answer}");
         }

@@ -1,13 +1,13 @@
-//! Calls one function with the parameters of another, whatever their order and precision.
+//! Calls one function with the parameters of another, in any order and precision.
 
 use super::collect::{Bundles, Function, base, bundle, plain};
 use syn::{FnArg, GenericArgument, Pat, PathArguments, ReturnType, Type};
 
-/// More orders than this of parameters that are alike are not tried.
+/// Most orders of parameters of the same type that are tried.
 const MOST_ORDERS: usize = 24;
 
-/// Expressions in the body of `exercise` that return what `function` makes of its parameters: one for each order of the
-/// parameters that are alike. None, if nobody else can call the function.
+/// Returns expressions for the body of `exercise` that call `function` with the exercise's parameters, one per order of the
+/// parameters of the same type. The list is empty if other crates cannot call the function.
 pub fn calls(exercise: &Function, function: &Function, bundles: &Bundles) -> Vec<String> {
     if function.is_test || function.of_trait {
         return Vec::new();
@@ -56,7 +56,7 @@ pub fn calls(exercise: &Function, function: &Function, bundles: &Bundles) -> Vec
 /// A value: the expression, its type, and the type without precision and the like.
 type Leaf = (String, Type, String);
 
-/// The values that a parameter is made of.
+/// Adds the values of which a parameter consists.
 fn take_apart(value: String, ty: &Type, (of, bundles): (&Function, &Bundles), leaves: &mut Vec<Leaf>) {
     match bundle(ty, bundles) {
         Some((_, fields)) => {
@@ -68,7 +68,7 @@ fn take_apart(value: String, ty: &Type, (of, bundles): (&Function, &Bundles), le
     }
 }
 
-/// An argument of type `to`, of the next values.
+/// Returns an argument of type `to`, built from the next values.
 fn put_together<'a>(to: &Type, bundles: &Bundles, leaves: &mut impl Iterator<Item = &'a Leaf>) -> String {
     match (bundle(to, bundles), to) {
         (Some(_), Type::Reference(to)) => format!("&{}", put_together(&to.elem, bundles, leaves)),
@@ -83,7 +83,7 @@ fn put_together<'a>(to: &Type, bundles: &Bundles, leaves: &mut impl Iterator<Ite
     }
 }
 
-/// All ways to give each wanted parameter a given one of its type.
+/// Adds all ways to assign a given parameter of the same type to each wanted one.
 fn assign(given: &[Leaf], wanted: &[Leaf], order: &mut Vec<usize>, orders: &mut Vec<Vec<usize>>) {
     let Some((.., key)) = wanted.get(order.len()) else {
         return orders.push(order.clone());
@@ -120,7 +120,7 @@ fn argument((name, from, _): &Leaf, to: &Type) -> String {
     }
 }
 
-/// `value`, of type `from`, as `to`.
+/// Returns an expression that converts `value` from type `from` to type `to`.
 fn converted(value: &str, from: &Type, to: &Type) -> String {
     match (from, to) {
         (Type::Reference(from), to) => return converted(&format!("(*{value}).clone()"), &from.elem, to),
@@ -156,7 +156,7 @@ fn converted(value: &str, from: &Type, to: &Type) -> String {
                 Type::Array(_) => {
                     format!("{list}.collect::<Vec<_>>().try_into().expect(\"as many\")")
                 }
-                // A slice is lent, a list is given.
+                // A slice is borrowed, a list is moved.
                 _ => format!("{list}.collect::<Vec<_>>()"),
             }
         }
@@ -173,7 +173,7 @@ fn element(ty: &Type) -> Option<&Type> {
     }
 }
 
-/// The type inside of `Option<…>` or `Vec<…>`.
+/// Returns the type inside of `Option<…>` or `Vec<…>`.
 fn inside(ty: &Type) -> Option<&Type> {
     let Type::Path(path) = ty else { return None };
     let PathArguments::AngleBracketed(inside) = &path.path.segments.last()?.arguments else { return None };

@@ -1,16 +1,16 @@
-//! Which functions fit which exercise: same parameter and return types up to order, references, precision and the kind of
-//! list.
+//! Finds the functions that fit an exercise: their parameter and return types are the same except for order, references,
+//! precision and the kind of list.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{FnArg, GenericParam, Generics, ImplItem, Item, ReturnType, Signature, Type, TypeParamBound};
 
-/// A function, where it stands and what it takes.
+/// A function, with its place and its types.
 pub struct Function {
     /// The file, from the root of the kit.
     pub file: String,
-    /// How other crates call it: `checks::tree::around`.
+    /// Its path for other crates: `checks::tree::around`.
     pub path: String,
     /// Whether only tests of its own crate can call it.
     pub is_test: bool,
@@ -18,7 +18,7 @@ pub struct Function {
     pub of_trait: bool,
     /// The type of `self`, if it is a method.
     pub self_type: Option<Type>,
-    /// As it is written.
+    /// The signature as written.
     pub signature: Signature,
     /// The generics of the `impl` block around it.
     pub outer: Generics,
@@ -28,11 +28,11 @@ pub struct Function {
     pub is_exercise: bool,
 }
 
-/// Types that stand for their fields, by name: where they are declared, and the names and types of the fields. So
-/// `query: &SphereQuery` is a ray, a centre and a radius.
+/// Types that are replaced by their fields: per name of a type its module, and the names and types of the fields. So
+/// `query: &SphereQuery` counts as a ray, a centre and a radius.
 pub type Bundles = BTreeMap<String, (&'static str, Vec<(String, Type)>)>;
 
-/// The messages of the door, and the shapes that some exercises take and others take apart.
+/// Returns the query types of the kit's interface, and the shapes that some exercises take whole and others as fields.
 pub fn bundles(root: &Path) -> Bundles {
     let mut files = Vec::new();
     rust_files(&root.join("src/kit"), &mut files);
@@ -61,7 +61,7 @@ pub fn bundles(root: &Path) -> Bundles {
 /// The types of the parameters, sorted, and the type of the result.
 pub type Key = (Vec<String>, String);
 
-/// All functions of a crate whose sources are in `folder`, which other crates know as `name`.
+/// Returns all functions of a crate with the sources in `folder` and the name `name`.
 pub fn functions(root: &Path, folder: &str, name: &str, bundles: &Bundles) -> Vec<Function> {
     let mut files = Vec::new();
     rust_files(&root.join(folder), &mut files);
@@ -82,7 +82,7 @@ pub fn functions(root: &Path, folder: &str, name: &str, bundles: &Bundles) -> Ve
     found
 }
 
-/// The functions of one text.
+/// Returns the functions of one text.
 pub fn functions_of(file: &str, module: &str, text: &str, bundles: &Bundles) -> Vec<Function> {
     let syntax = parse(file, text);
     let (mut aliases, mut found) = (BTreeMap::new(), Vec::new());
@@ -92,7 +92,7 @@ pub fn functions_of(file: &str, module: &str, text: &str, bundles: &Bundles) -> 
     found
 }
 
-/// For each exercise the functions that fit it.
+/// Returns the functions that fit each exercise.
 pub fn candidates<'a>(exercises: &'a [Function], all: &'a [Function]) -> Vec<(&'a Function, &'a Function)> {
     let mut by_key: BTreeMap<&Key, Vec<&Function>> = BTreeMap::new();
     all.iter().for_each(|function| by_key.entry(&function.key).or_default().push(function));
@@ -114,7 +114,7 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
         .collect();
     entries.sort();
     for path in entries {
-        // A folder with a manifest is a crate of its own.
+        // A folder with a manifest is a separate crate.
         if path.is_dir() && !path.join("Cargo.toml").exists() {
             rust_files(&path, files);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
@@ -123,7 +123,7 @@ fn rust_files(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// `checks::tree::search` for `tree/search.rs`.
+/// Returns the module path of a file: `checks::tree::search` for `tree/search.rs`.
 fn module(name: &str, file: &Path) -> String {
     let mut module = name.to_owned();
     for part in file.with_extension("").iter().map(|part| part.to_string_lossy()) {
@@ -148,7 +148,7 @@ fn collect_aliases(items: &[Item], aliases: &mut BTreeMap<String, Type>) {
     }
 }
 
-/// What names stand for, in a whole crate.
+/// The meaning of type names in a whole crate.
 #[derive(Clone, Copy)]
 struct Known<'a> {
     aliases: &'a BTreeMap<String, Type>,
@@ -219,7 +219,7 @@ fn is_todo(block: &syn::Block) -> bool {
     }
 }
 
-/// The last name of a path type.
+/// Returns the last name of a path type.
 pub fn base(ty: &Type) -> String {
     match ty {
         Type::Path(path) => path.path.segments.last().map_or_else(String::new, |last| last.ident.to_string()),
@@ -230,14 +230,14 @@ pub fn base(ty: &Type) -> String {
     }
 }
 
-/// A type of a function without references, precision and the kind of list.
+/// Returns a type of a function without references, precision and the kind of list.
 pub fn plain(function: &Function, ty: &Type) -> String {
     let (self_type, aliases) = (function.self_type.as_ref(), BTreeMap::new());
     let generics = [&function.outer, &function.signature.generics];
     Names { aliases: &aliases, generics, self_type, depth: 0 }.plain(ty)
 }
 
-/// The fields of a type that stands for them.
+/// Returns the fields of a type that is replaced by its fields.
 pub fn bundle<'a>(ty: &Type, bundles: &'a Bundles) -> Option<&'a (&'static str, Vec<(String, Type)>)> {
     match ty {
         Type::Reference(inner) => bundle(&inner.elem, bundles),
@@ -246,7 +246,7 @@ pub fn bundle<'a>(ty: &Type, bundles: &'a Bundles) -> Option<&'a (&'static str, 
     }
 }
 
-/// What names of types stand for.
+/// The meaning of type names in a function.
 struct Names<'a> {
     aliases: &'a BTreeMap<String, Type>,
     generics: [&'a Generics; 2],
@@ -272,7 +272,7 @@ impl Names<'_> {
         (parameters, result)
     }
 
-    /// What a parameter of this type is made of.
+    /// Adds the types of which a parameter of this type consists.
     fn leaves(&self, ty: &Type, bundles: &Bundles, leaves: &mut Vec<String>) {
         match bundle(ty, bundles) {
             Some((_, fields)) => fields.iter().for_each(|(_, ty)| self.leaves(ty, bundles, leaves)),
@@ -280,7 +280,7 @@ impl Names<'_> {
         }
     }
 
-    /// A type without references, precision and the kind of list.
+    /// Returns a type without references, precision and the kind of list.
     fn plain(&self, ty: &Type) -> String {
         match ty {
             Type::Reference(inner) => self.plain(&inner.elem),

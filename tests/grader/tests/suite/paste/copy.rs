@@ -1,11 +1,11 @@
-//! A copy of the kit in which everything is public and each exercise can be answered by a function of the checks.
+//! Makes a copy of the kit in which all items are public, so that any function can answer an exercise.
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use syn::{Item, Visibility};
 
-/// Copies the folders of `root` that the reference and its checks need, all items of `open` folders made public.
+/// Copies the folders of `root` that the reference and its checks need. Makes all items in the folders `open` public.
 pub fn copy(root: &Path, to: &Path, open: &[String]) {
     for folder in ["src", "solutions/src", "tests/checks", "tests/judge", "tests/oracle", "tests/golden"] {
         copy_folder(root, to, folder, open);
@@ -31,7 +31,7 @@ fn stages() -> impl Iterator<Item = String> {
     (1..=10).map(|stage| format!("stage{stage}"))
 }
 
-/// Builds the checks with the reference and returns the program that runs them.
+/// Builds the checks with the reference. Returns the path of the program that runs them.
 pub fn build(folder: &Path) -> String {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(folder)
@@ -57,7 +57,8 @@ pub fn build(folder: &Path) -> String {
     program.and_then(|program| program["executable"].as_str()).expect("a program").to_owned()
 }
 
-/// Whether the checks whose names contain `filter` pass with this function in place of an exercise; 0 is none.
+/// Returns whether the checks whose names contain `filter` pass with function number `paste` in place of an exercise; 0
+/// means no function.
 pub fn passes(program: &str, folder: &Path, filter: &str, paste: usize) -> bool {
     let status = Command::new(program)
         .current_dir(folder.join("solutions"))
@@ -113,7 +114,7 @@ fn copy_folder(root: &Path, to: &Path, folder: &str, open: &[String]) {
     }
 }
 
-/// A manifest without targets and what only tests need.
+/// Returns a manifest without targets and without dependencies of tests.
 fn without_sections(manifest: &str) -> String {
     let mut kept = String::new();
     let mut keep = true;
@@ -130,7 +131,7 @@ fn without_sections(manifest: &str) -> String {
     kept
 }
 
-/// The text with all its items public.
+/// Returns the text with all items public.
 fn public(text: &str) -> String {
     let syntax = syn::parse_file(text).expect("Rust");
     let mut changes = Vec::new();
@@ -143,7 +144,7 @@ fn public(text: &str) -> String {
     changed
 }
 
-/// Where a visibility is to be replaced, or put in.
+/// Adds the ranges of the text where a visibility is replaced or inserted.
 fn collect(items: &[Item], changes: &mut Vec<(usize, usize)>) {
     let mut change = |visibility: &Visibility, keyword: proc_macro2::Span| match visibility {
         Visibility::Public(_) => {}
@@ -183,7 +184,7 @@ fn collect(items: &[Item], changes: &mut Vec<(usize, usize)>) {
     }
 }
 
-/// `const`, or `fn`.
+/// Returns the position of the signature's first keyword, such as `const` or `fn`.
 fn first(signature: &syn::Signature) -> proc_macro2::Span {
     signature.constness.map_or(signature.fn_token.span, |token| token.span)
 }
@@ -192,7 +193,7 @@ fn read(file: &Path) -> String {
     fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
 }
 
-/// Writes a text where another one was, so that cargo builds only what has changed.
+/// Writes a file only if its text differs, so that cargo builds only changed files.
 fn write(file: &Path, text: &str) {
     if fs::read_to_string(file).is_ok_and(|old| old == text) {
         return;

@@ -1,4 +1,4 @@
-//! Submissions that come packed.
+//! Makes submissions that are archives.
 
 use super::{Maker, SOURCES};
 use crate::grade::attacks::pack::{self, Entry, Format};
@@ -40,7 +40,7 @@ impl Maker<'_> {
         let name = |index: usize| match (&packed.name, &packed.name_hex) {
             (Some(name), None) => Ok(self.filled(name).replace("@n@", &index.to_string()).into_bytes()),
             (None, Some(hex)) => bytes_of(hex),
-            _ => bail!("an entry has a `name` or a `name_hex`"),
+            _ => bail!("an entry needs either a `name` or a `name_hex`"),
         };
         let entry = |index: usize| {
             Ok(Entry {
@@ -55,7 +55,7 @@ impl Maker<'_> {
         (0..packed.times.unwrap_or(1)).map(entry).collect()
     }
 
-    /// Puts an archive in the place of the folder.
+    /// Replaces the folder of the submission by an archive.
     pub(super) fn become_archive(&mut self, format: Format, bytes: &[u8]) -> Result<()> {
         fs::remove_dir_all(&self.submission)?;
         self.submission.as_mut_os_string().push(format.ending());
