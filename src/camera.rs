@@ -106,7 +106,7 @@ impl Camera {
         if !(0.0 < aspect && aspect.is_finite()) {
             return Err(CameraError::Aspect(aspect));
         }
-        // Normalise in double precision, which keeps the axes at right angles for any scale of the inputs.
+        // Normalize in double precision, which keeps the axes at right angles for any scale of the inputs.
         let unit = |v: glam::DVec3| v.try_normalize();
         let towards = unit(direction.as_dvec3()).ok_or(CameraError::NoDirection)?;
         let up = unit(up.as_dvec3()).ok_or(CameraError::UpParallel)?;

@@ -104,7 +104,7 @@ macro_rules! student_functions {
                 FaceNormal fn face_normal(triangle: &Triangle) -> Option<Vec3>
                     = stage2_triangles::face_normal;
                 |q: Triangle| -> Option<Vec3> { F::face_normal(q) }
-                /// One unit normal per vertex of a mesh: the normalised average of the normals of the
+                /// One unit normal per vertex of a mesh: the normalized average of the normals of the
                 /// triangles around it.
                 VertexNormals fn vertex_normals(mesh: &Mesh) -> Vec<Vec3>
                     = stage2_triangles::vertex_normals;
