@@ -132,7 +132,7 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
                 () if height == 0.0 => {
                     "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
                 }
-                () if height < 0.0 => "your ray starts below the surface: move to the viewer’s side",
+                () if height < 0.0 => "your ray starts below the surface: move to the viewer's side",
                 () if goes_along_the_light(query, ray) => {
                     "you move the origin along the ray: move it along the geometric normal"
                 }

@@ -73,7 +73,7 @@ pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
 
 pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> Outcome {
     // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays.
-    let parent = "you test the weight of the incoming ray: test the secondary ray’s own weight";
+    let parent = "you test the weight of the incoming ray: test the secondary ray's own weight";
     let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
     // Without the limit on the weight there are 1 + 20 rays.
     let left_out = "you leave out limits.min_contribution: only the depth ends the tree";

@@ -54,17 +54,17 @@ fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
     let diagnosis = match (found[off], weight) {
         (true, 0.0) => "you trace a secondary ray of weight 0, which adds nothing",
         (true, _) if other >= least && parent.max_element() >= least => {
-            "you test the weight of the incoming ray or of the other secondary ray: test each ray’s own"
+            "you test the weight of the incoming ray or of the other secondary ray: test each ray's own"
         }
         (true, _) if parent.max_element() >= least => {
-            "you test the weight of the incoming ray: test the secondary ray’s own weight"
+            "you test the weight of the incoming ray: test the secondary ray's own weight"
         }
         (true, _) => "you leave out min_contribution",
         (false, _) if weight == least => {
             "you leave out a ray whose weight is equal to min_contribution: trace it"
         }
         (false, _) if other < least => {
-            "you test the weight of the other secondary ray: test each ray’s own weight"
+            "you test the weight of the other secondary ray: test each ray's own weight"
         }
         (false, _) => "you leave out a ray with one channel at the limit or above: test the largest channel",
     };

@@ -132,7 +132,7 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
     Ok(shares)
 }
 
-const AXES: [&str; 2] = ["1 - cos θ, as a fraction of the rim’s", "the angle around the axis"];
+const AXES: [&str; 2] = ["1 - cos θ, as a fraction of the rim's", "the angle around the axis"];
 
 pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
     let sphere = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };

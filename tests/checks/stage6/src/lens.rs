@@ -229,7 +229,7 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
                     "your lens is a line: it extends along camera.right and along camera.up"
                 }
                 () if near(camera.position + place.extend(0.0)) => {
-                    "you use the world’s x and y axes: use camera.right and camera.up"
+                    "you use the world's x and y axes: use camera.right and camera.up"
                 }
                 () => "",
             };

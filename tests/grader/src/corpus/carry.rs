@@ -232,8 +232,8 @@ fn carry(
                 );
                 return Ok(Carried::Anew(format!("{header}{patch}")));
             }
-            Some(_) => why.push(format!("{place} has the change already")),
-            None => why.push(format!("{place} is different where it changes something")),
+            Some(_) => why.push(format!("{place} already contains the change")),
+            None => why.push(format!("{place} was changed at the same lines")),
         }
     }
     Ok(Carried::Lost(why.join("; ")))
