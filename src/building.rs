@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn leaves_are_told_while_the_rest_is_built() {
+    fn leaves_are_reported_while_the_rest_is_built() {
         let heard = Heard::default();
         let total = 2 * WORTH_TELLING;
         watched(&heard, total, || {

@@ -90,8 +90,8 @@ fn numbers_that_break_formulas_break_no_picture() {
         let mut scene = match load::parse(Path::new("specials.toml"), &text) {
             Ok(scene) => scene,
             Err(error) => {
-                let told = error.to_string();
-                assert!(told.starts_with("specials.toml:") && told.len() > 30, "{told}\n{text}");
+                let message = error.to_string();
+                assert!(message.starts_with("specials.toml:") && message.len() > 30, "{message}\n{text}");
                 refused += 1;
                 continue;
             }

@@ -165,8 +165,8 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
         counts_are_what_the_rays_add_up_to(set, with);
         for effect in EFFECTS.into_iter().filter(|&effect| set.has(effect)) {
             let without = &frames[set.without(effect).0];
-            let told = || format!("{effect}, without {:?}", set.absent().collect::<Vec<_>>());
-            assert_eq!(with.counts.primary, without.counts.primary, "{}", told());
+            let case = || format!("{effect}, without {:?}", set.absent().collect::<Vec<_>>());
+            assert_eq!(with.counts.primary, without.counts.primary, "{}", case());
             for (pixel, (tree, old)) in with.trees.iter().zip(&without.trees).enumerate() {
                 let (same_rays, acts) = match effect {
                     // These effects add branches to the tree and leave the rest unchanged.
@@ -195,9 +195,9 @@ fn every_effect_adds_its_own_rays_and_changes_only_the_pixels_where_it_acts() {
                     }
                     _ => (true, true),
                 };
-                assert!(same_rays, "pixel {pixel} has other rays: {}", told());
+                assert!(same_rays, "pixel {pixel} has other rays: {}", case());
                 let same_color = with.film.pixels[pixel] == without.film.pixels[pixel];
-                assert!(same_color || acts, "pixel {pixel} has another colour: {}", told());
+                assert!(same_color || acts, "pixel {pixel} has another colour: {}", case());
             }
         }
     }

@@ -24,7 +24,7 @@ impl Threads {
 
 /// Parameters that trade accuracy for time. Those that are not given keep the value of the scene.
 #[derive(Default)]
-pub struct Knobs {
+pub struct QualityOptions {
     size: Option<(u32, u32)>,
     spp: Option<u32>,
     sampler: Option<Sampler>,
@@ -77,7 +77,7 @@ const TRIANGLES: [(&str, TriangleMethod); 3] = [
 
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
-impl Knobs {
+impl QualityOptions {
     /// The options.
     pub const OPTIONS: &[Opt] = &[
         Opt::value(
@@ -104,8 +104,8 @@ impl Knobs {
     ];
 
     /// Reads the options.
-    pub fn read(given: &Given) -> Result<Knobs, Misuse> {
-        Ok(Knobs {
+    pub fn read(given: &Given) -> Result<QualityOptions, Misuse> {
+        Ok(QualityOptions {
             size: given.parsed("--size", parse_size)?,
             spp: given.number("--spp", 1..=65_536)?,
             sampler: given.choice("--sampler", &SAMPLERS)?,
@@ -199,7 +199,8 @@ mod tests {
     use crate::args::{Read, Spec};
     use std::ffi::OsString;
 
-    static LINE: Spec = Spec { name: "render", about: "", arguments: &[], options: &[Knobs::OPTIONS] };
+    static LINE: Spec =
+        Spec { name: "render", about: "", arguments: &[], options: &[QualityOptions::OPTIONS] };
 
     #[test]
     fn every_accelerator_has_the_name_of_scene_files() {
@@ -231,7 +232,7 @@ mod tests {
         let Read::Given(given) = LINE.read(line.split_whitespace().map(OsString::from)).unwrap() else {
             panic!("help was requested");
         };
-        Knobs::read(&given).unwrap().apply(&mut scene);
+        QualityOptions::read(&given).unwrap().apply(&mut scene);
         assert_eq!(scene.quality, wanted);
         assert_eq!(arguments(&own, &own), "");
         assert!(parse_share("1.5").is_err() && parse_share("NaN").is_err() && parse_share("some").is_err());

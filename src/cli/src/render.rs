@@ -2,7 +2,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{Knobs, Threads};
+use crate::quality_options::{QualityOptions, Threads};
 use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use raykata::film::{Film, encode_srgb};
@@ -25,7 +25,7 @@ pub static SPEC: Spec = Spec {
             Opt::flag("--normals", "Show normals instead of light."),
             Opt::flag("--no-counts", "Do not count rays and tests; a little faster."),
         ],
-        Knobs::OPTIONS,
+        QualityOptions::OPTIONS,
     ],
 };
 
@@ -36,7 +36,7 @@ pub struct Options {
     kit: Choice,
     threads: Threads,
     seed: u64,
-    parameters: Knobs,
+    quality: QualityOptions,
     normals: bool,
     no_counts: bool,
 }
@@ -50,7 +50,7 @@ impl Options {
             kit: Choice::read(given)?,
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
-            parameters: Knobs::read(given)?,
+            quality: QualityOptions::read(given)?,
             normals: given.has("--normals"),
             no_counts: given.has("--no-counts"),
         })
@@ -81,7 +81,7 @@ fn format_of(file: &Path) -> Result<Format> {
 /// Renders the picture and prints what it cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    options.parameters.apply(&mut scene);
+    options.quality.apply(&mut scene);
     let out = match &options.out {
         Some(out) => out.clone(),
         None => Path::new("out")

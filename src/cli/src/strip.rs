@@ -3,7 +3,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{Knobs, SAMPLERS};
+use crate::quality_options::{QualityOptions, SAMPLERS};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
@@ -35,7 +35,7 @@ pub static SPEC: Spec = Spec {
             Opt::value("--out", "FILE", "The PNG file [default: out/NAME-strip.png].").short("-o"),
         ],
         Choice::OPTIONS,
-        Knobs::OPTIONS,
+        QualityOptions::OPTIONS,
     ],
 };
 
@@ -44,7 +44,7 @@ pub struct Options {
     scene: PathBuf,
     depths: Vec<u32>,
     samplers: Vec<Sampler>,
-    parameters: Knobs,
+    quality: QualityOptions,
     out: Option<PathBuf>,
     kit: Choice,
 }
@@ -61,7 +61,7 @@ impl Options {
             scene: given.required(0)?.into(),
             depths,
             samplers: given.choices("--samplers", &SAMPLERS)?,
-            parameters: Knobs::read(given)?,
+            quality: QualityOptions::read(given)?,
             out: given.path("--out"),
             kit: Choice::read(given)?,
         })
@@ -71,7 +71,7 @@ impl Options {
 /// Renders the strip and prints what each picture cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    options.parameters.apply(&mut scene);
+    options.quality.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     make_folder_of(&out)?;

@@ -184,8 +184,8 @@ impl Process {
                         "it reports the progress of a frame, but no frame was requested",
                     ));
                 }
-                told @ (Reply::Progress { .. } | Reply::Building { .. }) => {
-                    match told {
+                reply @ (Reply::Progress { .. } | Reply::Building { .. }) => {
+                    match reply {
                         Reply::Building { placed, total } => watch.building(placed, total),
                         Reply::Progress { done, total } => watch.progress(done, total),
                         _ => {}
@@ -210,9 +210,9 @@ impl Process {
     fn post_mortem(mut self, error: &io::Error, patience: Duration) -> KitError {
         let timed_out = self.watchdog.has_barked();
         // This kind of error means a refused message; errors of the pipe have other kinds.
-        let nonsense = !timed_out && error.kind() == io::ErrorKind::Other;
+        let malformed = !timed_out && error.kind() == io::ErrorKind::Other;
         // The pipe may close a moment before the process ends, so wait briefly for its own exit status.
-        let status = if nonsense { None } else { wait_briefly(&self.child) };
+        let status = if malformed { None } else { wait_briefly(&self.child) };
         let _ = lock(&self.child).kill();
         let status = status.or_else(|| lock(&self.child).wait().ok());
         self.to_worker = Box::new(io::sink());
@@ -222,7 +222,7 @@ impl Process {
         if timed_out {
             return KitError::TimedOut { seconds: patience.as_secs() };
         }
-        if nonsense {
+        if malformed {
             return KitError::Malformed { what: error.to_string() };
         }
         cause_of_death(status, &stderr, self.launcher.as_deref(), patience)

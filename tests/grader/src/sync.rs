@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_was_begun_is_kept_until_told_otherwise() {
+    fn work_that_was_begun_is_kept_unless_forced() {
         let root = tempfile::tempdir().unwrap();
         let at = |path: &str| root.path().join(path);
         fs::create_dir_all(at("solutions/src")).unwrap();

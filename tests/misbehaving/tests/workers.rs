@@ -28,7 +28,7 @@ fn a_panic_keeps_its_place() {
 }
 
 #[test]
-fn each_way_to_die_is_told_and_the_next_call_is_answered() {
+fn each_way_to_die_is_reported_and_the_next_call_is_answered() {
     let door = door();
     assert!(how_it_crashed(ask(&door, -2.0)).contains("exit status: 0"));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));
@@ -79,7 +79,7 @@ fn an_answer_of_the_wrong_kind_or_length_is_refused() {
 }
 
 #[test]
-fn a_program_that_is_not_there_is_told() {
+fn a_program_that_is_not_there_is_reported() {
     let door = Door(Worker::new("no/such/worker".into(), Duration::from_secs(2)));
     assert!(how_it_crashed(ask(&door, 10.0)).starts_with("it cannot be started"));
 }

@@ -11,7 +11,7 @@ mod table;
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{ACCELERATORS, Knobs, Threads};
+use crate::quality_options::{ACCELERATORS, QualityOptions, Threads};
 use crate::report::{load_scene, make_folder};
 use anyhow::{Context, Result};
 use measure::Bench;
@@ -57,7 +57,7 @@ pub static SPEC: Spec = Spec {
         ],
         Choice::OPTIONS,
         Threads::OPTIONS,
-        Knobs::OPTIONS,
+        QualityOptions::OPTIONS,
     ],
 };
 
@@ -70,7 +70,7 @@ pub struct Options {
     rounds: u32,
     threads: Threads,
     level: u32,
-    parameters: Knobs,
+    quality: QualityOptions,
     out: Option<PathBuf>,
     table: bool,
 }
@@ -87,7 +87,7 @@ impl Options {
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(3),
             threads: Threads::read(given)?,
             level: given.number("--level", 0..=64)?.unwrap_or(6),
-            parameters: Knobs::read(given)?,
+            quality: QualityOptions::read(given)?,
             out: given.path("--out"),
             table: given.has("--table"),
         })
@@ -98,7 +98,7 @@ impl Options {
 /// instances may differ, because a ray that is transformed into another space is rounded.
 pub fn run(options: &Options) -> Result<bool> {
     let mut scene = load_scene(&options.scene)?;
-    options.parameters.apply(&mut scene);
+    options.quality.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
     let root = root()?;

@@ -128,8 +128,8 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     // Read the scene, in its own size and in that of the measured pictures.
     let mut full = load_scene(file)?;
     let as_written = full.quality;
-    options.parameters.apply(&mut full);
-    let small = if options.parameters.names_a_size() { full.clone() } else { shrunk(&full) };
+    options.quality.apply(&mut full);
+    let small = if options.quality.names_a_size() { full.clone() } else { shrunk(&full) };
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
@@ -161,7 +161,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         _ => None,
     };
     let advice = advice.map(|advice| {
-        let size = options.parameters.names_a_size().then_some((full.film.width, full.film.height));
+        let size = options.quality.names_a_size().then_some((full.film.width, full.film.height));
         Advice { command: command_for(file, &as_written, &advice, size), ..advice }
     });
     // Measure the ray/triangle tests, if that is possible here.

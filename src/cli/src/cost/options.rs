@@ -3,7 +3,7 @@
 use super::ladder::Parameter;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::Choice;
-use crate::quality_options::{Knobs, Threads};
+use crate::quality_options::{QualityOptions, Threads};
 use std::path::PathBuf;
 
 /// `raykata cost`.
@@ -60,7 +60,7 @@ pub static SPEC: Spec = Spec {
         ],
         Choice::OPTIONS,
         Threads::OPTIONS,
-        Knobs::OPTIONS,
+        QualityOptions::OPTIONS,
     ],
 };
 
@@ -77,7 +77,7 @@ pub struct Options {
     pub(super) rounds: u32,
     pub(super) threads: Threads,
     pub(super) seed: u64,
-    pub(super) parameters: Knobs,
+    pub(super) quality: QualityOptions,
     pub(super) out: Option<PathBuf>,
 }
 
@@ -105,7 +105,7 @@ impl Options {
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
-            parameters: Knobs::read(given)?,
+            quality: QualityOptions::read(given)?,
             out: given.path("--out"),
         })
     }

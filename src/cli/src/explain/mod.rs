@@ -6,7 +6,7 @@ mod why;
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::Knobs;
+use crate::quality_options::QualityOptions;
 use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
 use anyhow::{Context, Result};
 use raykata::count::Counts;
@@ -35,7 +35,7 @@ pub static SPEC: Spec = Spec {
             ),
         ],
         Choice::OPTIONS,
-        Knobs::OPTIONS,
+        QualityOptions::OPTIONS,
     ],
 };
 
@@ -44,7 +44,7 @@ pub struct Options {
     scene: PathBuf,
     kit: Choice,
     rounds: u32,
-    parameters: Knobs,
+    quality: QualityOptions,
     subsets: bool,
 }
 
@@ -55,7 +55,7 @@ impl Options {
             scene: given.required(0)?.into(),
             kit: Choice::read(given)?,
             rounds: given.number("--rounds", 1..=1000)?.unwrap_or(5),
-            parameters: Knobs::read(given)?,
+            quality: QualityOptions::read(given)?,
             subsets: given.has("--subsets"),
         })
     }
@@ -77,7 +77,7 @@ impl Explained<'_> {
 /// Analyses the scene, measures its effects, and prints the report.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene)?;
-    options.parameters.apply(&mut scene);
+    options.quality.apply(&mut scene);
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = &*source.fresh();

@@ -48,16 +48,16 @@ fn two_runs_have_the_same_errors_and_counts() {
         assert!(output.status.success(), "{}", said(&output));
         (said(&output), without_times(&folder.path().join(out)))
     };
-    let knobs = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
-    let (told, one) = run("one", &knobs);
-    let (_, other) = run("other", &[&knobs[..], &["--threads", "1"]].concat());
+    let parameters = ["--parameter", "samples,sampler,light-samples", "--reference", "128"];
+    let (text, one) = run("one", &parameters);
+    let (_, other) = run("other", &[&parameters[..], &["--threads", "1"]].concat());
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
     assert!(
-        told.contains("glossy samples: not offered, because no rough surface reflects or transmits light"),
-        "{told}"
+        text.contains("glossy samples: not offered, because no rough surface reflects or transmits light"),
+        "{text}"
     );
-    assert!(told.contains("(the scene's)"), "{told}");
+    assert!(text.contains("(the scene's)"), "{text}");
 
     let points = one.0["points"].as_array().unwrap();
     let errors: Vec<f64> = points.iter().map(|point| point["rmse"][0].as_f64().unwrap()).collect();
@@ -163,9 +163,9 @@ fn what_is_stopped_leaves_a_report() {
     lines.find(|line| line.starts_with("its own error")).expect("it has begun");
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
-    let told: Vec<String> = lines.collect();
+    let text: Vec<String> = lines.collect();
     assert_eq!(child.wait().unwrap().code(), Some(1));
-    assert!(told.iter().any(|line| line.starts_with("stopped before the end")), "{told:?}");
+    assert!(text.iter().any(|line| line.starts_with("stopped before the end")), "{text:?}");
     let json = fs::read(folder.path().join("out/stage1-cost/cost.json")).unwrap();
     let json: Value = serde_json::from_slice(&json).unwrap();
     assert_eq!(json["partial"], true);

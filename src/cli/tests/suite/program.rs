@@ -87,7 +87,7 @@ fn the_reference_has_all_points() {
 }
 
 #[test]
-fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_told() {
+fn one_stage_can_be_checked_and_a_stage_that_is_not_there_is_reported() {
     let said = printed(&raykata(&["check", "1", "--kit", "solutions"])).0;
     assert!(said.contains("stage  1 ·") && !said.contains("stage  2 ·"), "{said}");
     assert_eq!(said, printed(&raykata(&["check", "stage1", "--kit", "solutions"])).0);

@@ -160,12 +160,12 @@ impl Grader {
             // Refuse the file if findings remain, and report the first ones.
             if !against.is_empty() {
                 let more = against.len().saturating_sub(MOST_FINDINGS);
-                let mut told = against[..against.len() - more].join("\n");
+                let mut findings = against[..against.len() - more].join("\n");
                 if more > 0 {
-                    told += &format!("\nand {more} more");
+                    findings += &format!("\nand {more} more");
                 }
-                remarks.push(Remark { file: name.clone(), what: format!("was refused:\n{told}") });
-                lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{told}")));
+                remarks.push(Remark { file: name.clone(), what: format!("was refused:\n{findings}") });
+                lost.insert(name.clone(), (Outcome::Refused, format!("refused:\n{findings}")));
             }
         }
         Ok(Read { refused: lost, may_remember })

@@ -30,16 +30,16 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let path = root.join("solutions/src").join(&name);
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        let mut told = BTreeSet::new();
+        let mut known = BTreeSet::new();
         for block in sync::blocks(&text, &path)? {
             if let Block::Answer(answer, _) = block {
                 let answer = answer.into_iter().filter(|line| !line.trim_start().starts_with("// <"));
                 let tells = |line: &String| !public.contains(line.as_str()) && !line.contains(CANARY);
-                told.extend(answer.flat_map(lines).filter(tells));
+                known.extend(answer.flat_map(lines).filter(tells));
             }
         }
-        if !told.is_empty() {
-            answers.insert(name, told);
+        if !known.is_empty() {
+            answers.insert(name, known);
         }
     }
     Ok(answers)

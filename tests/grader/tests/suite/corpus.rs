@@ -82,28 +82,28 @@ fn every_check_can_fail() {
 
 #[test]
 fn nine_of_ten_messages_say_what_the_mistake_looks_like() {
-    let (mut told, mut diagnosed) = (BTreeSet::new(), 0);
+    let (mut known, mut diagnosed) = (BTreeSet::new(), 0);
     for entry in entries() {
         if entry.claim != Claim::Right {
             let file = message_file(&root(), &entry);
             let message = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{entry}: {error}"));
             diagnosed += usize::from(message.contains("looks like:"));
-            told.insert(format!("stage{}/{}.txt", entry.stage, entry.name));
+            known.insert(format!("stage{}/{}.txt", entry.stage, entry.name));
         }
     }
-    assert!(diagnosed * 10 >= told.len() * 9, "{diagnosed} of {}", told.len());
+    assert!(diagnosed * 10 >= known.len() * 9, "{diagnosed} of {}", known.len());
     for stage in std::fs::read_dir(root().join("tests/corpus/messages")).expect("the folder of messages") {
         let stage = stage.expect("a folder");
         for file in std::fs::read_dir(stage.path()).expect("messages of a stage") {
             let (folder, file) = (stage.file_name(), file.expect("a file").file_name());
             let name = format!("{}/{}", folder.to_string_lossy(), file.to_string_lossy());
-            assert!(told.contains(&name), "tests/corpus/messages/{name} belongs to no entry");
+            assert!(known.contains(&name), "tests/corpus/messages/{name} belongs to no entry");
         }
     }
 }
 
 #[test]
-fn an_entry_that_does_not_exist_is_told() {
+fn an_entry_that_does_not_exist_is_reported() {
     let output = Command::new(env!("CARGO_BIN_EXE_grader"))
         .current_dir(root())
         .args(["corpus", "no_such_entry"])

@@ -19,3 +19,4 @@ mod sandbox;
 #[cfg(target_os = "linux")]
 mod sandboxed_workers;
 mod sync;
+mod words;

@@ -50,7 +50,7 @@ fn an_honest_worker_passes_every_check_in_a_sandbox() {
 }
 
 #[test]
-fn each_death_is_told_in_words_and_the_next_call_is_answered() {
+fn each_death_is_reported_and_the_next_call_is_answered() {
     let door = door();
     assert!(crash(&door, -2.0).contains("exit status: 0"));
     assert_eq!(ask(&door, 10.0), Ok(vec![Some(10.0)]));

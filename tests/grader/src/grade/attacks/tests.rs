@@ -189,7 +189,7 @@ fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given
 }
 
 #[test]
-fn words_are_looked_for_in_everything_that_is_told() {
+fn words_are_looked_for_in_every_message() {
     let wrong = graded(|_| Outcome::Wrong);
     assert_eq!(message("earned = \"none\"\nsays = [\"it is wrong\", \"was   ignored\"]", &wrong), [""; 0]);
     let missing =

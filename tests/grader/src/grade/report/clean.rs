@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_is_told() {
+    fn what_is_cut_is_reported() {
         assert_eq!(clean(&"é".repeat(50), 60), format!("{}\n[… 70 more bytes were cut]", "é".repeat(15)));
         assert_eq!(clean("äöü", 3), "ä");
         assert_eq!(clean_line(&"x".repeat(100), 30), "[… 100 more bytes were cut]");

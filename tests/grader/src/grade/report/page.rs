@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stages_are_told_briefly() {
+    fn stages_are_listed_briefly() {
         assert_eq!(stages(&[1, 2, 3, 4]), "stages 1–4");
         assert_eq!(stages(&[1, 3]), "stages 1, 3");
         assert_eq!(stages(&[7]), "stage 7");

@@ -148,7 +148,7 @@ fn bombs_and_rubbish_are_trouble_and_nothing_worse() {
 }
 
 #[test]
-fn submissions_are_found_by_name_and_twins_are_told_apart() {
+fn submissions_are_found_by_name_and_twins_are_distinguished() {
     let folder = tempfile::tempdir().unwrap();
     write(
         folder.path(),
