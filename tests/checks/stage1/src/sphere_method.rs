@@ -101,7 +101,7 @@ pub(super) fn sphere_diagnosis(
             "you return the t of the point nearest to the centre: half the chord is missing"
         }
         (None, Expected::Hit { .. }, Some(roots)) if roots.near < 0.0 => {
-            "the ray starts inside: the near root is behind it, and the far one counts (t_ca < 0 is no miss)"
+            "the ray starts inside: the near root is behind it, and the far one counts (t_ca < 0 is not a miss)"
         }
         (_, Expected::Hit { .. }, _)
             if f64::from((query.ray.origin - query.sphere.center).length())
