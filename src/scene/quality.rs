@@ -143,7 +143,7 @@ pub enum Precision {
     /// reference uses double precision in any case.
     #[default]
     Single,
-    /// Double precision, 53 bits, whatever the [`TriangleMethod`] is.
+    /// Double precision, 53 bits, with any [`TriangleMethod`].
     Double,
 }
 

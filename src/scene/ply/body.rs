@@ -152,7 +152,7 @@ impl<'a> Body<'a> {
     }
 
     /// Skips the next word, if there is one. Line ends count as blanks: several vertices in one row and a
-    /// vertex over several rows are read alike.
+    /// vertex over several rows are read in the same way.
     fn next_word(&mut self) -> bool {
         let rest = &self.bytes[self.at..];
         let Some(blanks) = rest.iter().position(|byte| !byte.is_ascii_whitespace()) else { return false };

@@ -6,7 +6,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Whether `line` is `name: Type,` and no more.
+/// Whether `line` is `name: Type,` and no more: a parameter or a field.
 fn is_parameter(line: &str) -> bool {
     let name = |text: &str| text.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
     line.strip_suffix(',')
@@ -25,7 +25,7 @@ fn no_line_of_an_answer_is_in_an_exercise() {
             match line {
                 "// <solution>" => inside = true,
                 "// </solution>" => inside = false,
-                // Skip short lines, such as brackets, and parameters. They are not answers.
+                // Skip short lines, such as brackets, and parameters and fields. They are not answers.
                 _ if inside && line.len() > 12 && !is_parameter(line) && !line.starts_with("// <stub>") => {
                     let left = exercise.stub.lines().any(|stub| stub.trim() == line);
                     assert!(!left, "{}: {line}", exercise.path.display());
