@@ -12,10 +12,15 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Linked<F>(pub F);
 
-/// What the crate of a student provides: its functions as a [`Kit`], compiled in that crate, once.
+/// What the crate of a student provides: its functions as a [`Kit`], and the renderer that uses them.
 pub trait StudentKit: StudentFunctions + Copy + Send {
     /// The functions as a [`Kit`] that can be shared by threads.
-    fn door(self) -> Arc<dyn Kit + Send + Sync>;
+    ///
+    /// It is compiled where it is called, in the worker and in the test of a stage, and not again with every
+    /// edit of the functions.
+    fn door(self) -> Arc<dyn Kit + Send + Sync> {
+        Arc::new(Linked(self))
+    }
 
     /// The renderer that uses the functions; `None` if the crate was built without the feature `frames`.
     fn renderer() -> Option<&'static dyn Frames>;

@@ -161,11 +161,6 @@ macro_rules! student_kit {
         }
 
         impl $crate::kit::StudentKit for Kit {
-            // This function is not generic, so all code behind it is compiled in this crate and not in its users.
-            fn door(self) -> ::std::sync::Arc<dyn $crate::kit::Kit + Send + Sync> {
-                ::std::sync::Arc::new($crate::kit::Linked(self))
-            }
-
             #[cfg(feature = "frames")]
             fn renderer() -> Option<&'static dyn $crate::kit::Frames> {
                 Some(&$crate::tracer::Renderer::<Kit>::NEW)
