@@ -3,7 +3,9 @@
 pub mod stage10_stability;
 pub mod stage1_shapes;
 pub mod stage2_triangles;
-pub mod stage3_bvh;
+pub mod stage3_boxes;
+pub mod stage3_build;
+pub mod stage3_traversal;
 pub mod stage4_shading;
 pub mod stage5_recursion;
 pub mod stage6_distribution;

@@ -38,6 +38,8 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
 /// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
 /// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
 ///
+/// Your pictures use this function for triangles as soon as it is written; before, they use `triangle_choice` of stage 2.
+///
 /// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("transform the triangle to the ray's coordinates, and decide each edge by its two ends only")
@@ -87,8 +89,7 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
     todo!("scale by the largest coordinate first")
 }
 
-/// Intersects a ray with a triangle in double precision, by Cramer's rule as in stage 2:
-/// `β (a - b) + γ (a - c) + t d = a - o`.
+/// Intersects a ray with a triangle in double precision: solves `o + t d = a + β (b - a) + γ (c - a)`.
 ///
 /// Every number is an `f64`, and only the three results are rounded to `f32`. Any method is accepted. Points on edges
 /// belong to the triangle: `β >= 0`, `γ >= 0` and `β + γ <= 1`. A hit counts if the range of the ray contains the
@@ -98,9 +99,9 @@ pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
 /// Pitfall: a number that was rounded before its conversion stays rounded, so `(a - b).as_dvec3()` gains nothing. Do
 /// not compare the determinant with an epsilon, in any precision, because it grows with the cube of the size.
 ///
-/// Slide: "Cramer's Rule".
+/// Slide: "Cramer's Rule". The reference is the method of Möller and Trumbore, as `triangle_choice` of stage 2.
 pub fn triangle_in_double(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
-    todo!("convert all five vectors first, then Cramer's rule; round t, β and γ last")
+    todo!("convert all five vectors first, then solve for t, β and γ; round them last")
 }
 
 /// Intersects a ray with a sphere in double precision: the `t` of the nearest hit within the range of the ray, rounded

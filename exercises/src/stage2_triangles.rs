@@ -13,7 +13,7 @@
 //! without area, a direction of 0, and a NaN anywhere. If the sizes overflow single precision, a hit and a miss are
 //! both right, but no part of a hit is NaN or infinite.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::Vec3;
 use raykata::bvh::{PrimitiveHit, Probe};
 use raykata::kit::{GramScalars, TriangleHit};
 use raykata::mesh::Mesh;
@@ -61,15 +61,17 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     todo!("find t from the plane of the triangle, then β and γ from the Gram scalars")
 }
 
-/// Ray-triangle intersection by a method of your choice. Your pictures use this function.
+/// Ray-triangle intersection by a method of your choice. Your pictures use this function until you write `watertight`
+/// in stage 10.
 ///
 /// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
 /// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
 /// No size is too small. The full contract is at the top of this file.
 ///
-/// The reference is watertight: a ray that is aimed at a shared edge always hits at least one of the two triangles
-/// (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The checks of this stage do not demand
-/// that.
+/// Pitfall: many published versions compare the determinant with an epsilon, which loses small triangles, or reject a
+/// negative determinant, which loses all hits from behind.
+///
+/// The reference is the method of Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
 }
@@ -109,10 +111,10 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
 }
 
-/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
-/// at the corners a, b and c. The result is not normalized.
-pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
-    todo!("return the sum of the three corners, each times its weight")
+/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `barycentric` = `(α, β, γ)` and the values A, B and
+/// C at the corners a, b and c. The result is not normalized.
+pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
+    todo!("return the sum of the three values, each times its barycentric coordinate")
 }
 
 /// The unit normal `u × v / |u × v|` of a triangle, with `u = b - a` and `v = c - a`.

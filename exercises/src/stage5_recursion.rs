@@ -98,9 +98,9 @@ pub fn scatter(
     todo!("compute the weights of both rays, and return the rays that add something")
 }
 
-/// The ray that follows the secondary ray `child` from a surface.
+/// The ray that starts a secondary ray at a surface.
 ///
-/// It has the direction `child.direction` and no end: `t_max` is infinite. A reflected ray starts on the side of
+/// It has the direction `secondary.direction` and no end: `t_max` is infinite. A reflected ray starts on the side of
 /// `surface.geometric_normal`, and a refracted ray on the other side. The distance of its start from the point along
 /// the normal n is at least `error·|n|`, and at most `4 error·|n|` plus 64 rounding steps of the largest coordinate.
 ///
@@ -108,6 +108,6 @@ pub fn scatter(
 /// there hit their own surface (self-intersection). Move the point by its error, as for shadow rays.
 ///
 /// Slide "Algorithm (max depth)".
-pub fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray {
+pub fn spawn_ray(surface: &Surface, secondary: &SecondaryRay) -> Ray {
     todo!("start off the surface, on the side to which the ray goes")
 }

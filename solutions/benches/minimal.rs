@@ -18,7 +18,7 @@ use raykata::ray::Ray;
 use raykata::scene::{Scene, load};
 use raykata::shape::{Shape, Triangle};
 use raykata::world::camera_for;
-use solutions::{stage2_triangles, stage3_bvh, stage4_shading};
+use solutions::{stage3_boxes, stage3_build, stage3_traversal, stage4_shading, stage10_stability};
 use std::path::Path;
 use std::time::Instant;
 
@@ -96,8 +96,8 @@ impl<'a> Caster<'a> {
                 triangles.push(Triangle { a, b, c });
             }
         }
-        let bounds: Vec<Aabb> = triangles.iter().map(stage3_bvh::triangle_bounds).collect();
-        let bvh = stage3_bvh::build(&bounds, scene.quality.split, scene.quality.leaf_size as usize);
+        let bounds: Vec<Aabb> = triangles.iter().map(stage3_boxes::triangle_bounds).collect();
+        let bvh = stage3_build::build(&bounds, scene.quality.split, scene.quality.leaf_size as usize);
         let light = |light: &Light| match light.emitter {
             Emitter::Point { position, .. } => (position, light.radiance(), light.shadows),
             _ => panic!("a point light"),
@@ -128,7 +128,7 @@ impl<'a> Caster<'a> {
 
     fn color(&self, ray: &Ray, rays: &mut u64) -> Vec3 {
         *rays += 1;
-        let Some(hit) = stage3_bvh::closest_hit(&self.bvh, &mut self.probe(ray), ray) else {
+        let Some(hit) = stage3_traversal::closest_hit(&self.bvh, &mut self.probe(ray), ray) else {
             return self.scene.background;
         };
         let triangle = &self.triangles[hit.primitive as usize];
@@ -141,7 +141,7 @@ impl<'a> Caster<'a> {
             let Some(shadow_ray) = stage4_shading::shadow_ray(&surface, &light) else { continue };
             if shadows {
                 *rays += 1;
-                if stage3_bvh::any_hit(&self.bvh, &mut self.probe(&shadow_ray), &shadow_ray) {
+                if stage3_traversal::any_hit(&self.bvh, &mut self.probe(&shadow_ray), &shadow_ray) {
                     continue;
                 }
             }
@@ -171,19 +171,19 @@ impl Probe for Triangles<'_> {
     #[inline]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, self.inverse_direction, bounds).map(|(t_enter, _)| t_enter)
+        stage3_boxes::slab(ray, self.inverse_direction, bounds).map(|(t_enter, _)| t_enter)
     }
 
     #[inline]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
-        stage2_triangles::triangle_choice(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
+        stage10_stability::watertight(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
     }
 }
 
 /// The point where the ray hits the triangle, with its normals on the viewer's side.
 fn surface(ray: &Ray, triangle: &Triangle) -> Surface {
     let Triangle { a, b, c } = *triangle;
-    let hit = stage2_triangles::triangle_choice(ray, triangle).expect("it was hit");
+    let hit = stage10_stability::watertight(ray, triangle).expect("it was hit");
     let weights = [1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma];
     let terms = [weights[0] * a, weights[1] * b, weights[2] * c];
     let normal = (b - a).cross(c - a).normalize();

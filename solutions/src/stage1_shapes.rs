@@ -45,18 +45,18 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     let b = -f.dot(ray.direction);
     let c = f.length_squared() - radius * radius;
 
-    // Compute the discriminant without cancellation: b² - a c = a (r² - |f⊥|²), where f⊥ is the part of f at right
-    // angles to the ray. The variable holds it without the factor a.
+    // Compute the discriminant without cancellation: b² - a c = a h², where f⊥ is the part of f at right angles to the
+    // ray, and h² = r² - |f⊥|² is the squared half chord.
     let f_perpendicular = f + (b / a) * ray.direction;
-    let discriminant = radius * radius - f_perpendicular.length_squared();
+    let half_chord_squared = radius * radius - f_perpendicular.length_squared();
     // Reject rays that pass beside the sphere. NaN makes the comparison false, so it is rejected as well.
-    if !(discriminant >= 0.0 && radius > 0.0) {
+    if !(half_chord_squared >= 0.0 && radius > 0.0) {
         return None;
     }
 
     // Compute one root as a sum of two numbers of the same sign, which does not cancel. The product of both roots is
     // c / a, which gives the other root.
-    let q = b + (a * discriminant).sqrt().copysign(b);
+    let q = b + (a * half_chord_squared).sqrt().copysign(b);
     // Return the nearest root in the ray's range.
     nearest_root([c / q, q / a], ray)
     // <stub> todo!("solve the quadratic for t and return the nearest root that counts")

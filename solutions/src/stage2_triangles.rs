@@ -13,7 +13,7 @@
 //! without area, a direction of 0, and a NaN anywhere. If the sizes overflow single precision, a hit and a miss are
 //! both right, but no part of a hit is NaN or infinite.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::Vec3;
 use raykata::bvh::{PrimitiveHit, Probe};
 use raykata::kit::{GramScalars, TriangleHit};
 use raykata::mesh::Mesh;
@@ -109,73 +109,42 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     // </solution>
 }
 
-/// Ray-triangle intersection by a method of your choice. Your pictures use this function.
+/// Ray-triangle intersection by a method of your choice. Your pictures use this function until you write `watertight`
+/// in stage 10.
 ///
 /// Points on an edge belong to the triangle, and both of its sides can be hit. `t` counts lengths of `direction`, and a
 /// hit counts if `ray.contains(t)`. The result is `None` for a ray along the plane, a triangle without area, and a NaN.
 /// No size is too small. The full contract is at the top of this file.
 ///
-/// The reference is watertight: a ray that is aimed at a shared edge always hits at least one of the two triangles
-/// (Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). The checks of this stage do not demand
-/// that.
+/// Pitfall: many published versions compare the determinant with an epsilon, which loses small triangles, or reject a
+/// negative determinant, which loses all hits from behind.
+///
+/// The reference is the method of Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997.
 pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // Convert everything to double precision, which holds products of sizes from 1e-38 to 1e38 without overflow or
-    // underflow. In single precision neighbouring triangles also agree, but rounding may give a ray to the neighbour
-    // of the triangle that it hits, and the ray may miss the neighbour's box: in a hierarchy 7 of 10⁸ rays at edges
-    // leaked out of meshes. Double precision makes a plain frame of 57,600 triangles a tenth slower.
-    let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
-
-    // Transform the triangle: the ray's origin to zero, the ray's longest axis to z, and a shear that turns the ray
-    // into (0 0 z).
-    let z = longest_axis(ray.direction);
-    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
-    let shear = DVec2::new(d[x], d[y]) / d[z];
-    let project = |corner: DVec3| {
-        let corner = corner - o;
-        DVec2::new(corner[x], corner[y]) - shear * corner[z]
-    };
-    let [p, q, r] = [a, b, c].map(project);
-
-    // Compute three edge functions. The sign of each tells on which side of the edge the ray passes. Two triangles
-    // compute a shared edge from the same two points, and rounding is monotone, so it cannot turn "inside" into
-    // "outside".
-    let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
-    // Reject the ray if two signs differ or if the projected triangle has no area.
-    let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
-    let sum = alpha + beta + gamma;
-    if (least < 0.0 && most > 0.0) || sum == 0.0 || sum.is_nan() {
+    // Solve o + t d = a + β edge1 + γ edge2 by Cramer's rule, with scalar triple products as determinants.
+    let edge1 = triangle.b - triangle.a;
+    let edge2 = triangle.c - triangle.a;
+    // Compute the determinant, and reject rays along the plane and triangles without area.
+    let pvec = ray.direction.cross(edge2);
+    let determinant = edge1.dot(pvec);
+    if determinant == 0.0 {
         return None;
     }
+    // Compute β from the vector from corner a to the ray's origin.
+    let tvec = ray.origin - triangle.a;
+    let beta = tvec.dot(pvec) / determinant;
+    // Compute γ and t, which share a second cross product.
+    let qvec = tvec.cross(edge1);
+    let gamma = ray.direction.dot(qvec) / determinant;
+    let t = edge2.dot(qvec) / determinant;
 
-    // Compute t from the plane: t = (a - o)·n / d·n. The paper takes t from the sheared z of the corners, which loses
-    // all digits on a needle seen from inside.
-    let normal = (b - a).cross(c - a);
-    let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
-    // Reject hits outside the ray's range. Divide by the sum to get barycentric coordinates.
-    ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
+    // Reject points outside the triangle and hits outside the ray's range. NaN makes each comparison false.
+    let inside = beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0;
+    (inside && ray.contains(t)).then_some(TriangleHit { t, beta, gamma })
     // <stub> todo!("any method that you like: Möller–Trumbore, Plücker, watertight …")
     // </solution>
 }
-
-// <solution>
-/// Twice the signed area of the triangle from the origin over `p` to `q`.
-fn edge(p: DVec2, q: DVec2) -> f64 {
-    p.x * q.y - p.y * q.x
-}
-
-/// The axis along which `v` is longest.
-pub fn longest_axis(v: Vec3) -> usize {
-    let v = v.abs();
-    if v.x >= v.y && v.x >= v.z {
-        0
-    } else if v.y >= v.z {
-        1
-    } else {
-        2
-    }
-}
-// </solution>
 
 /// Inside test I: the ray's origin and each side of the triangle span a plane, and `point` is inside if it lies on
 /// the same side of all three planes.
@@ -228,20 +197,20 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     // <solution>
     let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
     let area = |from: Vec3, to: Vec3| (from - point).cross(to - point).dot(normal);
-    let weights =
+    let barycentric =
         Vec3::new(area(triangle.b, triangle.c), area(triangle.c, triangle.a), area(triangle.a, triangle.b))
             / normal.length_squared();
-    weights.cmpge(Vec3::ZERO).all().then_some(weights)
+    barycentric.cmpge(Vec3::ZERO).all().then_some(barycentric)
     // <stub> todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
     // </solution>
 }
 
-/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `weights` `(α, β, γ)` and the values A, B and C
-/// at the corners a, b and c. The result is not normalized.
-pub fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3 {
+/// Interpolation with barycentric coordinates: `α A + β B + γ C` for `barycentric` = `(α, β, γ)` and the values A, B and
+/// C at the corners a, b and c. The result is not normalized.
+pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
     // <solution>
-    weights.x * corners[0] + weights.y * corners[1] + weights.z * corners[2]
-    // <stub> todo!("return the sum of the three corners, each times its weight")
+    barycentric.x * corners[0] + barycentric.y * corners[1] + barycentric.z * corners[2]
+    // <stub> todo!("return the sum of the three values, each times its barycentric coordinate")
     // </solution>
 }
 

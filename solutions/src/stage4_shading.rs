@@ -61,8 +61,8 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
     // <solution>
     let cos_theta = normal.dot(to_light);
-    let mirrored = 2.0 * cos_theta * normal - to_light;
-    let cos_phi = mirrored.dot(to_viewer);
+    let reflected = 2.0 * cos_theta * normal - to_light;
+    let cos_phi = reflected.dot(to_viewer);
     if cos_theta > 0.0 && cos_phi > 0.0 { cos_phi.powf(exponent) } else { 0.0 }
     // <stub> todo!("reflect the light by the normal, and raise the cosine with the viewer to the exponent")
     // </solution>
@@ -91,7 +91,7 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
         return None;
     }
     // Start off the surface and end before the light.
-    let origin = off_surface(surface);
+    let origin = off_surface(surface.point, surface.error, surface.geometric_normal);
     Some(Ray::new(origin, light.direction).with_range(0.0, light.distance * BEFORE_THE_LIGHT))
     // <stub> todo!("return None for a light behind the surface, otherwise a ray that excludes both ends")
     // </solution>
@@ -103,24 +103,19 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
 /// to hide an object.
 const BEFORE_THE_LIGHT: f32 = 0.9999;
 
-/// The origin of a ray that leaves the surface: a point on the viewer's side, as close to the surface as the rounding
-/// error of the point allows (Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section 6.8.6).
-pub fn off_surface(surface: &Surface) -> Vec3 {
-    // Stage 10 repeats this as its exercise `offset_origin`, because shadows are needed before stage 10.
+/// The origin of a ray that leaves the surface on the side of the unit normal `side`, as close to the surface as the
+/// rounding error of `point` allows (Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section
+/// 6.8.6).
+pub fn off_surface(point: Vec3, error: Vec3, side: Vec3) -> Vec3 {
     // Move along the normal by the bound on the error: the true surface is at most this far from the point.
-    let normal = surface.geometric_normal;
-    let origin = surface.point + surface.error.dot(normal.abs()) * normal;
-
+    let origin = point + error.dot(side.abs()) * side;
     // Move each coordinate one float further outwards, because the sum is rounded as well.
-    let mut outside = origin;
-    for axis in 0..3 {
-        if normal[axis] > 0.0 {
-            outside[axis] = origin[axis].next_up();
-        } else if normal[axis] < 0.0 {
-            outside[axis] = origin[axis].next_down();
-        }
-    }
-    outside
+    let outwards = |axis: usize| match side[axis] {
+        along if along > 0.0 => origin[axis].next_up(),
+        along if along < 0.0 => origin[axis].next_down(),
+        _ => origin[axis],
+    };
+    Vec3::new(outwards(0), outwards(1), outwards(2))
 }
 // </solution>
 

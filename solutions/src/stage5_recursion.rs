@@ -46,17 +46,18 @@ pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
 pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> {
     // <solution>
     let ratio = n1 / n2;
-    // Split direction = sin θ1 m - cos θ1 n, with m along the surface. The product sin θ1 m needs no division.
+    // Compute the part of the refracted ray that is perpendicular to the normal: n1 / n2 times that of `direction`,
+    // because its length is sin θ2 = n1 / n2 sin θ1. This needs no division by sin θ1.
     let cos_1 = -direction.dot(normal);
-    let along = direction + cos_1 * normal;
-    // Multiply the part along the surface by the ratio, and compute cos² θ2 from its length.
-    let along_2 = ratio * along;
-    let cos_2_squared = 1.0 - along_2.length_squared();
+    let r_perpendicular = ratio * (direction + cos_1 * normal);
+    // Compute the part that is parallel to the normal, whose length is cos θ2.
+    let cos_2_squared = 1.0 - r_perpendicular.length_squared();
     if !(cos_2_squared >= 0.0) {
         // This is total internal reflection, or NaN.
         return None;
     }
-    (along_2 - cos_2_squared.sqrt() * normal).try_normalize()
+    let r_parallel = -cos_2_squared.sqrt() * normal;
+    (r_perpendicular + r_parallel).try_normalize()
     // <stub> todo!("bend the part of direction along the surface by n1 / n2; None beyond the critical angle")
     // </solution>
 }
@@ -153,21 +154,21 @@ pub fn scatter(
     let (n1, n2) =
         if entering { (1.0, material.index_of_refraction) } else { (material.index_of_refraction, 1.0) };
     let cos_theta = (-direction.dot(normal)).clamp(0.0, 1.0);
-    let mirrored_share = match material.fresnel {
+    let reflectance = match material.fresnel {
         Fresnel::None => 0.0,
         Fresnel::Schlick => fresnel_schlick(cos_theta, n1, n2),
         Fresnel::Exact => fresnel_exact(cos_theta, n1, n2),
     };
 
     // Compute the weights of both rays.
-    let reflected = weight * (material.mirror + mirrored_share * material.transmission);
-    let transmitted = weight * (1.0 - mirrored_share) * material.transmission;
+    let reflected = weight * (material.mirror + reflectance * material.transmission);
+    let transmitted = weight * (1.0 - reflectance) * material.transmission;
     let counts = |weight: Vec3| weight.max_element() > 0.0 && weight.max_element() >= limits.min_contribution;
 
     // Return the rays whose own weight is large enough.
-    let mut children = Vec::new();
+    let mut rays = Vec::new();
     if counts(reflected) {
-        children.push(SecondaryRay {
+        rays.push(SecondaryRay {
             bounce: Bounce::Reflection,
             direction: reflect(direction, normal),
             weight: reflected,
@@ -176,16 +177,16 @@ pub fn scatter(
     if counts(transmitted)
         && let Some(direction) = refract(direction, normal, n1, n2)
     {
-        children.push(SecondaryRay { bounce: Bounce::Transmission, direction, weight: transmitted });
+        rays.push(SecondaryRay { bounce: Bounce::Transmission, direction, weight: transmitted });
     }
-    children
+    rays
     // <stub> todo!("compute the weights of both rays, and return the rays that add something")
     // </solution>
 }
 
-/// The ray that follows the secondary ray `child` from a surface.
+/// The ray that starts a secondary ray at a surface.
 ///
-/// It has the direction `child.direction` and no end: `t_max` is infinite. A reflected ray starts on the side of
+/// It has the direction `secondary.direction` and no end: `t_max` is infinite. A reflected ray starts on the side of
 /// `surface.geometric_normal`, and a refracted ray on the other side. The distance of its start from the point along
 /// the normal n is at least `error·|n|`, and at most `4 error·|n|` plus 64 rounding steps of the largest coordinate.
 ///
@@ -193,13 +194,13 @@ pub fn scatter(
 /// there hit their own surface (self-intersection). Move the point by its error, as for shadow rays.
 ///
 /// Slide "Algorithm (max depth)".
-pub fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray {
+pub fn spawn_ray(surface: &Surface, secondary: &SecondaryRay) -> Ray {
     // <solution>
-    let side = match child.bounce {
+    let side = match secondary.bounce {
         Bounce::Reflection => surface.geometric_normal,
         Bounce::Transmission => -surface.geometric_normal,
     };
-    Ray::new(off_surface(&Surface { geometric_normal: side, ..*surface }), child.direction)
+    Ray::new(off_surface(surface.point, surface.error, side), secondary.direction)
     // <stub> todo!("start off the surface, on the side to which the ray goes")
     // </solution>
 }

@@ -138,8 +138,8 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
 pub fn lens_ray(camera: &Camera, pinhole: &Ray, lens: &Lens, on_lens: Vec2) -> Ray {
     // <solution>
     // Find the start of the ray, relative to the centre of the lens.
-    let place = 0.5 * lens.aperture * on_lens;
-    let offset = place.x * camera.right + place.y * camera.up;
+    let lens_point = 0.5 * lens.aperture * on_lens;
+    let offset = lens_point.x * camera.right + lens_point.y * camera.up;
     if offset == Vec3::ZERO {
         return *pinhole;
     }
@@ -170,8 +170,8 @@ pub fn sample_rectangle(corner: Vec3, edges: (Vec3, Vec3), u: Vec2) -> Vec3 {
 pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
     // <solution>
     let (x, y) = disk.normal.normalize().any_orthonormal_pair();
-    let place = disk.radius * sample_disk(u);
-    disk.center + place.x * x + place.y * y
+    let point = disk.radius * sample_disk(u);
+    disk.center + point.x * x + point.y * y
     // <stub> todo!("map a point of the unit disk to this disk")
     // </solution>
 }
@@ -190,21 +190,22 @@ pub fn sample_sphere(sphere: &Sphere, from: Vec3, u: Vec2) -> Vec3 {
     let to_center = sphere.center - from;
     let sin_squared = sphere.radius * sphere.radius / to_center.length_squared();
     // Compute 1 - cos θ of the rim. From inside it is 2, up to the direction away from the centre.
-    let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
+    let one_minus_cos_max =
+        if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
     // Choose 1 - cos θ uniformly, because slices of a sphere of equal height have equal area (Archimedes).
-    around(to_center.normalize_or(Vec3::Y), u.x * widest, u.y)
+    around(to_center.normalize_or(Vec3::Y), u.x * one_minus_cos_max, u.y)
     // <stub> todo!("choose 1 - cos θ uniformly between 0 and that of the rim, and any angle around the axis")
     // </solution>
 }
 
 // <solution>
-/// The unit vector at an angle to `axis` whose cosine is `1 - below_one`, turned around `axis` by the fraction `turn`
-/// of a full turn. The sine is computed from `below_one`, because the cosine is imprecise for small angles.
-fn around(axis: Vec3, below_one: f32, turn: f32) -> Vec3 {
-    let sine = (below_one * (2.0 - below_one)).max(0.0).sqrt();
+/// The unit vector at the angle θ to `axis`, turned around `axis` by the fraction `turn` of a full turn. For a small
+/// angle `cos θ` is imprecise, so θ is given as `1 - cos θ`, from which `sin θ` follows without cancellation.
+fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
+    let sin_theta = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
     let (x, y) = axis.any_orthonormal_pair();
-    let (sin_turn, cos_turn) = (TAU * turn).sin_cos();
-    ((1.0 - below_one) * axis + sine * (cos_turn * x + sin_turn * y)).normalize()
+    let (sin_phi, cos_phi) = (TAU * turn).sin_cos();
+    ((1.0 - one_minus_cos) * axis + sin_theta * (cos_phi * x + sin_phi * y)).normalize()
 }
 // </solution>
 
@@ -226,8 +227,8 @@ pub fn sample_phong_lobe(ideal: Vec3, normal: Vec3, roughness: f32, u: Vec2) -> 
     }
     // Choose 1 - cos θ such that cos θ = u^(1 / (n + 1)), and turn by any angle around ideal.
     let exponent = 2.0 / (roughness * roughness) - 2.0;
-    let below_one = -(u.x.ln() / (exponent + 1.0)).exp_m1();
-    let direction = around(ideal, below_one, u.y);
+    let one_minus_cos = -(u.x.ln() / (exponent + 1.0)).exp_m1();
+    let direction = around(ideal, one_minus_cos, u.y);
     // Reflect a direction below the surface back to its side.
     let above = direction.dot(normal);
     if above < 0.0 { direction - 2.0 * above * normal } else { direction }

@@ -305,25 +305,24 @@ pub fn texel(index: i64, size: u32, wrap: Wrap) -> u32 {
 pub fn texture_color(texture: &Texture, uv: Vec2) -> Vec3 {
     // <solution>
     // Replace a coordinate by 0 if it is NaN or infinite, or if its product with the size overflows.
-    let finite = |share: f32, size: f32| if (share * size).is_finite() { share } else { 0.0 };
+    let finite = |coordinate: f32, size: f32| if (coordinate * size).is_finite() { coordinate } else { 0.0 };
     let (width, height) = (texture.width as f32, texture.height as f32);
     // Convert uv to pixels, counted from the centre of the upper left pixel.
     let (x, y) = (finite(uv.x, width) * width - 0.5, (1.0 - finite(uv.y, height)) * height - 0.5);
-    // Split the coordinates into the upper left pixel and the weights of the next column and row.
-    let (left, top) = (x.floor(), y.floor());
-    let (right_share, lower_share) = (x - left, y - top);
+    // Split the coordinates into the upper left pixel and the distances from its centre.
+    let (left, top) = (x.floor() as i64, y.floor() as i64);
+    let (dx, dy) = (x - x.floor(), y - y.floor());
+    let (right, bottom) = (left.saturating_add(1), top.saturating_add(1));
     // Read the pixels through the wrap mode.
     let pixel = |column: i64, row: i64| {
         let column = texel(column, texture.width, texture.wrap) as usize;
         let row = texel(row, texture.height, texture.wrap) as usize;
         texture.pixels[row * texture.width as usize + column]
     };
-    // Interpolate along x in two rows, then along y.
-    let row = |row: i64| {
-        let column = left as i64;
-        pixel(column, row).lerp(pixel(column.saturating_add(1), row), right_share)
-    };
-    row(top as i64).lerp(row((top as i64).saturating_add(1)), lower_share)
+    // Interpolate along x in both rows, then along y.
+    let upper = pixel(left, top).lerp(pixel(right, top), dx);
+    let lower = pixel(left, bottom).lerp(pixel(right, bottom), dx);
+    upper.lerp(lower, dy)
     // <stub> todo!("find the four pixels around uv and interpolate between them")
     // </solution>
 }

@@ -13,6 +13,10 @@ use raykata::graph::{Graph, Placement, Savings};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
+// <solution>
+use crate::stage3_traversal::{keep_closest, nearer};
+// </solution>
+
 /// Transforms a ray from the world to the space of an object, so that each hit has the same `t` in both spaces.
 ///
 /// `to_object` is the inverse transform, from the world to the object. The origin is transformed as a point and the
@@ -148,12 +152,12 @@ pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
     // Compare the distance of the line from the centre with the radius. The line is closest to the centre at t = b / a,
     // and the square of this distance is |to_center × direction|² / a.
     let (a, b) = (direction.length_squared(), to_center.dot(direction));
-    let reach = a * radius * radius - to_center.cross(direction).length_squared();
-    if !(reach >= 0.0) {
+    let discriminant = a * radius * radius - to_center.cross(direction).length_squared();
+    if !(discriminant >= 0.0) {
         return None;
     }
     // Compute both roots, widen the interval by the rounding errors, and clamp it to the ray's range.
-    let (enter, leave) = ((b - reach.sqrt()) / a, (b + reach.sqrt()) / a);
+    let (enter, leave) = ((b - discriminant.sqrt()) / a, (b + discriminant.sqrt()) / a);
     let enter = ((enter - ROOM * enter.abs()) as f32).max(ray.t_min);
     let leave = ((leave + ROOM * leave.abs()) as f32).min(ray.t_max);
     (enter <= leave).then_some(enter)
@@ -162,10 +166,10 @@ pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
 }
 
 // <solution>
-/// The relative widening of the interval in a sphere. A search compares the entry with the `t` of hits, which has other
-/// rounding errors. With an entry four rounding errors earlier, the search does not skip a sphere that contains a hit at
-/// exactly the best `t`.
-const ROOM: f64 = 4.0 * f32::EPSILON as f64;
+/// The relative widening of the interval in a sphere: eight times the error `u = 2⁻²⁴` of one rounding. A search compares
+/// the entry with the `t` of hits, which has other rounding errors. With this room it does not skip a sphere that contains
+/// a hit at exactly the best `t`.
+const ROOM: f64 = 8.0 * (f32::EPSILON as f64) / 2.0;
 // </solution>
 
 /// Finds the closest hit of `ray` in a scene graph: tests a node's own primitives first, then visits its children. Node
@@ -209,6 +213,12 @@ struct GraphSearch<'a> {
     closest: Option<PrimitiveHit>,
 }
 
+/// A node that the ray enters at `t`.
+struct Entered {
+    t: f32,
+    node: u32,
+}
+
 impl GraphSearch<'_> {
     /// Where the ray enters a node; without `volumes` it enters every node at its start.
     fn enter(&self, node: u32, probe: &mut impl Probe) -> Option<f32> {
@@ -221,24 +231,23 @@ impl GraphSearch<'_> {
         let node = &self.graph.nodes[node as usize];
         for &primitive in &node.primitives {
             let Some(t) = probe.hit(primitive, &self.ray) else { continue };
-            if self.closest.is_none_or(|best| (t, primitive) < (best.t, best.primitive)) {
-                self.closest = Some(PrimitiveHit { t, primitive });
-            }
+            let hit = PrimitiveHit { t, primitive };
             if self.savings.skip {
-                // Set t_max one float above t, so that a primitive at exactly the same t is still reported.
-                self.ray.t_max = t.next_up().min(self.ray.t_max);
+                keep_closest(&mut self.closest, &mut self.ray, hit);
+            } else {
+                self.closest = nearer(self.closest, Some(hit));
             }
         }
         // Collect the children that the ray enters, and sort them by their entry.
-        let mut entered: Vec<(f32, u32)> =
-            node.children.iter().filter_map(|&child| Some((self.enter(child, probe)?, child))).collect();
+        let enter = |&child: &u32| Some(Entered { t: self.enter(child, probe)?, node: child });
+        let mut entered: Vec<Entered> = node.children.iter().filter_map(enter).collect();
         if self.savings.sort {
-            entered.sort_by(|first, second| first.0.total_cmp(&second.0));
+            entered.sort_by(|first, second| first.t.total_cmp(&second.t));
         }
-        for (enter, child) in entered {
+        for child in entered {
             // Skip a child that begins beyond the closest hit, which an earlier child may have changed.
-            if enter < self.ray.t_max {
-                self.node(child, probe);
+            if child.t < self.ray.t_max {
+                self.node(child.node, probe);
             }
         }
     }

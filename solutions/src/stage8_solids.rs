@@ -191,16 +191,19 @@ pub fn cone(ray: &Ray, cone: &Cone) -> Option<SolidHit> {
     }
     // Choose the interval in which the line lies in this cone.
     let (first, second) = roots(a, b, c, discriminant.max(0.0).sqrt());
-    let (enter, leave) = match () {
-        () if a > 0.0 => (first, second),
+    let (enter, leave) = if a > 0.0 {
+        (first, second)
+    } else if a < 0.0 {
         // A ray steeper than the side enters this cone at the larger root, or leaves it at the smaller one.
-        () if a < 0.0 && rate > 0.0 => (second, f64::INFINITY),
-        () if a < 0.0 => (f64::NEG_INFINITY, first),
+        if rate > 0.0 { (second, f64::INFINITY) } else { (f64::NEG_INFINITY, first) }
+    } else if b != 0.0 {
         // For a ray parallel to the side, 2 b t + c ≤ 0 remains.
-        () if b > 0.0 => (f64::NEG_INFINITY, -c / (2.0 * b)),
-        () if b < 0.0 => (-c / (2.0 * b), f64::INFINITY),
-        () if c <= 0.0 => (f64::NEG_INFINITY, f64::INFINITY),
-        () => return None,
+        let root = -c / (2.0 * b);
+        if b > 0.0 { (f64::NEG_INFINITY, root) } else { (root, f64::INFINITY) }
+    } else if c <= 0.0 {
+        (f64::NEG_INFINITY, f64::INFINITY)
+    } else {
+        return None;
     };
     // Compute the normal: half the gradient of |x × A|² - k (x·A)², or -axis at the apex, where the gradient is 0.
     let outwards = |t: f64| {

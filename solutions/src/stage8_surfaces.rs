@@ -130,36 +130,49 @@ impl Edges {
 /// The new positions of the old vertices.
 fn moved_vertices(mesh: &Mesh, edges: &Edges) -> Vec<Vec3> {
     let n = mesh.positions.len();
-    // For each vertex, count its neighbours and sum their positions: all of them, and those along a border.
-    let (mut around, mut along) = (vec![(0u32, Vec3::ZERO); n], vec![(0u32, Vec3::ZERO); n]);
+    // Collect the one-ring of each vertex, and the neighbours along a border.
+    let (mut one_rings, mut border_rings) = (vec![Ring::default(); n], vec![Ring::default(); n]);
     for edge in &edges.list {
         let [p, q] = edge.ends;
         for (vertex, neighbour) in [(p, q), (q, p)] {
-            let place = mesh.positions[neighbour as usize];
-            let add = |sums: &mut Vec<(u32, Vec3)>| {
-                let (count, sum) = &mut sums[vertex as usize];
-                (*count, *sum) = (*count + 1, *sum + place);
-            };
-            add(&mut around);
+            let position = mesh.positions[neighbour as usize];
+            one_rings[vertex as usize].add(position);
             if edge.opposite.len() != 2 {
-                add(&mut along);
+                border_rings[vertex as usize].add(position);
             }
         }
     }
     // Apply the rule for a vertex of no triangle, for an inner vertex, or for a vertex on a border.
     let moved = |vertex: usize| {
-        let (old, (count, sum)) = (mesh.positions[vertex], around[vertex]);
-        match along[vertex] {
-            _ if count == 0 => old,
-            (0, _) => {
-                let beta = if count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * count as f32) };
-                (1.0 - count as f32 * beta) * old + beta * sum
+        let (old, one_ring, border) = (mesh.positions[vertex], one_rings[vertex], border_rings[vertex]);
+        match border.valence {
+            _ if one_ring.valence == 0 => old,
+            0 => {
+                let n = one_ring.valence as f32;
+                let beta = if one_ring.valence == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * n) };
+                (1.0 - n * beta) * old + beta * one_ring.sum
             }
-            (2, ends) => 0.75 * old + 0.125 * ends,
+            2 => 0.75 * old + 0.125 * border.sum,
             // Several borders meet at this vertex, so it stays.
             _ => old,
         }
     };
     (0..n).map(moved).collect()
+}
+
+/// Some neighbours of a vertex.
+#[derive(Clone, Copy, Default)]
+struct Ring {
+    /// How many there are.
+    valence: u32,
+    /// The sum of their positions.
+    sum: Vec3,
+}
+
+impl Ring {
+    fn add(&mut self, position: Vec3) {
+        self.valence += 1;
+        self.sum += position;
+    }
 }
 // </solution>

@@ -13,6 +13,11 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells};
 use raykata::ray::Ray;
 
+// <solution>
+use crate::stage3_traversal::keep_closest;
+use glam::DVec3;
+// </solution>
+
 /// The relative room for rounding when the `t` of a hit is compared with the `t` of a cell.
 ///
 /// The two come from different formulas, so their order is certain only if they differ by more than this fraction: 16
@@ -139,11 +144,7 @@ pub fn look_into(primitives: &[u32], probe: &mut impl Cells, ray: &mut Ray, best
     // <solution>
     for &primitive in primitives {
         let Some(t) = probe.hit(primitive, ray) else { continue };
-        if best.is_none_or(|best| (t, primitive) < (best.t, best.primitive)) {
-            *best = Some(PrimitiveHit { t, primitive });
-        }
-        // End the ray one float above t, so that a primitive at exactly the same t is still reported.
-        ray.t_max = t.next_up().min(ray.t_max);
+        keep_closest(best, ray, PrimitiveHit { t, primitive });
     }
     // <stub> todo!("ask probe.hit about each primitive, and keep the closest; at one t the smaller number")
     // </solution>
@@ -166,3 +167,26 @@ pub fn settled(best: &Option<PrimitiveHit>, entry: f64) -> bool {
     // <stub> todo!("compare the best hit with the entry; leave room for rounding")
     // </solution>
 }
+
+// <solution>
+/// The face through which a ray leaves a cell.
+pub struct Exit {
+    /// The axis that the face is across.
+    pub axis: usize,
+    /// Where the ray reaches the face.
+    pub t: f64,
+}
+
+/// Finds the first of the three faces at the coordinates `far`, which are the faces of a cell on the sides to which the
+/// ray goes. For a ray without a direction `t` is infinite.
+pub fn first_exit(origin: DVec3, direction: DVec3, far: DVec3) -> Exit {
+    let mut exit = Exit { axis: 0, t: f64::INFINITY };
+    for axis in 0..3 {
+        let t = (far[axis] - origin[axis]) / direction[axis];
+        if direction[axis] != 0.0 && t < exit.t {
+            exit = Exit { axis, t };
+        }
+    }
+    exit
+}
+// </solution>

@@ -9,6 +9,10 @@ use raykata::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use raykata::partition::Cells;
 use raykata::ray::Ray;
 
+// <solution>
+use crate::stage3_traversal::{keep_closest, nearer};
+// </solution>
+
 /// The largest number of rays in a packet: one bit each of a byte, or one lane each of a wide register.
 pub const PACKET: usize = 8;
 
@@ -29,28 +33,19 @@ pub fn closest_hit_cached<P: Cells>(
     search: impl FnOnce(&mut P, &Ray) -> Option<PrimitiveHit>,
 ) -> Option<PrimitiveHit> {
     // <solution>
-    // Test the primitive of the previous ray.
-    let known = last.and_then(|primitive| {
-        let t = probe.hit(primitive, ray)?;
-        Some(PrimitiveHit { t, primitive })
-    });
-    // End the ray one float above t, so that a primitive at exactly the same t is still reported.
-    let t_max = known.map_or(ray.t_max, |known| known.t.next_up().min(ray.t_max));
-    let found = search(probe, &ray.with_range(ray.t_min, t_max));
-    nearer(known, found)
+    // Test the primitive of the previous ray, and shorten the ray to its hit.
+    let (mut ray, mut closest) = (*ray, None);
+    if let Some(primitive) = last
+        && let Some(t) = probe.hit(primitive, &ray)
+    {
+        keep_closest(&mut closest, &mut ray, PrimitiveHit { t, primitive });
+    }
+    // Search with the shortened ray.
+    let found = search(probe, &ray);
+    nearer(closest, found)
     // <stub> todo!("test the last primitive, shorten the ray by its hit, search, and keep the nearer of both")
     // </solution>
 }
-
-// <solution>
-/// The hit with the smaller `t`; at the same `t` the one with the smaller primitive number.
-fn nearer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Option<PrimitiveHit> {
-    match (first, second) {
-        (Some(p), Some(q)) => Some(if (q.t, q.primitive) < (p.t, p.primitive) { q } else { p }),
-        (one, other) => one.or(other),
-    }
-}
-// </solution>
 
 /// Finds the closest hits of all rays, in one traversal per [`PACKET`] of them: open a node at most once, if at least
 /// one ray enters it before its best hit, and use it for all such rays.
@@ -144,8 +139,7 @@ impl Packet {
                 continue;
             }
             let Some(t) = probe.hit(primitive, ray) else { continue };
-            self.best[index] = nearer(self.best[index], Some(PrimitiveHit { t, primitive }));
-            ray.t_max = t.next_up().min(ray.t_max);
+            keep_closest(&mut self.best[index], ray, PrimitiveHit { t, primitive });
         }
     }
 }

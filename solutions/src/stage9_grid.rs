@@ -12,6 +12,10 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Grid, MOST_CELLS_ALONG};
 use raykata::ray::Ray;
 
+// <solution>
+use crate::stage9_cells::{Exit, first_exit};
+// </solution>
+
 /// Chooses the number of cells along each axis, such that the grid has about `density · n_primitives` cells that are
 /// nearly cubes.
 ///
@@ -75,8 +79,6 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
     let mut grid =
         Grid { bounds: widened.around, resolution, starts: vec![0; n_cells + 1], items: Vec::new() };
 
-    // Count the entries per cell, sum the counts up, and fill each list from its end: then `starts` holds the
-    // beginnings.
     let each_cell = |grid: &Grid, one: &Aabb| -> Vec<u32> {
         let low = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.min[axis]))));
         let high = UVec3::from_array([0, 1, 2].map(|axis| index(grid, axis, f64::from(one.max[axis]))));
@@ -154,15 +156,9 @@ pub fn closest_hit(grid: &Grid, probe: &mut impl Cells, ray: &Ray) -> Option<Pri
         probe.visit(number);
         look_into(grid.primitives(number), probe, &mut ray, &mut best);
 
-        // Find the axis along which the ray leaves the cell first, and the t of the exit.
-        let (mut axis, mut exit) = (0, f64::INFINITY);
-        for candidate in 0..3 {
-            let plane = grid.plane(candidate, cell[candidate] + u32::from(direction[candidate] > 0.0));
-            let t = (plane - origin[candidate]) / direction[candidate];
-            if direction[candidate] != 0.0 && t < exit {
-                (axis, exit) = (candidate, t);
-            }
-        }
+        // Find the face through which the ray leaves the cell.
+        let far = |axis: usize| grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
+        let Exit { axis, t: exit } = first_exit(origin, direction, DVec3::new(far(0), far(1), far(2)));
         // Stop at the end of the grid or of the ray, or if the best hit lies before the exit.
         let at_the_end =
             if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };

@@ -60,29 +60,31 @@ fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, ru
             let ids: Vec<u32> = boxes.iter().map(|(id, _)| *id).collect();
             tree.set_leaf(node, &ids);
         }
-        Some((axis, at)) => {
+        Some(Cut { axis, position }) => {
             // Divide the boxes between the two sides. A box that touches the plane goes to both.
             let part = |keep: &dyn Fn(&Aabb) -> bool| -> Vec<(u32, Aabb)> {
                 boxes.iter().filter(|(_, one)| keep(one)).copied().collect()
             };
             let (mut below, mut above) = (cell, cell);
-            below.max[axis] = at;
-            above.min[axis] = at;
-            let left = divide(tree, &part(&|one| one.min[axis] <= at), below, depth + 1, rules);
-            let right = divide(tree, &part(&|one| one.max[axis] >= at), above, depth + 1, rules);
-            tree.set_children(node, axis, at, left, right);
+            below.max[axis] = position;
+            above.min[axis] = position;
+            let left = divide(tree, &part(&|one| one.min[axis] <= position), below, depth + 1, rules);
+            let right = divide(tree, &part(&|one| one.max[axis] >= position), above, depth + 1, rules);
+            tree.set_children(node, axis, position, left, right);
         }
     }
     node
 }
 
-/// The axis and the coordinate of the plane, or `None` if the node should be a leaf.
-fn choose_cut(
-    boxes: &[(u32, Aabb)],
-    cell: &Aabb,
-    depth: usize,
-    heuristics: &KdHeuristics,
-) -> Option<(usize, f32)> {
+/// A plane across `axis`, at the coordinate `position`.
+#[derive(Clone, Copy)]
+struct Cut {
+    axis: usize,
+    position: f32,
+}
+
+/// The plane, or `None` if the node should be a leaf.
+fn choose_cut(boxes: &[(u32, Aabb)], cell: &Aabb, depth: usize, heuristics: &KdHeuristics) -> Option<Cut> {
     // Cut off an empty margin first.
     if heuristics.cut_off_empty_space
         && let Some(cut) = widest_margin(boxes, cell)
@@ -96,23 +98,30 @@ fn choose_cut(
         axes.sort_by(|&p, &q| size(q).total_cmp(&size(p)).then(p.cmp(&q)));
     }
     // Take the first axis on which the cell can be cut: a flat cell has no plane inside.
-    let (axis, at) = axes.into_iter().find_map(|axis| Some((axis, place(boxes, cell, axis, heuristics)?)))?;
+    let cut = |axis: usize| Some(Cut { axis, position: position(boxes, cell, axis, heuristics)? });
+    let cut = axes.into_iter().find_map(cut)?;
 
     // Refuse a plane that divides nothing, or one with too much overlap.
-    let (n_left, n_right, n_both) = sides(boxes, axis, at);
+    let Sides { n_left, n_right, n_both } = sides(boxes, cut);
     let overlap = n_both > 0 && 10 * n_both >= 6 * n_left.min(n_right);
-    (n_both < boxes.len() && !(heuristics.stop_at_overlap && overlap)).then_some((axis, at))
+    (n_both < boxes.len() && !(heuristics.stop_at_overlap && overlap)).then_some(cut)
 }
 
-/// The numbers of primitives on the left, on the right, and on both sides.
-fn sides(boxes: &[(u32, Aabb)], axis: usize, at: f32) -> (usize, usize, usize) {
-    let n_left = boxes.iter().filter(|(_, one)| one.min[axis] <= at).count();
-    let n_right = boxes.iter().filter(|(_, one)| one.max[axis] >= at).count();
-    (n_left, n_right, n_left + n_right - boxes.len())
+/// The numbers of primitives on the left, on the right, and on both sides of a plane.
+struct Sides {
+    n_left: usize,
+    n_right: usize,
+    n_both: usize,
+}
+
+fn sides(boxes: &[(u32, Aabb)], Cut { axis, position }: Cut) -> Sides {
+    let n_left = boxes.iter().filter(|(_, one)| one.min[axis] <= position).count();
+    let n_right = boxes.iter().filter(|(_, one)| one.max[axis] >= position).count();
+    Sides { n_left, n_right, n_both: n_left + n_right - boxes.len() }
 }
 
 /// The cut that removes the widest empty margin, if it is wider than a tenth of the cell.
-fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
+fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<Cut> {
     // Compute the box around the primitives.
     let around =
         boxes.iter().fold(Aabb::EMPTY, |all, (_, one)| Aabb::new(all.min.min(one.min), all.max.max(one.max)));
@@ -120,13 +129,13 @@ fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
     for axis in 0..3 {
         let [low, high] = [cell.min[axis], cell.max[axis]].map(f64::from);
         // Put the plane one float away from the primitives: if they touched it, they would be on both sides.
-        for (at, margin) in [
+        for (position, margin) in [
             (around.min[axis].next_down(), f64::from(around.min[axis]) - low),
             (around.max[axis].next_up(), high - f64::from(around.max[axis])),
         ] {
             let share = margin / (high - low);
-            if share > widest.0 && cell.min[axis] < at && at < cell.max[axis] {
-                widest = (share, Some((axis, at)));
+            if share > widest.0 && cell.min[axis] < position && position < cell.max[axis] {
+                widest = (share, Some(Cut { axis, position }));
             }
         }
     }
@@ -134,7 +143,7 @@ fn widest_margin(boxes: &[(u32, Aabb)], cell: &Aabb) -> Option<(usize, f32)> {
 }
 
 /// The best coordinate for a plane across `axis`; `None` if the cell has no extent on this axis.
-fn place(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeuristics) -> Option<f32> {
+fn position(boxes: &[(u32, Aabb)], cell: &Aabb, axis: usize, heuristics: &KdHeuristics) -> Option<f32> {
     // Cut in the middle if both heuristics are off.
     let (low, high) = (cell.min[axis], cell.max[axis]);
     let midpoint = |p: f32, q: f32| 0.5 * p + 0.5 * q;

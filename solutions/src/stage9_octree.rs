@@ -12,6 +12,10 @@ use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells, Octree, OctreeNode};
 use raykata::ray::Ray;
 
+// <solution>
+use crate::stage9_cells::{Exit, first_exit};
+// </solution>
+
 /// Builds an octree: makes a cube of the box around all primitives, and divides every cell that holds more than
 /// `leaf_size` primitives into octants.
 ///
@@ -97,14 +101,9 @@ pub fn closest_hit_by_cells(octree: &Octree, probe: &mut impl Cells, ray: &Ray) 
         look_into(octree.primitives(first, count), probe, &mut ray, &mut best);
 
         // Find the face through which the ray leaves the leaf.
-        let (mut axis, mut exit, mut face) = (0, f64::INFINITY, 0.0);
-        for candidate in 0..3 {
-            let far = if direction[candidate] > 0.0 { cell.max[candidate] } else { cell.min[candidate] };
-            let t = (far - origin[candidate]) / direction[candidate];
-            if direction[candidate] != 0.0 && t < exit {
-                (axis, exit, face) = (candidate, t, far);
-            }
-        }
+        let far = DVec3::select(direction.cmpgt(DVec3::ZERO), cell.max, cell.min);
+        let Exit { axis, t: exit } = first_exit(origin, direction, far);
+        let face = far[axis];
         // Stop at the end of the root cell or of the ray, or if the best hit lies before the exit.
         let outside = if direction[axis] > 0.0 { face == root.max[axis] } else { face == root.min[axis] };
         if exit.is_infinite() || exit > leave || outside || settled(&best, exit) {
@@ -167,6 +166,14 @@ pub fn closest_hit(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option
 }
 
 // <solution>
+/// An octant that the ray enters at `t`.
+#[derive(Clone, Copy)]
+struct Entered {
+    t: f64,
+    node: u32,
+    cell: Cell,
+}
+
 fn search(
     octree: &Octree,
     node: u32,
@@ -180,24 +187,24 @@ fn search(
         OctreeNode::Leaf { first, count } => look_into(octree.primitives(first, count), probe, ray, best),
         OctreeNode::Inner { first } => {
             // Collect the octants that the ray enters.
-            let mut met = [(0.0, 0, *cell); 8];
-            let mut n_met = 0;
+            let mut entered = [Entered { t: 0.0, node: first, cell: *cell }; 8];
+            let mut n_entered = 0;
             for octant in 0..8 {
-                let part = cell.octant(octant);
-                if let Some((enter, _)) = span(ray, &part) {
-                    met[n_met] = (enter, octant, part);
-                    n_met += 1;
+                let cell = cell.octant(octant);
+                if let Some((t, _)) = span(ray, &cell) {
+                    entered[n_entered] = Entered { t, node: first + octant as u32, cell };
+                    n_entered += 1;
                 }
             }
             // Sort them by entry. The sort is stable, so octants with the same entry stay in the order of their
             // numbers.
-            met[..n_met].sort_by(|p, q| p.0.total_cmp(&q.0));
+            entered[..n_entered].sort_by(|p, q| p.t.total_cmp(&q.t));
             // Search them in this order, and stop where the best hit lies before an octant.
-            for (enter, octant, part) in &met[..n_met] {
-                if settled(best, *enter) {
+            for octant in &entered[..n_entered] {
+                if settled(best, octant.t) {
                     break;
                 }
-                search(octree, first + *octant as u32, part, probe, ray, best);
+                search(octree, octant.node, &octant.cell, probe, ray, best);
             }
         }
     }

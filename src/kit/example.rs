@@ -119,7 +119,7 @@ examples! {
     };
     TriangleQuery => TriangleQuery { ray: example(), triangle: example() };
     InsideQuery => InsideQuery { ray: example(), point: Vec3::Z, triangle: example() };
-    InterpolateQuery => InterpolateQuery { weights: Vec3::X, corners: [Vec3::ZERO; 3] };
+    InterpolateQuery => InterpolateQuery { barycentric: Vec3::X, corners: [Vec3::ZERO; 3] };
     SearchQuery => SearchQuery { bvh: Bvh::default(), ray: example(), table: Table::default() };
     SlabQuery => SlabQuery { ray: example(), bounds: example() };
     BuildQuery => BuildQuery { bounds: Vec::new(), split: Split::SurfaceArea, leaf_size: 1 };

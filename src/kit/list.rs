@@ -75,8 +75,8 @@ macro_rules! student_functions {
                     F::triangle_gram(&q.ray, &q.triangle, &scalars)
                 }
                 /// The hit with a triangle in the range of the ray, by a method of the student's choice;
-                /// `None` if there is none. The reference is watertight (Woop, Benthin and Wald, "Watertight
-                /// Ray/Triangle Intersection", JCGT 2013).
+                /// `None` if there is none. The reference is the method of Möller and Trumbore, "Fast, Minimum
+                /// Storage Ray/Triangle Intersection", 1997.
                 TriangleChoice fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage2_triangles::triangle_choice;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::triangle_choice(&q.ray, &q.triangle) }
@@ -96,9 +96,9 @@ macro_rules! student_functions {
                     = stage2_triangles::inside_by_areas;
                 |q: InsideQuery| -> Option<Vec3> { F::inside_by_areas(q.point, &q.triangle) }
                 /// The value at the barycentric coordinates `(α, β, γ)` between the values at three corners.
-                Interpolate fn interpolate(weights: Vec3, corners: [Vec3; 3]) -> Vec3
+                Interpolate fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3
                     = stage2_triangles::interpolate;
-                |q: InterpolateQuery| -> Vec3 { F::interpolate(q.weights, q.corners) }
+                |q: InterpolateQuery| -> Vec3 { F::interpolate(q.barycentric, q.corners) }
                 /// The unit normal of a triangle with the direction of `(b - a) × (c - a)`; `None` if the
                 /// triangle has no area.
                 FaceNormal fn face_normal(triangle: &Triangle) -> Option<Vec3>
@@ -124,35 +124,35 @@ macro_rules! student_functions {
             3 trait Hierarchies {
                 /// The smallest closed box around a triangle, in world units, without padding.
                 TriangleBounds fn triangle_bounds(triangle: &Triangle) -> Aabb
-                    = stage3_bvh::triangle_bounds;
+                    = stage3_boxes::triangle_bounds;
                 |q: Triangle| -> Aabb { F::triangle_bounds(q) }
                 /// A closed box around a sphere, in world units, tight except for rounding.
                 SphereBounds fn sphere_bounds(sphere: &Sphere) -> Aabb
-                    = stage3_bvh::sphere_bounds;
+                    = stage3_boxes::sphere_bounds;
                 |q: Sphere| -> Aabb { F::sphere_bounds(q) }
                 /// The smallest box that contains two boxes. The union with an empty box changes nothing.
                 Union fn union(first: &Aabb, second: &Aabb) -> Aabb
-                    = stage3_bvh::union;
+                    = stage3_boxes::union;
                 |(first, second): (Aabb, Aabb)| -> Aabb { F::union(first, second) }
                 /// The centre of a box, in world units.
                 Centroid fn centroid(bounds: &Aabb) -> Vec3
-                    = stage3_bvh::centroid;
+                    = stage3_boxes::centroid;
                 |q: Aabb| -> Vec3 { F::centroid(q) }
                 /// The area of the six faces of a box, in square world units; 0 for the empty box.
                 SurfaceArea fn surface_area(bounds: &Aabb) -> f32
-                    = stage3_bvh::surface_area;
+                    = stage3_boxes::surface_area;
                 |q: Aabb| -> f32 { F::surface_area(q) }
                 /// The `t` at which a ray enters and leaves a closed box, both in `[t_min, t_max]`; `None` if
                 /// it misses. A ray that starts inside enters at `t_min`. `inverse_direction` is `1 / ray.direction`,
                 /// infinite where the direction is 0.
                 Slab fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)>
-                    = stage3_bvh::slab;
+                    = stage3_boxes::slab;
                 |q: SlabQuery| -> Option<(f32, f32)> { F::slab(&q.ray, q.ray.direction.recip(), &q.bounds) }
                 /// Object median: reorders two or more primitives along the longest axis of their box, so
                 /// that half of them come first, and returns the index at which the second half begins.
                 /// Neither side is empty.
                 SplitObjectMedian fn split_object_median(primitives: &mut [PrimitiveRef]) -> usize
-                    = stage3_bvh::split_object_median;
+                    = stage3_build::split_object_median;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_object_median(primitives)))
                 }
@@ -160,36 +160,36 @@ macro_rules! student_functions {
                 /// reorders the primitives by the side of their centroid, and returns the index at which the
                 /// second side begins. Neither side is empty.
                 SplitSpatialMedian fn split_spatial_median(primitives: &mut [PrimitiveRef]) -> usize
-                    = stage3_bvh::split_spatial_median;
+                    = stage3_build::split_spatial_median;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer {
                     divide(primitives, |primitives| Some(F::split_spatial_median(primitives)))
                 }
                 /// Surface area heuristic: reorders two or more primitives by the cheapest division, and
                 /// returns the index at which the second side begins; `None` if a leaf is not more expensive.
                 SplitSurfaceArea fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize>
-                    = stage3_bvh::split_surface_area;
+                    = stage3_build::split_surface_area;
                 |primitives: Vec<PrimitiveRef>| -> SplitAnswer { divide(primitives, F::split_surface_area) }
                 /// A hierarchy over primitives with these boxes, with at most `leaf_size` primitives per
                 /// leaf, which is at least 1.
                 Build fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh
-                    = stage3_bvh::build;
+                    = stage3_build::build;
                 |q: BuildQuery| -> Bvh { F::build(&q.bounds, q.split, q.leaf_size) }
                 /// The closest hit in a hierarchy, by a visit of both children of every node that the ray
                 /// enters; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive number
                 /// wins.
                 ClosestHitBoth fn closest_hit_both[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
-                    = stage3_bvh::closest_hit_both;
+                    = stage3_traversal::closest_hit_both;
                 |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit_both(&q.bvh, probe, &q.ray)) }
                 /// The closest hit in a hierarchy, nearer child first, without the nodes beyond the closest
                 /// hit so far; `None` if nothing is hit. Of two hits at the same `t` the smaller primitive
                 /// number wins.
                 ClosestHit fn closest_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
-                    = stage3_bvh::closest_hit;
+                    = stage3_traversal::closest_hit;
                 |q: SearchQuery| -> SearchAnswer { search(q, |probe| F::closest_hit(&q.bvh, probe, &q.ray)) }
                 /// Whether the ray hits any primitive in its range. The search ends at the first hit (shadow
                 /// rays).
                 AnyHit fn any_hit[P: Probe](bvh: &Bvh, probe: &mut P, ray: &Ray) -> bool
-                    = stage3_bvh::any_hit;
+                    = stage3_traversal::any_hit;
                 |q: SearchQuery| -> (bool, SearchAnswer) {
                     let mut found = false;
                     let answer = search(q, |probe| {
@@ -289,9 +289,9 @@ macro_rules! student_functions {
                 }
                 /// The ray along a secondary ray, without upper limit of `t`. It starts off the surface, on
                 /// the side to which it goes.
-                SpawnRay fn spawn_ray(surface: &Surface, child: &SecondaryRay) -> Ray
+                SpawnRay fn spawn_ray(surface: &Surface, secondary: &SecondaryRay) -> Ray
                     = stage5_recursion::spawn_ray;
-                |(surface, child): (Surface, SecondaryRay)| -> Ray { F::spawn_ray(surface, child) }
+                |(surface, secondary): (Surface, SecondaryRay)| -> Ray { F::spawn_ray(surface, secondary) }
             }
 
             /// Stage 6: distributed ray tracing. Each function gives one answer per query, in the same order,
@@ -576,7 +576,8 @@ macro_rules! student_functions {
                     = stage10_stability::stable_roots;
                 |[a, b, c]: [f32; 3]| -> Option<[f32; 2]> { F::stable_roots(*a, *b, *c) }
                 /// The hit with a triangle in the range of the ray, without gaps between triangles that share
-                /// an edge or a corner; `None` if there is none.
+                /// an edge or a corner; `None` if there is none. Woop, Benthin and Wald, "Watertight
+                /// Ray/Triangle Intersection", JCGT 2013.
                 Watertight fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit>
                     = stage10_stability::watertight;
                 |q: TriangleQuery| -> Option<TriangleHit> { F::watertight(&q.ray, &q.triangle) }

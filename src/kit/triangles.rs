@@ -53,7 +53,7 @@ pub struct InsideQuery {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InterpolateQuery {
     /// The barycentric coordinates `(α, β, γ)`, whose sum is 1.
-    pub weights: Vec3,
+    pub barycentric: Vec3,
     /// The values at the corners `a`, `b` and `c`.
     pub corners: [Vec3; 3],
 }

@@ -86,17 +86,19 @@ impl Split {
     pub const ALL: [Split; 3] = [Split::ObjectMedian, Split::SpatialMedian, Split::SurfaceArea];
 }
 
-/// Which ray/triangle test is used in single precision (stage 2).
+/// Which ray/triangle test is used with [`Precision::Single`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TriangleMethod {
-    /// Solve for `t` and the barycentric coordinates by Cramer's rule.
+    /// Solve for `t` and the barycentric coordinates by Cramer's rule (stage 2).
     Cramer,
     /// Intersect the plane of the triangle, then find the barycentric coordinates with the Gram matrix of its
-    /// edges.
+    /// edges (stage 2).
     Gram,
-    /// The method of the student's choice. That of the reference is watertight: no ray passes between two
-    /// triangles that share an edge.
+    /// The method of the student's choice (stage 2). That of the reference is Möller and Trumbore's.
+    Choice,
+    /// The watertight test (stage 10): no ray passes between two triangles that share an edge. Until it is
+    /// written, frames use [`TriangleMethod::Choice`].
     #[default]
     Watertight,
 }
@@ -140,7 +142,7 @@ impl Sampler {
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
     /// Single precision, 24 bits, by the [`TriangleMethod`] of the scene. The watertight test of the
-    /// reference uses double precision in any case.
+    /// reference computes in double precision all the same.
     #[default]
     Single,
     /// Double precision, 53 bits, with any [`TriangleMethod`].
@@ -172,7 +174,7 @@ pub struct Quality {
     /// The most primitives in a leaf of a bounding volume hierarchy, at least 1; 4 by default. Trees that
     /// divide space aim at the same number, and stop earlier where a division does not help.
     pub leaf_size: u32,
-    /// The ray/triangle test in single precision; watertight by default.
+    /// The ray/triangle test with [`Precision::Single`]; watertight by default.
     pub triangle_method: TriangleMethod,
     /// Whether the triangles of a mesh are copied for each of its instances, as without stage 8; `false`
     /// shares one mesh.

@@ -7,8 +7,10 @@ use crate::shape::{Sphere, Triangle};
 /// Triangle method and precision of the scene as one choice, so that the inner loop has one branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeTests {
-    /// The triangle method of the student's choice; that of the reference is watertight.
+    /// The watertight triangle method of stage 10.
     Watertight,
+    /// The triangle method of the student's choice.
+    Choice,
     /// The triangle method by Cramer's rule.
     Cramer,
     /// The triangle method by plane and Gram matrix.
@@ -23,7 +25,8 @@ impl ShapeTests {
     #[inline(always)]
     pub fn triangle<F: StudentFunctions>(self, ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
         match self {
-            ShapeTests::Watertight => F::triangle_choice(ray, triangle),
+            ShapeTests::Watertight => F::watertight(ray, triangle),
+            ShapeTests::Choice => F::triangle_choice(ray, triangle),
             ShapeTests::Cramer => F::triangle_cramer(ray, triangle),
             ShapeTests::Gram => F::triangle_gram(ray, triangle, &F::gram_scalars(triangle)),
             ShapeTests::InDouble => F::triangle_in_double(ray, triangle),

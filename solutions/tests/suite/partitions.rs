@@ -10,8 +10,8 @@ use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::{Sphere, Triangle};
 use solutions::{
-    stage1_shapes, stage2_triangles, stage3_bvh, stage9_bsp, stage9_cells, stage9_coherence, stage9_grid,
-    stage9_kd_tree, stage9_octree,
+    stage1_shapes, stage2_triangles, stage3_boxes, stage3_build, stage9_bsp, stage9_cells, stage9_coherence,
+    stage9_grid, stage9_kd_tree, stage9_octree,
 };
 
 /// The number of rays per scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions --
@@ -30,8 +30,8 @@ struct Things(Vec<Thing>);
 impl Things {
     fn boxes(&self) -> Vec<Aabb> {
         let bounds = |thing: &Thing| match thing {
-            Thing::Tile(tile) => stage3_bvh::triangle_bounds(tile),
-            Thing::Sphere(sphere) => stage3_bvh::sphere_bounds(sphere),
+            Thing::Tile(tile) => stage3_boxes::triangle_bounds(tile),
+            Thing::Sphere(sphere) => stage3_boxes::sphere_bounds(sphere),
         };
         self.0.iter().map(bounds).collect()
     }
@@ -39,7 +39,7 @@ impl Things {
     fn hulls(&self) -> Vec<Vec<Vec3>> {
         let hull = |thing: &Thing| match thing {
             Thing::Tile(Triangle { a, b, c }) => vec![*a, *b, *c],
-            Thing::Sphere(sphere) => corners(&stage3_bvh::sphere_bounds(sphere)),
+            Thing::Sphere(sphere) => corners(&stage3_boxes::sphere_bounds(sphere)),
         };
         self.0.iter().map(hull).collect()
     }
@@ -77,7 +77,7 @@ impl Probe for Asked<'_> {
     }
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         let bounds = &self.bvh.nodes[node as usize].bounds;
-        stage3_bvh::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
+        stage3_boxes::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
     }
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         self.meet(primitive, ray)
@@ -148,7 +148,7 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     let trees = [KdHeuristics::default(), KdHeuristics::NONE];
     let trees = trees.map(|heuristics| stage9_kd_tree::build(&boxes, &heuristics, 4));
     let bsp = stage9_bsp::build(&hulls, 4, 16);
-    let bvh = stage3_bvh::build(&boxes, Split::SurfaceArea, 4);
+    let bvh = stage3_build::build(&boxes, Split::SurfaceArea, 4);
     let (mut last, mut waiting) = (None, Vec::new());
     let mut visits = [0; 8];
     for case in 0..n_rays() {

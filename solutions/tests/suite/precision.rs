@@ -35,7 +35,13 @@ fn more_digits_move_few_pixels_and_hardly_any_count() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
         let mut scene = load::load(&path).unwrap_or_else(|error| panic!("{error}"));
         (scene.film.width, scene.film.height, scene.quality.samples_per_pixel) = (48, 32, 1);
-        for method in [TriangleMethod::Watertight, TriangleMethod::Cramer, TriangleMethod::Gram] {
+        let methods = [
+            TriangleMethod::Watertight,
+            TriangleMethod::Choice,
+            TriangleMethod::Cramer,
+            TriangleMethod::Gram,
+        ];
+        for method in methods {
             scene.quality.triangle_method = method;
             let [single, double] = [Precision::Single, Precision::Double].map(|p| in_precision(&scene, p));
             // Count pixels that show another surface, which happens at outlines, also behind glass.

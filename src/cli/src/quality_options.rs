@@ -69,9 +69,10 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 11] = [
     ("bsp", Accelerator::Bsp),
 ];
 
-const TRIANGLES: [(&str, TriangleMethod); 3] = [
+const TRIANGLES: [(&str, TriangleMethod); 4] = [
     ("cramer", TriangleMethod::Cramer),
     ("gram", TriangleMethod::Gram),
+    ("choice", TriangleMethod::Choice),
     ("watertight", TriangleMethod::Watertight),
 ];
 

@@ -203,8 +203,9 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface_area", Split::SurfaceArea),
 ];
 
-const TRIANGLE_METHODS: [(&str, TriangleMethod); 3] = [
+const TRIANGLE_METHODS: [(&str, TriangleMethod); 4] = [
     ("cramer", TriangleMethod::Cramer),
     ("gram", TriangleMethod::Gram),
+    ("choice", TriangleMethod::Choice),
     ("watertight", TriangleMethod::Watertight),
 ];

@@ -49,7 +49,7 @@ fn student(i: usize, random: &mut Random) -> Graded {
     }
     let compiles = i % 13 != 5;
     if !compiles {
-        graded.compiler = "error[E0308]: mismatched types\n  --> exercises/src/stage3_bvh.rs:41:9\n   |\n41 |         None\n   |         ^^^^ expected `usize`, found `Option<_>`\n".to_owned();
+        graded.compiler = "error[E0308]: mismatched types\n  --> exercises/src/stage3_boxes.rs:41:9\n   |\n41 |         None\n   |         ^^^^ expected `usize`, found `Option<_>`\n".to_owned();
     }
     for (stage, checks) in all_checks::STAGES.iter().filter(|(stage, _)| *stage <= 4) {
         for check in *checks {

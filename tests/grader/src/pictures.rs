@@ -149,7 +149,7 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, 9);
     }));
     turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
-    let methods = [TriangleMethod::Cramer, TriangleMethod::Gram];
+    let methods = [TriangleMethod::Cramer, TriangleMethod::Gram, TriangleMethod::Choice];
     turned.extend(
         methods.map(|method| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
     );

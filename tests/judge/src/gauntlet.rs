@@ -33,10 +33,11 @@ pub struct Row<'a> {
 pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
     let example = (Ray::new(Vec3::Z, Vec3::NEG_Z), Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y });
     type Function = fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>;
-    let asked: [(&str, Function); 3] = [
+    let asked: [(&str, Function); 4] = [
         ("kit: triangle_cramer", |kit, queries| kit.triangle_cramer(queries)),
         ("kit: triangle_gram", |kit, queries| kit.triangle_gram(queries)),
         ("kit: triangle_choice", |kit, queries| kit.triangle_choice(queries)),
+        ("kit: watertight", |kit, queries| kit.watertight(queries)),
     ];
     let mut rows = Vec::new();
     for (name, ask) in asked {

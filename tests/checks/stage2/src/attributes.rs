@@ -16,16 +16,16 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
     let inputs = (0..=8i32, 0..=8i32, point(4), point(4), point(4)).prop_map(|(beta, gamma, a, b, c)| {
         let (beta, gamma) = if beta + gamma > 8 { (8 - beta, 8 - gamma) } else { (beta, gamma) };
         let (beta, gamma) = (beta as f32 / 8.0, gamma as f32 / 8.0);
-        InterpolateQuery { weights: vec3(1.0 - beta - gamma, beta, gamma), corners: [a, b, c] }
+        InterpolateQuery { barycentric: vec3(1.0 - beta - gamma, beta, gamma), corners: [a, b, c] }
     });
     trial.forall(1000, inputs, |queries| {
         compare(queries, trial.kit.interpolate(queries), |query, yours| {
             let [a, b, c] = query.corners;
             // All numbers are multiples of 1/64, so the sum is exact in single precision.
-            let expected = query.weights.x * a + query.weights.y * b + query.weights.z * c;
+            let expected = query.barycentric.x * a + query.barycentric.y * b + query.barycentric.z * c;
             let input = format!(
                 "interpolate({}, [{}, {}, {}])",
-                query.weights.paste(),
+                query.barycentric.paste(),
                 a.paste(),
                 b.paste(),
                 c.paste()

@@ -52,8 +52,8 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> Outcome {
         let weights: Vec<InterpolateQuery> = hits
             .iter()
             .map(|hit| hit.map_or(Vec3::ZERO, |hit| vec3(1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma)))
-            .map(|weights| InterpolateQuery {
-                weights,
+            .map(|barycentric| InterpolateQuery {
+                barycentric,
                 corners: corners.map(|corner| normals[corner as usize]),
             })
             .collect();

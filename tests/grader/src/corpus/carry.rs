@@ -242,7 +242,9 @@ fn carry(
 /// The merged text, if in each conflict our side differs from the original in comments only: there the patch decides.
 fn without_comment_conflicts(conflicts: &str) -> Option<String> {
     let code = |lines: &[&str]| -> Vec<String> {
-        let code = lines.iter().map(|line| line.trim()).filter(|line| !line.starts_with("//"));
+        // The markers `// <solution>` and `// <stub> …` are not comments: exercises/ is made from them.
+        let is_comment = |line: &&str| line.starts_with("//") && !line.starts_with("// <");
+        let code = lines.iter().map(|line| line.trim()).filter(|line| !is_comment(line));
         code.map(str::to_owned).collect()
     };
     let (mut merged, mut lines) = (String::new(), conflicts.split_inclusive('\n'));
@@ -346,8 +348,11 @@ mod tests {
         let now = OLD.replace("three", "// Say three.\nthree");
         let text = applied(carried(&[], &[], &[("src/a.rs", &now)]), "src/a.rs", &now);
         assert!(text.contains("two\n") && text.contains("drei\nfour") && !text.contains("\nthree"), "{text}");
-        let other = OLD.replace("three", "// Say three.\nthree or more");
-        assert!(matches!(carried(&[], &[], &[("src/a.rs", &other)]), Carried::Lost(_)));
+        for other in ["// Say three.\nthree or more", "// <stub> Say three.\nthree"] {
+            let now = OLD.replace("three", other);
+            let carried = carried(&[], &[], &[("src/a.rs", &now)]);
+            assert!(matches!(carried, Carried::Lost(_)), "{carried:?}");
+        }
     }
 
     #[test]

@@ -10,7 +10,9 @@ use oracle::exact::{Body, meet, triangle};
 use oracle::gauntlet::scenes::{HardScene, hard_scenes};
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
-use raykata::kit::{BuildQuery, Door, Kit, SearchQuery, SlabQuery, Table, TriangleQuery, kit_error};
+use raykata::kit::{
+    BuildQuery, Door, Kit, KitError, SearchQuery, SlabQuery, Table, TriangleQuery, kit_error,
+};
 use raykata::partition::KdHeuristics;
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
@@ -189,7 +191,11 @@ fn distances(kit: &dyn Kit, scene: &HardScene, rays: &[Ray]) -> Vec<Vec<f32>> {
     let of_ray = |ray: &Ray| {
         let query = |&triangle: &Triangle| TriangleQuery { ray: *ray, triangle };
         let queries: Vec<TriangleQuery> = scene.triangles.iter().map(query).collect();
-        let hits = kit.triangle_choice(&queries);
+        // Frames use the watertight test as soon as it is written.
+        let hits = match kit_error::catch(|| kit.watertight(&queries)) {
+            Err(KitError::NotWritten { .. }) => kit.triangle_choice(&queries),
+            hits => hits.unwrap_or_else(|error| kit_error::unwind(error)),
+        };
         hits.into_iter().map(|hit| hit.map_or(f32::INFINITY, |hit| hit.t)).collect()
     };
     rays.iter().map(of_ray).collect()

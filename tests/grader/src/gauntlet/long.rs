@@ -75,7 +75,7 @@ fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]
         Structure::BruteForce => leaks_of(mesh, rays, |inputs: &[Input]| {
             let queries: Vec<TriangleQuery> =
                 inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
-            kit.triangle_choice(&queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
+            kit.watertight(&queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
         }),
         Structure::Bvh(split) => {
             let quality =

@@ -97,7 +97,7 @@ const PLANTED: [(&str, &str, &str, &str); 2] = [
         "tests/checks/src/tree/mod.rs",
         "checks::tree::planted_area",
         "\npub fn planted_area(of: Aabb) -> f64 {\n    2.0 * half_area(&of)\n}\n",
-        "stage3_bvh::surface_area",
+        "stage3_boxes::surface_area",
     ),
     (
         "tests/checks/stage4/src/gamma.rs",

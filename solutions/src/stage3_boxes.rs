@@ -1,0 +1,150 @@
+//! Stage 3 · bounding boxes: the box around a shape, and where a ray enters and leaves it.
+//!
+//! Slides: "Bounding Volume Hierarchy" and the box intersection with `t_b = t_x ∩ t_y ∩ t_z`.
+
+use glam::Vec3;
+use raykata::aabb::Aabb;
+use raykata::ray::Ray;
+use raykata::shape::{Sphere, Triangle};
+
+/// The smallest box around a triangle.
+///
+/// Each side is exactly a coordinate of a corner. Boxes are closed, so a flat box needs no padding.
+pub fn triangle_bounds(triangle: &Triangle) -> Aabb {
+    // <solution>
+    Aabb::new(triangle.a.min(triangle.b).min(triangle.c), triangle.a.max(triangle.b).max(triangle.c))
+    // <stub> todo!("take the smallest and the largest coordinate on each axis")
+    // </solution>
+}
+
+/// The box around a sphere: from `center - radius` to `center + radius` on each axis.
+///
+/// Each side may be off by the rounding of the sum or difference, and may lie up to two more floats outwards.
+pub fn sphere_bounds(sphere: &Sphere) -> Aabb {
+    // <solution>
+    let (low, high) = (sphere.center - sphere.radius, sphere.center + sphere.radius);
+    // Move each side one float outwards, because rounding to nearest may cut off a part of the sphere.
+    Aabb::new(low.map(f32::next_down), high.map(f32::next_up))
+    // <stub> todo!("go one radius from the centre on each axis")
+    // </solution>
+}
+
+/// The smallest box around two boxes.
+///
+/// The union of a box and [`Aabb::EMPTY`] is the box. A coordinate that is NaN is ignored: the result has the
+/// coordinate of the other box, so that a primitive with NaN does not change the boxes of other primitives.
+///
+/// Pitfall: `Vec3::min` and `Vec3::max` keep or drop a NaN depending on the order of the operands. `f32::min` and
+/// `f32::max` always drop it.
+pub fn union(first: &Aabb, second: &Aabb) -> Aabb {
+    // <solution>
+    // Use f32::min and f32::max on each axis, because they drop a NaN in either order.
+    let pick = |choose: fn(f32, f32) -> f32, p: Vec3, q: Vec3| {
+        Vec3::new(choose(p.x, q.x), choose(p.y, q.y), choose(p.z, q.z))
+    };
+    Aabb::new(pick(f32::min, first.min, second.min), pick(f32::max, first.max, second.max))
+    // <stub> todo!("take the smaller min and the larger max")
+    // </solution>
+}
+
+/// The middle of a box, which is the average of its corners.
+pub fn centroid(bounds: &Aabb) -> Vec3 {
+    // <solution>
+    // Halve first, because the sum of two huge corners would overflow.
+    0.5 * bounds.min + 0.5 * bounds.max
+    // <stub> todo!("return the middle of the box")
+    // </solution>
+}
+
+/// The surface area of a box: the sum of its six faces, in square world units. It is 0 for the empty box.
+pub fn surface_area(bounds: &Aabb) -> f32 {
+    // <solution>
+    if bounds.is_empty() {
+        return 0.0;
+    }
+    let size = bounds.max - bounds.min;
+    2.0 * (size.x * size.y + size.y * size.z + size.z * size.x)
+    // <stub> todo!("add up the six faces; return 0 for an empty box")
+    // </solution>
+}
+
+/// Ray-box intersection by slabs: the `t` at which `ray` enters `bounds` and the `t` at which it leaves. The ray is
+/// inside the box while it is between the two planes of each of the three axes (`t_b = t_x ∩ t_y ∩ t_z`).
+///
+/// Both results lie in `ray.t_min..=ray.t_max`, whose ends count here. A ray that starts inside enters at `t_min`.
+/// The result is `None` if the ray misses the box within that range, and always for [`Aabb::EMPTY`]. The box is
+/// closed: a ray that touches a face, an edge or a corner hits it, also a ray that runs within a face, and a box
+/// without thickness can be hit. A ray that is aimed exactly at a corner must not miss by rounding, so the result may
+/// be wider than the exact interval by a few roundings. That holds for `ray.t_min >= 0`.
+///
+/// `inverse_direction` is `1 / ray.direction`, which the caller computes once for many boxes. It is infinite on an axis
+/// along which the ray does not move, with the sign of the zero. It is also infinite where a component of the direction
+/// is so small that `1/d` overflows (below 2.9e-39).
+///
+/// Pitfall: `t_b⁻ ≥ 0` rejects every box that the ray starts in. "Corner cases are covered by IEEE" is wrong for
+/// `0 · ∞`, which is NaN, and for a direction of -0.0. `<` instead of `≤` loses flat boxes. Rounding loses 6 of 100
+/// rays that are aimed at a corner.
+#[inline]
+pub fn slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
+    // <solution>
+    let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+    for axis in 0..3 {
+        // Choose the plane that the ray passes first, by the sign bit and not by `< 0`: 1 / -0.0 is -∞, and the
+        // planes must be swapped for it as well.
+        let (first, last) = if inverse_direction[axis].is_sign_negative() {
+            (bounds.max[axis], bounds.min[axis])
+        } else {
+            (bounds.min[axis], bounds.max[axis])
+        };
+        // Compute the t of both planes. Subtract first, because b/d - o/d would be ∞ - ∞ for d = 0.
+        let enter = (first - ray.origin[axis]) * inverse_direction[axis];
+        let leave = (last - ray.origin[axis]) * inverse_direction[axis];
+        // Intersect the intervals. A NaN means that the ray runs within the plane of a face, which is inside: in this
+        // order the comparison is false for NaN and changes nothing.
+        if enter > near {
+            near = enter;
+        }
+        if leave < far {
+            far = leave;
+        }
+    }
+    // Widen the interval by the rounding errors, and intersect it with the ray's range.
+    let (near, far) = ((near * WIDEN_ENTRY).max(ray.t_min), (far * WIDEN_EXIT).min(ray.t_max));
+    (near <= far).then_some((near, far))
+    // <stub> todo!("intersect the intervals of the three axes with the range of the ray")
+    // </solution>
+}
+
+// <solution>
+/// The bound on the relative error of a result of `n` roundings: `γₙ = n u / (1 - n u)`, where `u = 2⁻²⁴` bounds the
+/// relative error of one rounding in single precision.
+const fn gamma(n: u32) -> f32 {
+    let nu = n as f32 * f32::EPSILON / 2.0;
+    nu / (1.0 - nu)
+}
+
+/// The factor by which `slab` makes the exit larger. Entry and exit have three roundings each: 1/d, the difference and
+/// the product. If the exit is larger by twice γ₃, rounding loses no box (Ize, "Robust BVH Ray Traversal", JCGT 2013).
+/// Measured: without this factor 6 of 100 rays that are aimed at corners miss.
+const WIDEN_EXIT: f32 = 1.0 + 2.0 * gamma(3);
+
+/// The factor by which `slab` makes the entry smaller. A search compares the entry with the `t` of the best hit,
+/// which is rounded in another way. Without this factor it may skip a box that contains a hit at the same `t`.
+/// Measured: without it 1 of 500 rays in a room of flat walls, and 2 or 3 of 500 in a stadium with a small object,
+/// find another triangle than brute force.
+const WIDEN_ENTRY: f32 = 1.0 - 2.0 * gamma(3);
+// </solution>
+
+// <solution>
+/// The axis along which a box is longest; of equal ones the first.
+pub fn longest_axis(bounds: &Aabb) -> usize {
+    let size = bounds.max - bounds.min;
+    if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    }
+}
+// </solution>
