@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 /// The rubric's entry for a check: its points and its texts.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Entry {
+pub struct CheckEntry {
     /// The number of the check's stage. It is filled in from the name of the table.
     #[serde(skip)]
     pub stage: u8,
@@ -49,7 +49,7 @@ pub struct Stage {
     pub file: String,
     /// The checks of the stage by name, in alphabetical order; [`Stage::in_order`] has them in the order of
     /// the lecture.
-    pub checks: BTreeMap<String, Entry>,
+    pub checks: BTreeMap<String, CheckEntry>,
 }
 
 /// The text of the rubric.
@@ -88,15 +88,15 @@ pub fn stages() -> Vec<(u8, &'static Stage)> {
 
 impl Stage {
     /// The checks of the stage with their names, in the order of the rubric, which is that of the lecture.
-    pub fn in_order(&self) -> Vec<(&str, &Entry)> {
-        let mut checks: Vec<(&str, &Entry)> =
+    pub fn in_order(&self) -> Vec<(&str, &CheckEntry)> {
+        let mut checks: Vec<(&str, &CheckEntry)> =
             self.checks.iter().map(|(name, entry)| (name.as_str(), entry)).collect();
         checks.sort_by_key(|(_, entry)| entry.place);
         checks
     }
 }
 
-impl Entry {
+impl CheckEntry {
     /// The two lines with which every report about the check begins: stage and title, then the slide.
     pub fn header(&self) -> String {
         format!("stage {} · {}\n  slides: {}\n", self.stage, self.title, self.slide)
@@ -109,12 +109,10 @@ impl Entry {
 /// # Panics
 ///
 /// On the first use of [`RUBRIC`], if `tests/rubric.toml` is malformed.
-pub fn entry(stage: u8, check: &str) -> Entry {
-    RUBRIC
-        .get(&format!("stage{stage}"))
-        .and_then(|stage| stage.checks.get(check))
-        .cloned()
-        .unwrap_or_else(|| Entry { stage, points: 1, title: check.replace('_', " "), ..Entry::default() })
+pub fn entry(stage: u8, check: &str) -> CheckEntry {
+    RUBRIC.get(&format!("stage{stage}")).and_then(|stage| stage.checks.get(check)).cloned().unwrap_or_else(
+        || CheckEntry { stage, points: 1, title: check.replace('_', " "), ..CheckEntry::default() },
+    )
 }
 
 #[cfg(test)]

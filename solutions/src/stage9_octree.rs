@@ -40,19 +40,26 @@ pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     cube.max = cube.max.map(|x| x.min(f32::MAX));
 
     let mut octree = Octree::new(cube);
-    divide(&mut octree, 0, &widened.boxes, Cell::new(&cube), 0, &Limits { leaf_size, max_depth });
+    divide(&mut octree, 0, &widened.boxes, Cell::new(&cube), 0, &LeafRule { leaf_size, max_depth });
     octree
     // <stub> todo!("make a leaf if the primitives are few; else divide the cell and build all eight octants")
     // </solution>
 }
 
 // <solution>
-struct Limits {
+struct LeafRule {
     leaf_size: usize,
     max_depth: usize,
 }
 
-fn divide(octree: &mut Octree, node: u32, boxes: &[(u32, Aabb)], cell: Cell, depth: usize, limits: &Limits) {
+fn divide(
+    octree: &mut Octree,
+    node: u32,
+    boxes: &[(u32, Aabb)],
+    cell: Cell,
+    depth: usize,
+    limits: &LeafRule,
+) {
     // List the boxes that touch each octant.
     let octants: [Vec<(u32, Aabb)>; 8] = std::array::from_fn(|octant| {
         let part = cell.octant(octant);

@@ -151,7 +151,7 @@ pub struct World {
 
 /// A function that composes the transforms of the nodes from the root down to a shape, and returns the
 /// placement of the shape. `None` means that the shape cannot be placed.
-pub type Place = fn(&[Affine3A]) -> Option<Placement>;
+pub type PlacementFunction = fn(&[Affine3A]) -> Option<Placement>;
 
 /// The student functions that a world is made with, and which kinds of shapes it contains.
 #[derive(Clone, Copy)]
@@ -160,7 +160,7 @@ pub struct WorldFunctions {
     pub vertex_normals: Option<fn(&Mesh) -> Vec<Vec3>>,
     /// Composes the transforms from the root down. Without it, all shapes but unstretched spheres and
     /// infinite planes are made of triangles, and meshes are copied for each instance.
-    pub placement: Option<Place>,
+    pub placement: Option<PlacementFunction>,
     /// The point of a Bézier patch at `(u, v)`, both in `0..=1`. Without it, patches are left out.
     pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
     /// Divides each triangle of a mesh into four. Without it, meshes are not subdivided.

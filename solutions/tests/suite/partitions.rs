@@ -47,13 +47,13 @@ impl Things {
 
 /// Tests rays against things, in cells or in boxes of a hierarchy.
 #[derive(Clone, Copy)]
-struct Asked<'a> {
+struct SceneProbe<'a> {
     things: &'a Things,
     bvh: &'a Bvh,
     visits: u64,
 }
 
-impl Asked<'_> {
+impl SceneProbe<'_> {
     fn meet(&self, primitive: u32, ray: &Ray) -> Option<f32> {
         match &self.things.0[primitive as usize] {
             Thing::Tile(tile) => stage2_triangles::triangle_choice(ray, tile).map(|hit| hit.t),
@@ -62,7 +62,7 @@ impl Asked<'_> {
     }
 }
 
-impl Cells for Asked<'_> {
+impl Cells for SceneProbe<'_> {
     fn visit(&mut self, _: u32) {
         self.visits += 1;
     }
@@ -71,7 +71,7 @@ impl Cells for Asked<'_> {
     }
 }
 
-impl Probe for Asked<'_> {
+impl Probe for SceneProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
         self.bvh.nodes[node as usize].contents
     }
@@ -153,15 +153,16 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     let mut visits = [0; 8];
     for case in 0..n_rays() {
         let ray = ray(&mut random, &things, size, at);
-        let mut asked = Asked { things: &things, bvh: &bvh, visits: 0 };
+        let mut asked = SceneProbe { things: &things, bvh: &bvh, visits: 0 };
         let expected = stage2_triangles::brute_force(boxes.len() as u32, &mut asked, &ray);
-        let near = |asked: &mut Asked<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&trees[0], asked, ray);
-        let mut judge = |index: usize, what: &str, find: &dyn Fn(&mut Asked<'_>) -> Option<PrimitiveHit>| {
-            let mut probe = asked;
-            let found = find(&mut probe);
-            visits[index] += probe.visits;
-            assert_eq!(found, expected, "{what}, size {size} at {at}, seed {seed}, ray {case}: {ray:?}");
-        };
+        let near = |asked: &mut SceneProbe<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&trees[0], asked, ray);
+        let mut judge =
+            |index: usize, what: &str, find: &dyn Fn(&mut SceneProbe<'_>) -> Option<PrimitiveHit>| {
+                let mut probe = asked;
+                let found = find(&mut probe);
+                visits[index] += probe.visits;
+                assert_eq!(found, expected, "{what}, size {size} at {at}, seed {seed}, ray {case}: {ray:?}");
+            };
         judge(0, "grid", &|probe| stage9_grid::closest_hit(&grid, probe, &ray));
         judge(1, "octree by cells", &|probe| stage9_octree::closest_hit_by_cells(&octree, probe, &ray));
         judge(2, "octree", &|probe| stage9_octree::closest_hit(&octree, probe, &ray));
@@ -200,7 +201,7 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
 /// Counts the visits that a search of a kd-tree would save without its margin for rounding errors: to cells
 /// that the ray misses, or enters beyond the closest hit so far.
 struct Saved<'a> {
-    asked: Asked<'a>,
+    asked: SceneProbe<'a>,
     /// The `t` at which the ray enters each node, if it does.
     entries: Vec<Option<f64>>,
     best: f64,
@@ -246,7 +247,7 @@ fn room_for_rounding_costs_next_to_no_visits() {
         let ray = ray(&mut random, &things, 1.0, Vec3::ZERO);
         let mut entries = vec![None; tree.nodes.len()];
         tree.walk(usize::MAX, |node, cell, _| entries[node as usize] = entry(&ray, &cell));
-        let asked = Asked { things: &things, bvh: &bvh, visits: 0 };
+        let asked = SceneProbe { things: &things, bvh: &bvh, visits: 0 };
         let mut probe = Saved { asked, entries, best: f64::INFINITY, saved: 0 };
         stage9_kd_tree::closest_hit(&tree, &mut probe, &ray);
         visits += probe.asked.visits;

@@ -2,7 +2,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use anyhow::{Result, bail};
-use raykata::rubric::{self, Entry};
+use raykata::rubric::{self, CheckEntry};
 use std::fmt::Write;
 
 /// The maximum width of a line, in columns.
@@ -107,7 +107,7 @@ fn lines(words: &str, width: usize) -> Vec<String> {
 
 /// One of the three hints of a check.
 pub fn hint(name: &str, level: usize) -> Result<String> {
-    let all: Vec<(&str, &Entry)> =
+    let all: Vec<(&str, &CheckEntry)> =
         rubric::stages().into_iter().flat_map(|(_, stage)| stage.in_order()).collect();
     let Some((_, entry)) = all.iter().find(|(check, _)| *check == name) else {
         let names = || all.iter().map(|(check, _)| *check);

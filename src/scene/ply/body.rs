@@ -21,7 +21,7 @@ pub(super) struct Body<'a> {
 
 /// The number that is being read, for messages.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'a> {
+pub(super) struct NumberLocation<'a> {
     /// The kind of element, as the header declares it.
     pub element: &'a Element,
     /// Which element of that kind, counted from 0.
@@ -38,7 +38,7 @@ impl<'a> Body<'a> {
 
     /// Reads the next number, which is of type `scalar`, as an `f64`; it may be NaN or infinite. Fails at the
     /// end of the file and at a word that is not a number.
-    pub fn value(&mut self, scalar: Scalar, place: Place) -> Result<f64, LoadError> {
+    pub fn value(&mut self, scalar: Scalar, place: NumberLocation) -> Result<f64, LoadError> {
         self.advance(scalar, place)?;
         let bytes = &self.bytes[self.last.clone()];
         match self.encoding {
@@ -48,7 +48,7 @@ impl<'a> Body<'a> {
     }
 
     /// Reads the next number as the length of a list; fails if it is not a whole number in `0..=u32::MAX`.
-    pub fn length(&mut self, scalar: Scalar, place: Place) -> Result<usize, LoadError> {
+    pub fn length(&mut self, scalar: Scalar, place: NumberLocation) -> Result<usize, LoadError> {
         let length = self.value(scalar, place)?;
         // Also false for a NaN. The bound is the largest `uint`, so that the number fits into a `usize`.
         if (0.0..=f64::from(u32::MAX)).contains(&length) && length.fract() == 0.0 {
@@ -62,7 +62,7 @@ impl<'a> Body<'a> {
 
     /// Skips a property that is not needed. Fails at the end of the file; apart from the length of a list,
     /// the numbers are not parsed.
-    pub fn skip(&mut self, place: Place) -> Result<(), LoadError> {
+    pub fn skip(&mut self, place: NumberLocation) -> Result<(), LoadError> {
         match (place.property.kind, self.encoding) {
             (Kind::One(scalar), _) => self.advance(scalar, place),
             (Kind::List { length, item }, Encoding::Ascii) => {
@@ -85,7 +85,7 @@ impl<'a> Body<'a> {
         }
         for number in 0..element.count {
             for property in &element.properties {
-                self.skip(Place { element, number, property })?;
+                self.skip(NumberLocation { element, number, property })?;
             }
         }
         Ok(())
@@ -102,7 +102,7 @@ impl<'a> Body<'a> {
 
     /// Fails if a binary file ends before `length` more numbers of type `item`. One comparison with the file
     /// size avoids a long loop over a length that cannot be right. An ASCII file always passes.
-    pub fn check_left(&self, length: usize, item: Scalar, place: Place) -> Result<(), LoadError> {
+    pub fn check_left(&self, length: usize, item: Scalar, place: NumberLocation) -> Result<(), LoadError> {
         let left = (self.bytes.len() - self.at) / item.size();
         if self.encoding != Encoding::Ascii && length > left { Err(self.ends_early(place)) } else { Ok(()) }
     }
@@ -119,7 +119,7 @@ impl<'a> Body<'a> {
 
     /// An error at the number that was read last: by line and column in an ASCII file, by property and byte
     /// offset in a binary file.
-    pub fn trouble(&self, place: Place, message: String) -> LoadError {
+    pub fn trouble(&self, place: NumberLocation, message: String) -> LoadError {
         match self.encoding {
             Encoding::Ascii => trouble_at(self.file, self.bytes, self.last.clone(), message),
             Encoding::Binary(_) => {
@@ -133,7 +133,7 @@ impl<'a> Body<'a> {
     }
 
     /// Skips the next number and remembers its byte range.
-    fn advance(&mut self, scalar: Scalar, place: Place) -> Result<(), LoadError> {
+    fn advance(&mut self, scalar: Scalar, place: NumberLocation) -> Result<(), LoadError> {
         match self.encoding {
             Encoding::Ascii => {
                 if self.next_word() {
@@ -163,7 +163,7 @@ impl<'a> Body<'a> {
         true
     }
 
-    fn not_a_number(&self, place: Place) -> LoadError {
+    fn not_a_number(&self, place: NumberLocation) -> LoadError {
         let word = readable(&self.bytes[self.last.clone()]);
         let (element, property) = (&place.element.name, &place.property.name);
         let message = format!(
@@ -178,8 +178,8 @@ impl<'a> Body<'a> {
         })
     }
 
-    fn ends_early(&self, place: Place) -> LoadError {
-        let Place { element, number, property } = place;
+    fn ends_early(&self, place: NumberLocation) -> LoadError {
+        let NumberLocation { element, number, property } = place;
         let (name, count) = (&element.name, element.count);
         let message = format!(
             "the file ends early: the header promises {count} of element `{name}`, but `{}` of {name} {number} is missing",

@@ -1,6 +1,6 @@
 //! From the elements `vertex` and `face` to the tables of a mesh.
 
-use super::body::{Body, Place};
+use super::body::{Body, NumberLocation};
 use super::header::{Element, Header, Kind, Property};
 use super::scalar::Scalar;
 use super::text::{nearest, trouble_at};
@@ -88,7 +88,7 @@ impl Layout {
         let mut row = [0.0; 8];
         for number in 0..element.count {
             for (property, column) in element.properties.iter().zip(&self.row) {
-                let place = Place { element, number, property };
+                let place = NumberLocation { element, number, property };
                 match (*column, property.kind) {
                     (Some(column), Kind::One(scalar)) => row[column] = body.value(scalar, place)? as f32,
                     _ => body.skip(place)?,
@@ -114,7 +114,7 @@ impl Layout {
         mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
         for number in 0..element.count {
             for (index, property) in element.properties.iter().enumerate() {
-                let place = Place { element, number, property };
+                let place = NumberLocation { element, number, property };
                 match property.kind {
                     Kind::List { length, item } if index == self.corners => {
                         self.face(body, place, length, item, mesh)?;
@@ -129,7 +129,7 @@ impl Layout {
     fn face(
         &self,
         body: &mut Body,
-        place: Place,
+        place: NumberLocation,
         length: Scalar,
         item: Scalar,
         mesh: &mut Mesh,
@@ -154,7 +154,7 @@ impl Layout {
     }
 
     /// One index of a vertex; fails if there is no such vertex.
-    fn corner(&self, body: &mut Body, place: Place, item: Scalar) -> Result<u32, LoadError> {
+    fn corner(&self, body: &mut Body, place: NumberLocation, item: Scalar) -> Result<u32, LoadError> {
         let index = body.value(item, place)?;
         // Accept indices that are written as floats, if they are whole numbers in range. The test is false for NaN.
         if 0.0 <= index && index < self.vertex_count as f64 && index.fract() == 0.0 {

@@ -1,10 +1,10 @@
 //! A broken law and its message: at most twelve lines, with the next command last.
 
-use crate::rubric::Entry;
+use crate::rubric::CheckEntry;
 use std::fmt::Write;
 
 /// The result of a check.
-pub type Outcome = Result<(), Broken>;
+pub type CheckResult = Result<(), Broken>;
 
 /// A broken law with the smallest input that breaks it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +62,7 @@ impl Broken {
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
-    pub fn message(&self, check: &str, rubric: &Entry) -> String {
+    pub fn message(&self, check: &str, rubric: &CheckEntry) -> String {
         let mut message = rubric.header();
         let _ = writeln!(message, "  input     {}", shorten(&self.input, 3));
         let _ = writeln!(message, "  yours     {}", shorten(&self.yours, 1));
@@ -105,7 +105,7 @@ mod tests {
     fn the_longest_message_has_twelve_lines() {
         let long = "a line\n".repeat(30);
         let broken = Broken::with_texts(&long, &long, &long, "brute force").looks_like(Some(&long));
-        let entry = Entry { stage: 3, ..Entry::default() };
+        let entry = CheckEntry { stage: 3, ..CheckEntry::default() };
         let message = broken.message("some_check", &entry);
         assert!(message.lines().count() <= 12, "{message}");
         assert!(message.ends_with("cargo run -- hint some_check\n"));

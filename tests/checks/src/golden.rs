@@ -1,7 +1,7 @@
 //! Golden texts: trees, tables and counts that are the same for every correct solution. insta keeps them in
 //! `tests/golden`.
 
-use crate::broken::{Broken, Outcome};
+use crate::broken::{Broken, CheckResult};
 use raykata::kit::kit_error;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -19,7 +19,7 @@ pub(crate) fn is_sealed() -> bool {
 }
 
 /// Compares `text` with the golden text `name`. `INSTA_UPDATE=always cargo test -p solutions` writes it again.
-pub fn compare(name: &str, input: &str, text: &str) -> Outcome {
+pub fn compare(name: &str, input: &str, text: &str) -> CheckResult {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../golden");
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path(folder);

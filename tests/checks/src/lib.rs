@@ -21,7 +21,7 @@ pub mod trial;
 use raykata::kit::{Kit, StudentKit};
 use std::sync::Arc;
 
-pub use broken::{Broken, Outcome};
+pub use broken::{Broken, CheckResult};
 pub use drawn::Drawn;
 pub use trial::{Check, Trial, Verdict, examine, examine_with, grade, run, verdict};
 

@@ -3,7 +3,7 @@
 //! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Only a stated
 //! fraction of the pixels may differ, because correct methods round differently along outlines.
 
-use crate::broken::{Broken, Outcome, Png};
+use crate::broken::{Broken, CheckResult, Png};
 use crate::golden as golden_texts;
 use crate::paste::Paste;
 use glam::Vec3;
@@ -46,7 +46,7 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
 
 /// Compares `film`, whose pixels belong to `rays`, with the golden picture `name`. A fraction `may_differ` of the
 /// pixels may differ. `INSTA_UPDATE=always cargo test -p solutions` writes the golden picture again.
-pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> Outcome {
+pub fn compare(name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
     let golden_file =
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
     let yours = film.to_bytes(gamma());

@@ -6,7 +6,7 @@
 //! statistical check with 1,000 seeds, on the reference and on wrong distributions, of which each must be caught 990
 //! times.
 
-use crate::broken::{Broken, Outcome};
+use crate::broken::{Broken, CheckResult};
 use glam::{UVec2, Vec2};
 use raykata::random::{Points, Purpose};
 use raykata::scene::Sampler;
@@ -59,7 +59,7 @@ pub fn covers_evenly(
     places: &[(f64, f64)],
     axes: [&str; 2],
     diagnosis: impl Fn(&[u64]) -> &'static str,
-) -> Outcome {
+) -> CheckResult {
     let mut counts = vec![0; (CELLS * CELLS) as usize];
     for &(x, y) in places {
         let cell = |share: f64| ((share * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
@@ -125,7 +125,7 @@ fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
 }
 
 /// Checks that the mean of `values` is `expected`.
-pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> Outcome {
+pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> CheckResult {
     if mean_score(values, expected).abs() <= TWO_SIDED {
         return Ok(());
     }

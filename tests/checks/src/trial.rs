@@ -1,6 +1,6 @@
 //! Running a check: on a thread with a large stack, with a time limit, and with the same inputs in each run.
 
-use crate::broken::{self, Broken, Outcome};
+use crate::broken::{self, Broken, CheckResult};
 use crate::drawn::{Drawn, Values};
 use crate::rubric;
 use proptest::strategy::{Strategy, ValueTree};
@@ -26,7 +26,7 @@ pub struct Check {
     /// The name of the check: a sentence about light or geometry, in snake case.
     pub name: &'static str,
     /// The function that tests whether a kit obeys the law.
-    pub law: fn(&Trial<'_>) -> Outcome,
+    pub law: fn(&Trial<'_>) -> CheckResult,
 }
 
 /// A run of a check on a kit, with its random inputs.
@@ -71,8 +71,8 @@ impl<'a> Trial<'a> {
         &self,
         cases: usize,
         inputs: S,
-        judge: impl Fn(&[S::Value]) -> Vec<Outcome>,
-    ) -> Outcome
+        judge: impl Fn(&[S::Value]) -> Vec<CheckResult>,
+    ) -> CheckResult
     where
         S::Value: Clone + Send + Sync + 'static,
     {
@@ -80,7 +80,7 @@ impl<'a> Trial<'a> {
     }
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.
-    fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> Outcome {
+    fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> CheckResult {
         let draw = || law.draw(cases, &mut self.runner());
         let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
         let values = match &self.drawn {
@@ -123,9 +123,9 @@ trait Law {
     /// The number of inputs.
     fn count(&self, values: &AnyValues) -> usize;
     /// Judges all inputs.
-    fn judge(&self, values: &AnyValues) -> Vec<Outcome>;
+    fn judge(&self, values: &AnyValues) -> Vec<CheckResult>;
     /// Judges one input.
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome>;
+    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult>;
     /// The text of one input for a message.
     fn words(&self, values: &AnyValues, index: usize) -> String;
     /// The tree of smaller inputs to which the input with this index can shrink.
@@ -139,7 +139,7 @@ trait Tree {
     fn simplify(&mut self) -> bool;
     fn complicate(&mut self) -> bool;
     /// Judges the current input.
-    fn judge(&self) -> Vec<Outcome>;
+    fn judge(&self) -> Vec<CheckResult>;
     /// The text of the current input for a message.
     fn words(&self) -> String;
 }
@@ -149,7 +149,7 @@ struct Judged<S, J> {
     judge: J,
 }
 
-impl<S: Strategy, J: Fn(&[S::Value]) -> Vec<Outcome>> Law for Judged<S, J>
+impl<S: Strategy, J: Fn(&[S::Value]) -> Vec<CheckResult>> Law for Judged<S, J>
 where
     S::Value: Send + Sync + 'static,
 {
@@ -167,11 +167,11 @@ where
         values.downcast_ref::<Vec<S::Value>>().map_or(0, Vec::len)
     }
 
-    fn judge(&self, values: &AnyValues) -> Vec<Outcome> {
+    fn judge(&self, values: &AnyValues) -> Vec<CheckResult> {
         values.downcast_ref::<Vec<S::Value>>().map_or_else(Vec::new, |values| (self.judge)(values))
     }
 
-    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<Outcome> {
+    fn judge_one(&self, values: &AnyValues, index: usize) -> Vec<CheckResult> {
         let values = values.downcast_ref::<Vec<S::Value>>();
         values.map_or_else(Vec::new, |values| (self.judge)(&values[index..=index]))
     }
@@ -193,7 +193,7 @@ struct JudgedTree<'a, T, J> {
     judge: &'a J,
 }
 
-impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T, J> {
+impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<CheckResult>> Tree for JudgedTree<'_, T, J> {
     fn simplify(&mut self) -> bool {
         self.tree.simplify()
     }
@@ -202,7 +202,7 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T
         self.tree.complicate()
     }
 
-    fn judge(&self) -> Vec<Outcome> {
+    fn judge(&self) -> Vec<CheckResult> {
         (self.judge)(&[self.tree.current()])
     }
 
@@ -212,7 +212,7 @@ impl<T: ValueTree, J: Fn(&[T::Value]) -> Vec<Outcome>> Tree for JudgedTree<'_, T
 }
 
 /// The broken law of one input, if it breaks one. A panic counts.
-fn judge_one(judge: &dyn Fn() -> Vec<Outcome>, input: &dyn Fn() -> String) -> Option<Broken> {
+fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -> Option<Broken> {
     match kit_error::catch(judge) {
         Ok(outcomes) => outcomes.into_iter().find_map(Result::err),
         Err(KitError::Panicked { message, place }) => {
@@ -252,7 +252,7 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
 }
 
 /// Whether the law holds, or the error that prevented an answer.
-pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<Outcome, KitError> {
+pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<CheckResult, KitError> {
     examine_with(check, kit, seed, None)
 }
 
@@ -262,7 +262,7 @@ pub fn examine_with(
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
     drawn: Option<Arc<Drawn>>,
-) -> Result<Outcome, KitError> {
+) -> Result<CheckResult, KitError> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
     // A thread that exceeds the time limit is left running and ends with the process.
@@ -280,7 +280,7 @@ pub fn examine_with(
 }
 
 /// The result of [`examine`] with the message for the student.
-pub fn verdict(check: &Check, examined: Result<Outcome, KitError>) -> Verdict {
+pub fn verdict(check: &Check, examined: Result<CheckResult, KitError>) -> Verdict {
     let entry = rubric::entry(check.stage, check.name);
     match examined {
         Ok(Ok(())) => Verdict::Passed,
@@ -325,7 +325,7 @@ mod tests {
         check(&Trial::new(&raykata::kit::Door(Silent), "a_check", 1))
     }
 
-    fn refuse_above(limit: i32) -> impl Fn(&[i32]) -> Vec<Outcome> {
+    fn refuse_above(limit: i32) -> impl Fn(&[i32]) -> Vec<CheckResult> {
         move |values| {
             let judge = |value: &i32| {
                 if *value <= limit { Ok(()) } else { Err(Broken::new(format!("{value}"), "", "", "")) }
@@ -355,7 +355,7 @@ mod tests {
     #[test]
     #[allow(clippy::todo, reason = "this test is about gaps")]
     fn a_gap_stays_a_gap() {
-        let law = |_: &[i32]| -> Vec<Outcome> { todo!("write it") };
+        let law = |_: &[i32]| -> Vec<CheckResult> { todo!("write it") };
         let gap = kit_error::catch(|| with_trial(|trial| trial.forall(5, 0..9i32, law)));
         assert!(matches!(gap, Err(KitError::NotWritten { .. })), "{gap:?}");
     }

@@ -1,7 +1,7 @@
 //! Verifies that the rubric and the lists of checks agree.
 
 use crate::STAGES;
-use checks::rubric::{Entry, RUBRIC};
+use checks::rubric::{CheckEntry, RUBRIC};
 
 /// The differences between the rubric and the lists of checks, one sentence each.
 pub fn differences() -> Vec<String> {
@@ -31,7 +31,7 @@ pub fn differences() -> Vec<String> {
     differences
 }
 
-fn faults(entry: &Entry, name: &str) -> Vec<String> {
+fn faults(entry: &CheckEntry, name: &str) -> Vec<String> {
     let empty =
         [&entry.title, &entry.slide].into_iter().chain(&entry.hints).any(|text| text.trim().is_empty());
     let mut faults = Vec::new();

@@ -1,12 +1,12 @@
 //! The picture of stage 1.
 
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::{Trial, picture};
 use glam::Vec3;
 use raykata::kit::{PlaneQuery, SphereQuery};
 use raykata::shape::{Plane, Sphere};
 
-pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> CheckResult {
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let sphere = Sphere { center: Vec3::Y, radius: 1.0 };
     let rays = picture::rays(Vec3::new(2.0, 2.5, 5.0), 0.8 * Vec3::Y);

@@ -1,7 +1,7 @@
 //! Ray-plane intersection, and the normal on the side that the ray comes from.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self, Expected};
 use checks::generate::{direction, point, rough_point};
 use checks::judge::{compare, known};
@@ -12,7 +12,7 @@ use raykata::kit::PlaneQuery;
 use raykata::ray::Ray;
 use raykata::shape::Plane;
 
-pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Outcome> {
+pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.plane(queries), |query, yours| {
         let expected = double::plane(&query.ray, &query.plane);
         if expected.accepts(yours) {
@@ -48,7 +48,7 @@ pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<Out
     })
 }
 
-pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let inputs =
         (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
             PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
@@ -63,7 +63,7 @@ pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
     judge_planes(trial, &[flat, short]).into_iter().collect()
 }
 
-pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
+pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
     let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let cases = [
         (Ray::new(Vec3::Y, Vec3::X), plane),
@@ -90,7 +90,7 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
+pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
     // T12: -(D + n·o) subtracts two numbers as large as the coordinates; (p0 - o)·n does not.
     let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
         let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
@@ -102,7 +102,7 @@ pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> Outcome {
         .map_err(|broken| if broken.diagnosis.is_some() { broken } else { broken.looks_like(Some(cancels)) })
 }
 
-pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> Outcome {
+pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, (direction(), direction()), |queries| {
         compare(queries, trial.kit.face_forward(queries), |(normal, direction), yours| {
             let expected = if normal.dot(*direction) > 0.0 { -*normal } else { *normal };

@@ -1,7 +1,7 @@
 //! `nearest_root`: which of two roots is the hit.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use raykata::kit::RootQuery;
 use raykata::ray::Ray;
 
-pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> Outcome {
+pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> CheckResult {
     // First test roots that are clearly out of range, because random roots shrink to an end of the range.
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let behind = "you return a root behind the ray, which ray.contains(t) refuses";
@@ -59,7 +59,7 @@ pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> 
     })
 }
 
-pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> Outcome {
+pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> CheckResult {
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     let cases = [
         ([f32::NAN, f32::NAN], None),

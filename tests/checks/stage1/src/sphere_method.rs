@@ -1,7 +1,7 @@
 //! The two methods of intersecting a sphere: how the checks judge their answers, and the diagnosis of a wrong answer.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self, Expected, Roots};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
@@ -10,20 +10,20 @@ use raykata::shape::Sphere;
 
 /// One of the two methods of intersecting a sphere.
 #[derive(Clone, Copy)]
-pub(super) struct Method {
+pub(super) struct SphereFunction {
     pub(super) name: &'static str,
     pub(super) ask: fn(&dyn Kit, &[SphereQuery]) -> Vec<Option<f32>>,
 }
 
-pub(super) const ALGEBRAIC: Method =
-    Method { name: "sphere_algebraic", ask: |kit, queries| kit.sphere_algebraic(queries) };
+pub(super) const ALGEBRAIC: SphereFunction =
+    SphereFunction { name: "sphere_algebraic", ask: |kit, queries| kit.sphere_algebraic(queries) };
 
-pub(super) const GEOMETRIC: Method =
-    Method { name: "sphere_geometric", ask: |kit, queries| kit.sphere_geometric(queries) };
+pub(super) const GEOMETRIC: SphereFunction =
+    SphereFunction { name: "sphere_geometric", ask: |kit, queries| kit.sphere_geometric(queries) };
 
-impl Method {
+impl SphereFunction {
     /// Compares answers with the result in double precision.
-    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[SphereQuery]) -> Vec<Outcome> {
+    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[SphereQuery]) -> Vec<CheckResult> {
         compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
             let expected = double::sphere(&query.ray, &query.sphere);
             if expected.accepts(yours) {
@@ -44,7 +44,7 @@ impl Method {
         self,
         trial: &Trial<'_>,
         cases: &[(SphereQuery, Option<f32>, &str)],
-    ) -> Outcome {
+    ) -> CheckResult {
         let queries: Vec<SphereQuery> = cases.iter().map(|case| case.0).collect();
         for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
             if yours != *expected {

@@ -1,8 +1,8 @@
 //! Ray-sphere intersection: each check for both methods.
 
-use super::sphere_method::{ALGEBRAIC, GEOMETRIC, Method};
+use super::sphere_method::{ALGEBRAIC, GEOMETRIC, SphereFunction};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
 use checks::judge::{compare, known};
 use checks::paste::{Arguments, call};
@@ -14,10 +14,10 @@ use raykata::shape::Sphere;
 
 macro_rules! for_both_methods {
     ($($algebraic:ident $geometric:ident $law:ident;)*) => {
-        $(pub(super) fn $algebraic(trial: &Trial<'_>) -> Outcome {
+        $(pub(super) fn $algebraic(trial: &Trial<'_>) -> CheckResult {
             $law(trial, ALGEBRAIC)
         }
-        pub(super) fn $geometric(trial: &Trial<'_>) -> Outcome {
+        pub(super) fn $geometric(trial: &Trial<'_>) -> CheckResult {
             $law(trial, GEOMETRIC)
         })*
     };
@@ -34,13 +34,13 @@ for_both_methods! {
     sphere_algebraic_survives_invalid_numbers sphere_geometric_survives_invalid_numbers sphere_invalid_numbers;
 }
 
-pub(super) fn sphere_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_agrees(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     // First test the ray that the slide draws. Random rays that fail shrink to rays that start inside the sphere.
     let drawn = SphereQuery {
         ray: Ray::new(Vec3::new(-5.0, 1.0, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 2.0 },
     };
-    method.judge(trial, &[drawn]).into_iter().collect::<Outcome>()?;
+    method.judge(trial, &[drawn]).into_iter().collect::<CheckResult>()?;
     let inputs = (ray(), sphere(), any::<bool>()).prop_map(|(ray, sphere, aim)| {
         // Aim half of the rays at the sphere, because hardly any random ray hits it.
         let to_center = sphere.center - ray.origin;
@@ -54,7 +54,7 @@ pub(super) fn sphere_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(4000, inputs, |queries| method.judge(trial, queries))
 }
 
-pub(super) fn sphere_from_inside(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_from_inside(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let inputs = (sphere(), unit(), unit(), 0..=7i32).prop_map(|(sphere, direction, out, eighths)| {
         let origin = sphere.center + 0.9 * sphere.radius * eighths as f32 / 8.0 * out;
         SphereQuery { ray: Ray::new(origin, direction), sphere }
@@ -62,7 +62,7 @@ pub(super) fn sphere_from_inside(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(2000, inputs, |queries| method.judge(trial, queries))
 }
 
-pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_scaled(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let inputs = (point(8), direction(), sphere())
         .prop_map(|(origin, direction, sphere)| SphereQuery { ray: Ray::new(origin, direction), sphere });
     trial.forall(2000, inputs.clone(), |queries| method.judge(trial, queries))?;
@@ -91,7 +91,7 @@ pub(super) fn sphere_scaled(trial: &Trial<'_>, method: Method) -> Outcome {
     })
 }
 
-pub(super) fn sphere_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_in_range(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let query = |t_min, t_max| SphereQuery {
         ray: Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X).with_range(t_min, t_max),
         sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
@@ -113,7 +113,7 @@ pub(super) fn sphere_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 /// S2, S4: spheres of radius 0.001 to 1 at distances of 10 to 100,000. Each ray is aimed at its sphere.
-pub(super) fn sphere_far(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_far(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let inputs = (unit(), rough_point(0.55), magnitude(1.0, 5.0), magnitude(-3.0, 0.0)).prop_map(
         |(away, at, distance, radius)| {
             let origin = distance * away;
@@ -137,7 +137,7 @@ pub(super) fn sphere_far(trial: &Trial<'_>, method: Method) -> Outcome {
     trial.forall(1000, ground, |queries| method.judge(trial, queries))
 }
 
-pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let at_height = |y: f32| SphereQuery {
         ray: Ray::new(Vec3::new(-5.0, y, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
@@ -162,7 +162,7 @@ pub(super) fn sphere_tangent(trial: &Trial<'_>, method: Method) -> Outcome {
     Ok(())
 }
 
-pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     // The origin is exactly on the sphere: a ray outwards misses, and a ray inwards hits the far side.
     let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
     let from = |origin: Vec3, direction: Vec3| SphereQuery { ray: Ray::new(origin, direction), sphere };
@@ -190,7 +190,7 @@ pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: Method) -> Outcome {
     )
 }
 
-pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
     let ray = Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X);
     let unit = Sphere { center: Vec3::ZERO, radius: 1.0 };
     let nothing =
@@ -208,7 +208,7 @@ pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: Method) -> Outco
     )
 }
 
-pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> Outcome {
+pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
     let inputs =
         (sphere(), unit()).prop_map(|(sphere, out)| (sphere, sphere.center + sphere.radius * out, out));
     trial.forall(1000, inputs, |cases| {

@@ -2,7 +2,7 @@
 
 use super::Odd;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -58,7 +58,7 @@ impl Loss {
     }
 }
 
-pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 8);
     let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
     // Only the first failure is reported, so put those with a single cause first.
@@ -75,7 +75,7 @@ pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> Outcome {
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 13);
     // Turn the same rays away from the corner, by 1e-5 to 0.1 of the distance.
     let beside = |query: SlabQuery| {
@@ -103,7 +103,7 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> Outcome {
     compare(&queries, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 15);
     // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal.
     let draw = |_| {
@@ -137,7 +137,7 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> Outcome
     compare(&drawn, trial.kit.conservative_slab(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 9);
     let mut queries = vec![SlabQuery { ray: Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY }];
     queries.extend(

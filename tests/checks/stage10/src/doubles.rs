@@ -3,7 +3,7 @@
 use super::triangles::{aim_again, draw};
 use super::{Odd, SPECIAL};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -51,7 +51,7 @@ fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
     queries
 }
 
-pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> Outcome {
+pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> CheckResult {
     for distribution in DISTRIBUTIONS.iter().filter(|one| one.name != TOO_THIN_FOR_GRAM) {
         let queries = at_all_edges(trial, distribution.name);
         let answers = trial.kit.triangle_in_double(&queries);
@@ -166,7 +166,7 @@ fn steps_off(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<f64> {
     t_error_in_ulps(&query.ray, Body::Triangle(query.triangle), yours?.t)
 }
 
-pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
+pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult {
     for distribution in &DISTRIBUTIONS {
         let queries = draw(trial, distribution.name, 400);
         let answers = trial.kit.triangle_in_double(&queries);
@@ -204,7 +204,7 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
+pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 16);
     let triangles = odd.triangles();
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
@@ -221,7 +221,9 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome 
             _ => Ok(()),
         }
     };
-    compare(&triangles, trial.kit.triangle_in_double(&triangles), judge).into_iter().collect::<Outcome>()?;
+    compare(&triangles, trial.kit.triangle_in_double(&triangles), judge)
+        .into_iter()
+        .collect::<CheckResult>()?;
 
     // Aim at the centre, so that only the radius decides.
     let centred = |radius: f32| {

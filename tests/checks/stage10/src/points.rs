@@ -1,7 +1,7 @@
 //! The laws of `offset_origin` and `safe_normalize`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::{magnitude, rough_point, unit};
 use checks::judge::{compare, known};
@@ -38,7 +38,7 @@ fn height(query: &OffsetQuery, origin: Vec3) -> (f64, f64) {
     (moved.dot(side), query.error.as_dvec3().dot(side.abs()))
 }
 
-pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> Outcome {
+pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
     trial.forall(4000, surfaces(), |queries| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
             let (height, bound) = height(query, origin);
@@ -66,7 +66,7 @@ pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> Outco
     })
 }
 
-pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> Outcome {
+pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> CheckResult {
     trial.forall(4000, surfaces(), |queries| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
             let (height, bound) = height(query, origin);
@@ -87,7 +87,7 @@ pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> Outcome 
     })
 }
 
-pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> Outcome {
+pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> CheckResult {
     let vectors =
         (unit(), -140..=126i32).prop_map(|(v, exponent)| (v.as_dvec3() * 2f64.powi(exponent)).as_vec3());
     let vectors = vectors.prop_filter("a vector that did not underflow to 0", |v| *v != Vec3::ZERO);
@@ -117,7 +117,7 @@ pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> O
     })
 }
 
-pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> Outcome {
+pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> CheckResult {
     let bad = [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
     let mut queries = vec![Vec3::ZERO, Vec3::splat(-0.0)];
     for number in &bad[2..] {

@@ -2,7 +2,7 @@
 
 use super::doubles::describe;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::judge::known;
 use checks::paste::Arguments;
@@ -95,7 +95,7 @@ fn subtracted_in_single(SphereQuery { ray, sphere }: &SphereQuery) -> Option<Mee
     meet(&ray, Body::Sphere(Sphere { center: Vec3::ZERO, ..*sphere }))
 }
 
-pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> Outcome {
+pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 17);
     let queries: Vec<SphereQuery> = (0..8000).map(|_| at_rim(&mut random)).collect();
     let judge = |(query, yours): (&SphereQuery, Option<f32>)| {
@@ -150,7 +150,7 @@ fn through(random: &mut Random) -> SphereQuery {
     }
 }
 
-pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> Outcome {
+pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 18);
     let mut queries: Vec<SphereQuery> = (0..4000).map(|_| through(&mut random)).collect();
     // Leave out rays near a tangent, because there both roots contain the square root of a cancelled difference.

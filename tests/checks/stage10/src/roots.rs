@@ -2,7 +2,7 @@
 
 use super::Odd;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::magnitude;
 use checks::judge::{compare, known};
@@ -30,7 +30,7 @@ fn roots(coefficients: Coefficients) -> [f64; 2] {
     [first.min(second), first.max(second)]
 }
 
-pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
+pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let (value, roundings) = discriminant(*query);
         // Leave nearly equal roots to another check: they move by the square root of a rounding.
@@ -74,14 +74,14 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> Outcome {
     };
     let drawn =
         [[1.0, -10_000.0, 1.0], [-2.0, 3e4, 0.5], [1.0, 10_000.0, 1.0], [2.0, -3.0, -4.0], [3.0, 0.0, -12.0]];
-    compare(&drawn, trial.kit.stable_roots(&drawn), judge).into_iter().collect::<Outcome>()?;
+    compare(&drawn, trial.kit.stable_roots(&drawn), judge).into_iter().collect::<CheckResult>()?;
     let signed =
         |low, high| (magnitude(low, high), any::<bool>()).prop_map(|(x, minus)| if minus { -x } else { x });
     let queries = (signed(-3.0, 3.0), signed(-3.0, 5.0), signed(-3.0, 3.0)).prop_map(|(a, b, c)| [a, b, c]);
     trial.forall(5000, queries, |queries| compare(queries, trial.kit.stable_roots(queries), judge))
 }
 
-pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
+pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
     // a (t - p)² with integers: the products are exact in single precision, so the sign of the discriminant is exact.
     let queries = (1..=4i32, -500..=500i32, -1..=1i32).prop_map(|(a, p, step)| {
         let (a, p) = (a as f32, p as f32);
@@ -123,7 +123,7 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> Outcome {
+pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 10);
     let mut queries: Vec<Coefficients> = vec![[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, f32::NAN, 1.0]];
     queries.extend((0..1000).map(|_| [(); 3].map(|()| odd.number())));

@@ -2,7 +2,7 @@
 
 use super::Odd;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
 use glam::Vec3;
@@ -52,7 +52,7 @@ pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Tri
 
 // The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or
 // more, which is far above all rounding errors.
-pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> Outcome {
+pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> CheckResult {
     for distribution in &DISTRIBUTIONS {
         let mut queries = draw(trial, distribution.name, 400);
         queries.extend(aim_again(trial, &queries));
@@ -84,12 +84,12 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             )
             .looks_like(known(diagnosis)))
         };
-        compare(&queries, answers, judge).into_iter().collect::<Outcome>()?;
+        compare(&queries, answers, judge).into_iter().collect::<CheckResult>()?;
     }
     Ok(())
 }
 
-pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
+pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {
     for mesh in closed() {
         let mut random = Random::new(trial.seed, 3);
         let rays: Vec<(Aim, Ray, u32)> = (0..600)
@@ -155,7 +155,7 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
+pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
     for name in ["interior", "needle", "1e-14", "1e14"] {
         let queries = draw(trial, name, 400);
         let answers = trial.kit.watertight(&queries);
@@ -183,12 +183,12 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> Outcome {
             };
             Err(Broken::new(query.call("watertight"), yours.t, exact, "exactly").looks_like(known(diagnosis)))
         };
-        compare(&queries, answers, judge).into_iter().collect::<Outcome>()?;
+        compare(&queries, answers, judge).into_iter().collect::<CheckResult>()?;
     }
     Ok(())
 }
 
-pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
+pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
     // A factor of a power of two changes no rounding unless a number over- or underflows.
     let queries = draw(trial, "edge", 300);
     let plain = trial.kit.watertight(&queries);
@@ -221,7 +221,7 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> Outcome {
+pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let queries = Odd::new(trial, 6).triangles();
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {

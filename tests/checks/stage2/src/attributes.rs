@@ -1,7 +1,7 @@
 //! Attributes of a mesh: interpolation, face normals and vertex normals.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::generate::{point, triangle};
 use checks::judge::{compare, known};
@@ -12,7 +12,7 @@ use raykata::kit::InterpolateQuery;
 use raykata::mesh::Mesh;
 use raykata::shape::Triangle;
 
-pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
+pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult {
     let inputs = (0..=8i32, 0..=8i32, point(4), point(4), point(4)).prop_map(|(beta, gamma, a, b, c)| {
         let (beta, gamma) = if beta + gamma > 8 { (8 - beta, 8 - gamma) } else { (beta, gamma) };
         let (beta, gamma) = (beta as f32 / 8.0, gamma as f32 / 8.0);
@@ -44,7 +44,7 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outcome {
+pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> CheckResult {
     let inputs = (triangle(), -60..=40i32).prop_map(|(t, power)| {
         let factor = 2f32.powi(power);
         Triangle { a: factor * t.a, b: factor * t.b, c: factor * t.c }
@@ -95,7 +95,7 @@ pub(super) fn face_normal_has_unit_length_at_any_size(trial: &Trial<'_>) -> Outc
     // Three corners on a line, two corners in one point, three corners in one point.
     let flat = [(Vec3::X, 2.0 * Vec3::X), (Vec3::X, Vec3::ZERO), (Vec3::ZERO, Vec3::ZERO)]
         .map(|(b, c)| Triangle { a: Vec3::ZERO, b, c });
-    judge(&flat).into_iter().collect::<Outcome>()?;
+    judge(&flat).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, inputs, judge)
 }
 
@@ -111,7 +111,7 @@ pub(super) fn judge_normals(
     input: &str,
     mesh: &Mesh,
     accept: impl Fn(usize, Vec3) -> Option<Vec3>,
-) -> Outcome {
+) -> CheckResult {
     let answers = trial.kit.vertex_normals(std::slice::from_ref(mesh));
     let normals = &answers[0];
     if normals.len() != mesh.positions.len() {
@@ -148,7 +148,7 @@ pub(super) fn judge_normals(
     Ok(())
 }
 
-pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> Outcome {
+pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> CheckResult {
     let octahedron = octahedron();
     let differs = |yours: Vec3, expected: Vec3| ((yours - expected).length() > 1e-5).then_some(expected);
     judge_normals(trial, "an octahedron", &octahedron, |vertex, yours| {
@@ -168,7 +168,7 @@ pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn vertex_normals_that_cancel_are_still_normals(trial: &Trial<'_>) -> Outcome {
+pub(super) fn vertex_normals_that_cancel_are_still_normals(trial: &Trial<'_>) -> CheckResult {
     // T14: a sheet whose two sides are faces, a face without area, and a vertex without faces.
     let sheet = Mesh {
         positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, vec3(5.0, 5.0, 5.0)],

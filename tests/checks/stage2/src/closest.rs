@@ -1,14 +1,14 @@
 //! Brute force: the closest hit of many primitives.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::kit::{SearchQuery, Table};
 use raykata::ray::Ray;
 
-pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> Outcome {
+pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckResult {
     // First test small tables, on which each mistake gives another answer.
     for (primitives, diagnosis) in [
         (vec![5.0], "the last primitive is left out: their numbers are 0..n"),

@@ -2,7 +2,7 @@
 
 use super::attributes::octahedron;
 use super::method::{CHOICE, CRAMER, GRAM};
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::{Trial, golden, picture};
 use glam::{Vec3, vec3};
 use raykata::kit::{InterpolateQuery, TriangleQuery};
@@ -10,7 +10,7 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// The hits of each method on a fan of 25 rays, to four digits, because the methods differ in later digits.
-pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> Outcome {
+pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
     let triangle = Triangle { a: vec3(-1.0, -1.0, 0.0), b: vec3(2.0, -0.5, 0.5), c: vec3(0.0, 2.0, -0.5) };
     let eye = vec3(0.3, 0.2, 4.0);
     let rays: Vec<TriangleQuery> = (0..25)
@@ -39,7 +39,7 @@ pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
     let mesh = octahedron();
     let rays = picture::rays(vec3(1.2, 1.6, 2.4), Vec3::ZERO);
     let mut nearest: Vec<(f32, Vec3)> = vec![(f32::INFINITY, Vec3::ZERO); rays.len()];

@@ -1,7 +1,7 @@
 //! The four scalars of the Gram method.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self};
 use checks::generate::{direction, point, triangle};
 use checks::judge::compare;
@@ -10,7 +10,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::shape::Triangle;
 
-pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) -> Outcome {
+pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) -> CheckResult {
     let thin = (point(2), direction(), 1..=40i32).prop_map(|(a, u, thinness)| {
         let beside = u.any_orthogonal_vector() * 2f32.powi(-thinness);
         Triangle { a, b: a + u, c: a + (u + beside) }
@@ -62,7 +62,7 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
             Err(broken.looks_like(Some("UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²")))
         })
     };
-    judge(&slide_cases).into_iter().collect::<Outcome>()?;
+    judge(&slide_cases).into_iter().collect::<CheckResult>()?;
     trial.forall(1000, triangle(), judge)?;
     trial.forall(1000, thin, judge)
 }

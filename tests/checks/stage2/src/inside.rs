@@ -2,7 +2,7 @@
 
 use super::method::aimed;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self};
 use checks::generate::{point, triangle};
 use checks::judge::{compare, known};
@@ -40,7 +40,7 @@ pub(super) fn judge_inside(
     trial: &Trial<'_>,
     name: &'static str,
     ask: fn(&dyn Kit, &[InsideQuery]) -> Vec<bool>,
-) -> Outcome {
+) -> CheckResult {
     trial.forall(4000, plane_points(), |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
         compare(cases, ask(trial.kit, &queries), |(query, weights), yours| {
@@ -65,7 +65,7 @@ pub(super) fn judge_inside(
     })
 }
 
-pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     judge_inside(trial, "inside_by_planes", |kit, queries| kit.inside_by_planes(queries))?;
     // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalizing it gives NaN.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
@@ -80,11 +80,11 @@ pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -
     }
 }
 
-pub(super) fn inside_by_direction_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn inside_by_direction_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     judge_inside(trial, "inside_by_direction", |kit, queries| kit.inside_by_direction(queries))
 }
 
-pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -> Outcome {
+pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -> CheckResult {
     trial.forall(4000, plane_points(), |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
         compare(cases, trial.kit.inside_by_areas(&queries), |(query, weights), yours| {

@@ -1,8 +1,8 @@
 //! Ray-triangle intersection: each check for all three methods.
 
-use super::method::{CHOICE, CRAMER, GRAM, Method, aimed, describe};
+use super::method::{CHOICE, CRAMER, GRAM, TriangleFunction, aimed, describe};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point, triangle};
 use checks::judge::compare;
 use checks::paste::Arguments;
@@ -14,13 +14,13 @@ use raykata::shape::Triangle;
 
 macro_rules! for_all_methods {
     ($($cramer:ident $gram:ident $choice:ident $law:ident;)*) => {
-        $(pub(super) fn $cramer(trial: &Trial<'_>) -> Outcome {
+        $(pub(super) fn $cramer(trial: &Trial<'_>) -> CheckResult {
             $law(trial, CRAMER)
         }
-        pub(super) fn $gram(trial: &Trial<'_>) -> Outcome {
+        pub(super) fn $gram(trial: &Trial<'_>) -> CheckResult {
             $law(trial, GRAM)
         }
-        pub(super) fn $choice(trial: &Trial<'_>) -> Outcome {
+        pub(super) fn $choice(trial: &Trial<'_>) -> CheckResult {
             $law(trial, CHOICE)
         })*
     };
@@ -61,18 +61,18 @@ for_all_methods! {
         triangle_missed;
 }
 
-pub(super) fn triangle_agrees(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_agrees(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     // First test a simple ray at a simple triangle, because its message is the easiest to read.
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let ray = Ray::new(vec3(0.125, 0.5, 2.0), vec3(0.0, 0.0, -0.5));
     let drawn = TriangleQuery { ray, triangle: unit };
-    method.judge(trial, &[drawn]).into_iter().collect::<Outcome>()?;
+    method.judge(trial, &[drawn]).into_iter().collect::<CheckResult>()?;
     trial.forall(6000, aimed(triangle(), point(8)), |queries| method.judge(trial, queries))
 }
 
 /// T1, T2, T7: the three regions beyond the sides and the three beyond the corners, for rays along an axis and for
 /// slanted rays.
-pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_regions(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let places = [
         (0.25, 0.25, true),
@@ -89,7 +89,7 @@ pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
             ray: Ray::new(vec3(x, y, 0.0) - 2.0 * direction, direction),
             triangle: unit,
         });
-        method.judge(trial, &queries).into_iter().collect::<Outcome>()?;
+        method.judge(trial, &queries).into_iter().collect::<CheckResult>()?;
     }
     // The slide's determinant is right for the rays along z above and wrong for this ray, whose t is 2.
     let slanted = TriangleQuery {
@@ -99,13 +99,13 @@ pub(super) fn triangle_regions(trial: &Trial<'_>, method: Method) -> Outcome {
     method.judge(trial, &[slanted]).into_iter().collect()
 }
 
-pub(super) fn triangle_windings(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_windings(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let sides = [1.0, -1.0].map(|way| TriangleQuery {
         ray: Ray::new(vec3(0.125, 0.5, 2.0 * way), vec3(0.0, 0.0, -way)),
         triangle: unit,
     });
-    method.judge(trial, &sides).into_iter().collect::<Outcome>()?;
+    method.judge(trial, &sides).into_iter().collect::<CheckResult>()?;
     // All six orders of the corners must give the same verdict and the same t, from the front and from the back.
     trial.forall(1000, aimed(triangle(), point(8)), |queries| {
         let orders = |query: &TriangleQuery| {
@@ -119,7 +119,7 @@ pub(super) fn triangle_windings(trial: &Trial<'_>, method: Method) -> Outcome {
     })
 }
 
-pub(super) fn triangle_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_in_range(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let triangle = Triangle { a: vec3(-2.0, -2.0, 0.0), b: vec3(2.0, -2.0, 0.0), c: vec3(-2.0, 2.0, 0.0) };
     let hit = |t| Some(TriangleHit { t, beta: 0.25, gamma: 0.25 });
     let at = |z: f32, t_min: f32, t_max: f32| TriangleQuery {
@@ -141,7 +141,7 @@ pub(super) fn triangle_in_range(trial: &Trial<'_>, method: Method) -> Outcome {
     )
 }
 
-pub(super) fn triangle_edges(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_edges(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     // The sides are powers of two and the ray runs along an axis, so every method computes β and γ exactly.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
     let at = |x: f32, y: f32| {
@@ -158,7 +158,7 @@ pub(super) fn triangle_edges(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 /// T11: a scene a million times smaller or larger gives the same verdict, the same β and γ, and `t` times the factor.
-pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_sizes(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     trial.forall(1000, aimed(triangle(), point(8)), |queries| {
         let answers = (method.ask)(trial.kit, queries);
         let mut outcomes = vec![Ok(()); queries.len()];
@@ -198,7 +198,7 @@ pub(super) fn triangle_sizes(trial: &Trial<'_>, method: Method) -> Outcome {
 }
 
 /// T4: small triangles at (148376, 1234, -223423), with the ray's origin near them.
-pub(super) fn triangle_far(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_far(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let place = vec3(148_376.0, 1_234.0, -223_423.0);
     let triangles = (rough_point(4.0), rough_point(4.0), rough_point(4.0))
         .prop_map(move |(a, b, c)| Triangle { a: place + a, b: place + b, c: place + c });
@@ -219,7 +219,7 @@ pub(super) fn triangle_far(trial: &Trial<'_>, method: Method) -> Outcome {
     })
 }
 
-pub(super) fn triangle_missed(trial: &Trial<'_>, method: Method) -> Outcome {
+pub(super) fn triangle_missed(trial: &Trial<'_>, method: TriangleFunction) -> CheckResult {
     let unit = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
     let down = Ray::new(vec3(0.25, 0.25, 1.0), Vec3::NEG_Z);
     let along = |origin| TriangleQuery { ray: Ray::new(origin, Vec3::X), triangle: unit };

@@ -1,7 +1,7 @@
 //! The three methods of intersecting a triangle: how the checks judge their answers, and the diagnosis of a wrong one.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self, Expected};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
@@ -13,23 +13,23 @@ use raykata::shape::Triangle;
 
 /// One of the three methods of intersecting a triangle.
 #[derive(Clone, Copy)]
-pub(super) struct Method {
+pub(super) struct TriangleFunction {
     pub(super) name: &'static str,
     pub(super) ask: fn(&dyn Kit, &[TriangleQuery]) -> Vec<Option<TriangleHit>>,
 }
 
-pub(super) const CRAMER: Method =
-    Method { name: "triangle_cramer", ask: |kit, queries| kit.triangle_cramer(queries) };
+pub(super) const CRAMER: TriangleFunction =
+    TriangleFunction { name: "triangle_cramer", ask: |kit, queries| kit.triangle_cramer(queries) };
 
-pub(super) const GRAM: Method =
-    Method { name: "triangle_gram", ask: |kit, queries| kit.triangle_gram(queries) };
+pub(super) const GRAM: TriangleFunction =
+    TriangleFunction { name: "triangle_gram", ask: |kit, queries| kit.triangle_gram(queries) };
 
-pub(super) const CHOICE: Method =
-    Method { name: "triangle_choice", ask: |kit, queries| kit.triangle_choice(queries) };
+pub(super) const CHOICE: TriangleFunction =
+    TriangleFunction { name: "triangle_choice", ask: |kit, queries| kit.triangle_choice(queries) };
 
-impl Method {
+impl TriangleFunction {
     /// Compares answers with the result in double precision.
-    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Outcome> {
+    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<CheckResult> {
         compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
             let expected = double::triangle(&query.ray, &query.triangle);
             if expected.accepts(yours) {
@@ -50,7 +50,7 @@ impl Method {
         self,
         trial: &Trial<'_>,
         cases: &[(TriangleQuery, Option<TriangleHit>, &str)],
-    ) -> Outcome {
+    ) -> CheckResult {
         let queries: Vec<TriangleQuery> = cases.iter().map(|case| case.0).collect();
         for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
             if yours != *expected {

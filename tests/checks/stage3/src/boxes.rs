@@ -1,6 +1,6 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self};
 use checks::generate::{magnitude, point, rough_point, sphere, triangle};
 use checks::judge::{compare, known};
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::shape::Sphere;
 
-pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, triangle(), |triangles| {
         compare(triangles, trial.kit.triangle_bounds(triangles), |triangle, yours| {
             let corner = |p: Vec3| Aabb::new(p, p);
@@ -33,7 +33,7 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
     let spheres =
         (rough_point(100.0), magnitude(-3.0, 3.0)).prop_map(|(center, radius)| Sphere { center, radius });
     let spheres = prop_oneof![sphere(), spheres];
@@ -73,7 +73,7 @@ pub(super) fn aabb() -> impl Strategy<Value = Aabb> + Clone {
     (point(4), point(4)).prop_map(|(p, q)| Aabb::new(p.min(q), p.max(q)))
 }
 
-pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> Outcome {
+pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
     let boxes = || prop_oneof![9 => aabb(), 1 => Just(Aabb::EMPTY)];
     trial.forall(1000, (boxes(), boxes()), |pairs| {
         compare(pairs, trial.kit.union(pairs), |(first, second), yours| {
@@ -98,7 +98,7 @@ pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> Outcome {
+pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, aabb(), |boxes| {
         compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
             // Exact, because all coordinates are multiples of 1/8.
@@ -120,7 +120,7 @@ pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> Outcome {
+pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
     let boxes = prop_oneof![9 => aabb(), 1 => Just(Aabb::EMPTY)];
     trial.forall(1000, boxes, |boxes| {
         compare(boxes, trial.kit.surface_area(boxes), |bounds, yours| {

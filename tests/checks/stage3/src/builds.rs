@@ -2,7 +2,7 @@
 
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
 use checks::{Trial, golden, tree};
@@ -12,7 +12,7 @@ use raykata::aabb::Aabb;
 use raykata::kit::{BuildQuery, KitError, kit_error};
 use raykata::scene::Split;
 
-pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Outcome> {
+pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.build(queries), |query, yours| {
         match tree::fault(&yours, &query.bounds, query.leaf_size) {
             None => Ok(()),
@@ -48,7 +48,7 @@ pub(super) fn split() -> impl Strategy<Value = Split> + Clone {
     prop::sample::select(Split::ALL.to_vec())
 }
 
-pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> Outcome {
+pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> CheckResult {
     let inputs = (boxes(40), split(), 1..=5usize).prop_map(|(bounds, split, leaf_size)| BuildQuery {
         bounds,
         split,
@@ -58,12 +58,12 @@ pub(super) fn build_holds_every_primitive_once(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Judges builds with every split strategy and two leaf sizes.
-pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
+pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> CheckResult {
     for split in Split::ALL {
         for leaf_size in [1, 4] {
             let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size };
             match kit_error::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
-                Ok(outcomes) => outcomes.into_iter().collect::<Outcome>()?,
+                Ok(outcomes) => outcomes.into_iter().collect::<CheckResult>()?,
                 Err(KitError::Panicked { message, place }) => {
                     let diagnosis = match bounds.len() <= leaf_size {
                         true => {
@@ -87,7 +87,7 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> Outcome {
     Ok(())
 }
 
-pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Outcome {
+pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> CheckResult {
     build_all_ways(trial, &vec![UNIT_BOX; 1000])?;
     let concentric: Vec<Aabb> =
         (1..=64).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
@@ -105,7 +105,7 @@ pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Outco
     build_all_ways(trial, &halving)
 }
 
-pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> Outcome {
+pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {
     build_all_ways(trial, &[])?;
     build_all_ways(trial, &[UNIT_BOX])?;
     build_all_ways(trial, &[UNIT_BOX, Aabb::new(Vec3::splat(3.0), Vec3::splat(4.0))])?;
@@ -115,7 +115,7 @@ pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> Outcome {
     build_all_ways(trial, &four)
 }
 
-pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> Outcome {
+pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckResult {
     let mut bounds: Vec<Aabb> =
         (0..20).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
     bounds[7] = Aabb::new(Vec3::NAN, Vec3::NAN);
@@ -127,7 +127,7 @@ pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> Outcome 
     })
 }
 
-pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
+pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> CheckResult {
     let n = 512;
     let bounds: Vec<Aabb> = (0..n)
         .map(|i| {
@@ -150,7 +150,7 @@ pub(super) fn object_median_is_balanced(trial: &Trial<'_>) -> Outcome {
     ))
 }
 
-pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> Outcome {
+pub(super) fn trees_of_eight_boxes(trial: &Trial<'_>) -> CheckResult {
     // The boxes are at x = 1, 2, 3, 4, 10, 20, 40, 80. No two are equal, so each split strategy has exactly one tree.
     let bounds: Vec<Aabb> = [40.0, 1.0, 3.0, 20.0, 2.0, 80.0, 4.0, 10.0]
         .map(|x| Aabb::new(vec3(x, 0.0, 0.0), vec3(x + 0.5, 1.0, 1.0)))

@@ -1,14 +1,14 @@
 //! The cheapest cut of the surface area heuristic, and the diagnosis of a more expensive one.
 
 use super::divided::{boxes, divided, judge_splits};
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveRef;
 use raykata::scene::Split;
 
-pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> Outcome {
+pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> CheckResult {
     // First test two sets on which each mistake gives another cut: scattered boxes of all sizes, and a row with gaps.
     let cubes = |all: &[(f32, f32, f32, f32)]| -> Vec<Aabb> {
         all.iter()
@@ -33,7 +33,7 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
         (44.5, 1.25, 1.0, 1.0),
     ]);
     let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest);
-    judge(&[scattered, row]).into_iter().collect::<Outcome>()?;
+    judge(&[scattered, row]).into_iter().collect::<CheckResult>()?;
     trial.forall(500, boxes(16), judge)
 }
 

@@ -1,6 +1,6 @@
 //! How the checks judge a split: every primitive is kept, neither side is empty, and the rule of the strategy holds.
 
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
 use checks::judge::{compare, known};
 use checks::paste::list;
@@ -31,7 +31,7 @@ pub(super) fn judge_splits(
     split: Split,
     sets: &[Vec<Aabb>],
     law: impl Fn(&[PrimitiveRef], usize) -> Option<(String, String, &'static str)>,
-) -> Vec<Outcome> {
+) -> Vec<CheckResult> {
     let queries: Vec<SplitQuery> =
         sets.iter().map(|boxes| SplitQuery { split, primitives: tree::references(boxes) }).collect();
     compare(&queries, trial.kit.split(&queries), |query, yours| {

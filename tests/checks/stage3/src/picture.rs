@@ -1,6 +1,6 @@
 //! The picture of stage 3.
 
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::{Trial, picture, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -20,7 +20,7 @@ fn spiral() -> Vec<Sphere> {
     (0..24).map(sphere).collect()
 }
 
-pub(super) fn picture_of_depth(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_depth(trial: &Trial<'_>) -> CheckResult {
     let spheres = spiral();
     let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
     let bvh = tree::joined(&boxes, 2);

@@ -1,6 +1,6 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, unit};
 use checks::judge::{compare, known};
 use checks::tree::closest_in_table;
@@ -68,7 +68,7 @@ pub(super) fn describe_search(query: &SearchQuery) -> String {
     )
 }
 
-pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> Outcome {
+pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> CheckResult {
     let expected = closest_in_table(query);
     let found = yours.hit.map(|hit| (hit.primitive, hit.t));
     if found == expected {
@@ -109,7 +109,7 @@ fn drawn_searches() -> [SearchQuery; 2] {
     ]
 }
 
-fn judge_drawn_searches(yours: &[SearchAnswer]) -> Outcome {
+fn judge_drawn_searches(yours: &[SearchAnswer]) -> CheckResult {
     let queries = drawn_searches();
     let diagnosis = |index: usize, yours: &SearchAnswer| match (index, yours.hit.map(|hit| hit.t)) {
         (_, None) => "a subtree or part of a leaf was left out",
@@ -134,14 +134,14 @@ fn judge_drawn_searches(yours: &[SearchAnswer]) -> Outcome {
     Ok(())
 }
 
-pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     judge_drawn_searches(&trial.kit.closest_hit_both(&drawn_searches()))?;
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| judge_search(query, &yours))
     })
 }
 
-pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> Outcome {
+pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
             let met = tree::overlapped(query).len() as u64;
@@ -161,14 +161,14 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
     })
 }
 
-pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     judge_drawn_searches(&trial.kit.closest_hit(&drawn_searches()))?;
     trial.forall(1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit(queries), |query, yours| judge_search(query, &yours))
     })
 }
 
-pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[SearchQuery]| {
         compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
             let expected = closest_in_table(query).is_some();
@@ -191,11 +191,11 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
     // First test a leaf that the ray enters without hitting any of its primitives.
     let [mut nothing, _] = drawn_searches();
     nothing.table.primitives.fill(f32::INFINITY);
-    judge(&[nothing]).into_iter().collect::<Outcome>()?;
+    judge(&[nothing]).into_iter().collect::<CheckResult>()?;
     trial.forall(1500, searches(), judge)
 }
 
-pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> Outcome {
+pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
             let describe = |n: u64| format!("{n} primitive tests after the first hit");

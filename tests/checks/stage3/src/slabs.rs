@@ -2,7 +2,7 @@
 
 use super::boxes::aabb;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::{self, box_interval};
 use checks::generate::{direction, point, rough_point};
 use checks::judge::{compare, known};
@@ -13,7 +13,11 @@ use raykata::aabb::Aabb;
 use raykata::kit::SlabQuery;
 use raykata::ray::Ray;
 
-pub(super) fn judge_slabs(trial: &Trial<'_>, queries: &[SlabQuery], diagnosis: &'static str) -> Vec<Outcome> {
+pub(super) fn judge_slabs(
+    trial: &Trial<'_>,
+    queries: &[SlabQuery],
+    diagnosis: &'static str,
+) -> Vec<CheckResult> {
     compare(queries, trial.kit.slab(queries), |query, yours| {
         let (near, far) = box_interval(&query.ray, &query.bounds);
         let (near, far) = (near.max(f64::from(query.ray.t_min)), far.min(f64::from(query.ray.t_max)));
@@ -86,7 +90,7 @@ fn misses_by_one_axis(query: &SlabQuery) -> bool {
     !meets(&query.bounds) && infinite.iter().any(meets)
 }
 
-pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let inputs =
         (point(8), direction(), aabb(), rough_point(1.0)).prop_map(|(origin, direction, bounds, at)| {
             // Aim half of the rays at the box.
@@ -103,13 +107,13 @@ pub(super) fn slab_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
         (vec3(3.0, 2.5, 2.0), vec3(-1.0, -0.875, -0.75)),
     ]
     .map(|(origin, direction)| SlabQuery { ray: Ray::new(origin, direction), bounds: UNIT_BOX });
-    judge_slabs(trial, &drawn, "").into_iter().collect::<Outcome>()?;
+    judge_slabs(trial, &drawn, "").into_iter().collect::<CheckResult>()?;
     trial.forall(6000, inputs, |queries| judge_slabs(trial, queries, ""))
 }
 
-pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_is_entered_at_once_from_inside(trial: &Trial<'_>) -> CheckResult {
     let middle = SlabQuery { ray: Ray::new(Vec3::splat(0.5), vec3(1.0, 0.5, -0.25)), bounds: UNIT_BOX };
-    judge_slabs(trial, &[middle], "").into_iter().collect::<Outcome>()?;
+    judge_slabs(trial, &[middle], "").into_iter().collect::<CheckResult>()?;
     let inputs =
         (aabb(), 0..=8i32, 0..=8i32, 0..=8i32, direction()).prop_map(|(bounds, x, y, z, direction)| {
             let at = vec3(x as f32, y as f32, z as f32) / 8.0;
@@ -127,7 +131,7 @@ pub(super) fn judge_slabs_exactly(
     trial: &Trial<'_>,
     cases: &[(Ray, Aabb, bool)],
     diagnosis: &'static str,
-) -> Outcome {
+) -> CheckResult {
     let queries: Vec<SlabQuery> = cases.iter().map(|&(ray, bounds, _)| SlabQuery { ray, bounds }).collect();
     for ((query, yours), (_, _, hit)) in queries.iter().zip(trial.kit.slab(&queries)).zip(cases) {
         let sound = yours.is_none_or(|(enter, leave)| enter <= leave);
@@ -141,7 +145,7 @@ pub(super) fn judge_slabs_exactly(
     Ok(())
 }
 
-pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> CheckResult {
     // B3: every sign of zero on the two axes along which the ray does not move, for rays that hit and rays that miss.
     let mut cases = Vec::new();
     for axis in 0..3 {
@@ -186,7 +190,7 @@ pub(super) fn slab_takes_zeros_of_either_sign(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(trial, &cases, "1/d overflows to ∞ for a tiny d: treat d like 0")
 }
 
-pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> CheckResult {
     // B4: the origin lies in the plane of a face and the ray stays there, so (b - o)/d is 0/0 on that axis.
     let mut cases = Vec::new();
     for axis in 0..3 {
@@ -206,7 +210,7 @@ pub(super) fn slab_is_hit_by_rays_within_a_face(trial: &Trial<'_>) -> Outcome {
     judge_slabs_exactly(trial, &cases, diagnosis)
 }
 
-pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> CheckResult {
     let mut cases = Vec::new();
     for axis in 0..3 {
         // B6: at 100,000 a fixed padding is rounded away, and the box is flat again.
@@ -233,7 +237,7 @@ pub(super) fn slab_of_a_flat_box_is_hit(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> CheckResult {
     let ray = Ray::new(vec3(-2.0, 0.5, 0.5), Vec3::X);
     let cases = [
         (ray, UNIT_BOX, true),
@@ -255,7 +259,7 @@ pub(super) fn slab_respects_the_range(trial: &Trial<'_>) -> Outcome {
         .collect()
 }
 
-pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> CheckResult {
     // A10: all numbers are multiples of 1/8, so o + 1 d is exactly the corner. The closed box must be hit, without
     // tolerance.
     let inputs = (aabb(), point(8), 0..8usize).prop_map(|(bounds, origin, corner)| {
@@ -275,7 +279,7 @@ pub(super) fn slab_hits_the_corners_it_is_aimed_at(trial: &Trial<'_>) -> Outcome
     })
 }
 
-pub(super) fn slab_misses_the_empty_box(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slab_misses_the_empty_box(trial: &Trial<'_>) -> CheckResult {
     let dirs = [Vec3::X, Vec3::NEG_X, Vec3::ONE, -Vec3::ONE, vec3(0.0, -0.0, 1.0)];
     let cases = dirs.map(|direction| (Ray::new(vec3(0.5, 0.5, 0.5), direction), Aabb::EMPTY, false));
     judge_slabs_exactly(

@@ -2,14 +2,14 @@
 
 use super::divided::{boxes, divided, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{KitError, kit_error};
 use raykata::scene::Split;
 
-pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> Outcome {
+pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
         judge_splits(trial, Split::ObjectMedian, sets, |ordered, middle| {
             let n = ordered.len();
@@ -35,7 +35,7 @@ pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> Outcome {
+pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
         judge_splits(trial, Split::SpatialMedian, sets, |ordered, middle| {
             if middle == 0 {
@@ -72,7 +72,7 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Outcome {
+pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> CheckResult {
     // A2: equal boxes, concentric boxes, and small boxes with a huge one.
     let equal = vec![UNIT_BOX; 8];
     let concentric: Vec<Aabb> =
@@ -86,7 +86,7 @@ pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Out
     .collect()
 }
 
-pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Outcome {
+pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> CheckResult {
     // A3: boxes in a line and boxes in a point have no area. The NaN of 0/0 must not decide and must not panic.
     let line: Vec<Aabb> =
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();

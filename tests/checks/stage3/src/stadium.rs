@@ -1,6 +1,6 @@
 //! A teapot in a stadium: the counted costs of trees and searches.
 
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -65,7 +65,7 @@ pub(super) fn total(answers: &[SearchAnswer]) -> Counts {
     sum
 }
 
-pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) -> Outcome {
+pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) -> CheckResult {
     let bounds: Vec<Aabb> = stadium().iter().map(tree::sphere_box).collect();
     let cost = |split| {
         let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 4 };
@@ -101,7 +101,7 @@ pub(super) fn counted_cost(bvh: &Bvh, spheres: &[Sphere]) -> u64 {
     stadium_rays().iter().map(cost).sum()
 }
 
-pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcome {
+pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckResult {
     let spheres = stadium();
     let bounds: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
     for split in Split::ALL {
@@ -127,7 +127,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> Outcom
 }
 
 /// A row of 64 spheres along the ray. The first one is hit, and of each pair of nodes the farther one lies behind it.
-fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
+fn nothing_behind_in_a_row(trial: &Trial<'_>) -> CheckResult {
     let spheres: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
     let bvh = tree::joined(&spheres.iter().map(tree::sphere_box).collect::<Vec<_>>(), 1);
@@ -150,7 +150,7 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> Outcome {
     Err(Broken::with_texts(input, describe(yours), most, "counted").looks_like(Some(diagnosis)))
 }
 
-pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> Outcome {
+pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> CheckResult {
     nothing_behind_in_a_row(trial)?;
     let queries = stadium_searches();
     let yours = total(&trial.kit.closest_hit(&queries));

@@ -1,11 +1,11 @@
 //! Gamma 2: bytes from linear light, and linear light from bytes.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use checks::paste::Paste;
 
-pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
+pub(super) fn gamma_is_two(trial: &Trial<'_>) -> CheckResult {
     let bytes: Vec<u8> = (0..=255).collect();
     let linear = trial.kit.decode_gamma(&bytes);
     for (&byte, &yours) in bytes.iter().zip(&linear) {
@@ -77,7 +77,7 @@ pub(super) fn gamma_is_two(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> Outcome {
+pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
     let cases =
         [(-1e-8, 0), (-5.0, 0), (1.0000001, 255), (7.0, 255), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0)];
     for ((linear, expected), yours) in cases.iter().zip(trial.kit.encode_gamma(&cases.map(|case| case.0))) {

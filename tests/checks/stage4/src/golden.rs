@@ -1,6 +1,6 @@
 //! A table and a picture that are compared with stored references.
 
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::{Trial, golden, picture};
 use glam::{Vec3, vec3};
 use raykata::kit::{LightSample, ShadeQuery, Surface};
@@ -29,7 +29,7 @@ pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
     ShadeQuery { surface, to_viewer, material, ambient: Vec3::splat(0.15), lights: lights(normal), visible }
 }
 
-pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
     let queries: Vec<ShadeQuery> = (0..24)
         .map(|i| {
             let (azimuth, height) = ((i % 8) as f32 * 0.785, 0.8 - (i / 8) as f32 * 0.7);
@@ -54,7 +54,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> Outcome {
     golden::compare("stage4_shading_table", "24 points of a sphere, two lights", &lines.join("\n"))
 }
 
-pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> Outcome {
+pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
     let rays = picture::rays(vec3(0.0, 1.0, 3.2), Vec3::ZERO);
     let points: Vec<Option<Vec3>> = rays
         .iter()

@@ -1,7 +1,7 @@
 //! The shading normal.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::unit;
 use checks::judge::{compare, known};
 use checks::paste::Paste;
@@ -15,7 +15,7 @@ pub(super) fn paste_normal_query(
     format!("shading_normal({}, {interpolated}, {})", geometric.paste(), direction.paste())
 }
 
-pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
     // An interpolated normal is the geometric one plus up to 0.3 of a unit vector. It has any length and either sign.
     let inputs = (unit(), unit(), unit(), any::<bool>(), any::<bool>(), 1..=8i32).prop_map(
         |(geometric, lean, direction, smooth, back, length)| {
@@ -53,7 +53,7 @@ pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResult {
     let queries = [Vec3::ZERO, Vec3::NAN].map(|useless| (Vec3::Y, Some(useless), Vec3::Y));
     for (query, yours) in queries.iter().zip(trial.kit.shading_normal(&queries)) {
         if yours != Vec3::NEG_Y {

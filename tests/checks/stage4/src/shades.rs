@@ -2,7 +2,7 @@
 
 use super::terms::{cos_phi, specular};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, unit};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
@@ -86,7 +86,7 @@ fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool) -> DVec3 {
         + ambient
 }
 
-pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Outcome> {
+pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.shade(queries), |query, yours| {
         let color = yours.color.as_dvec3();
         let expected = expected_color(query, |light| query.visible[light]);
@@ -180,20 +180,20 @@ fn drawn(brightness: f32, visible: [bool; 2]) -> ShadeQuery {
     }
 }
 
-pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> CheckResult {
     let drawn = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
-    judge_shades(trial, &drawn).into_iter().collect::<Outcome>()?;
+    judge_shades(trial, &drawn).into_iter().collect::<CheckResult>()?;
     let all_visible =
         shade_query().prop_map(|query| ShadeQuery { visible: vec![true; query.lights.len()], ..query });
     trial.forall(2000, all_visible, |queries| judge_shades(trial, queries))
 }
 
-pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> Outcome {
-    judge_shades(trial, &[drawn(1.0, [true, false])]).into_iter().collect::<Outcome>()?;
+pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> CheckResult {
+    judge_shades(trial, &[drawn(1.0, [true, false])]).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, shade_query(), |queries| judge_shades(trial, queries))
 }
 
-pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is black.
     let queries = (shade_query(), 0..4i32).prop_map(|(mut query, which)| {
         if which == 0 {

@@ -1,7 +1,7 @@
 //! Shadow rays.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{magnitude, point, rough_point, unit};
 use checks::judge::{compare, known};
 use checks::paste::Arguments;
@@ -32,7 +32,7 @@ pub(super) fn judge_shadow_rays(
     trial: &Trial<'_>,
     queries: &[ShadowQuery],
     law: impl Fn(&ShadowQuery, &raykata::ray::Ray) -> Option<(String, String, &'static str)>,
-) -> Vec<Outcome> {
+) -> Vec<CheckResult> {
     compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
         None => Err(Broken::with_texts(
             query.call("shadow_ray"),
@@ -50,7 +50,7 @@ pub(super) fn judge_shadow_rays(
     })
 }
 
-pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> CheckResult {
     trial.forall(1000, lit(-1.0..2.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let light = &query.light;
@@ -123,7 +123,7 @@ fn goes_along_the_light(query: &ShadowQuery, ray: &raykata::ray::Ray) -> bool {
     moved.dot(to_light) > 0.99 && moved.dot(normal) < 0.9
 }
 
-pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
     // R6: the true surface is up to `error` above the point. Coordinates range from a thousandth to a hundred thousand.
     trial.forall(3000, lit(-3.0..5.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
@@ -146,7 +146,7 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
     })
 }
 
-pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
     trial.forall(3000, lit(-3.0..5.0), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let (height, bound) = start_height(query, ray);
@@ -164,7 +164,7 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> CheckResult {
     let behind = (unit(), unit(), point(4)).prop_filter_map("a light behind", |(normal, to_light, at)| {
         (normal.dot(to_light) < -1e-3).then(|| shadow(at, normal, to_light, 5.0, 1e-6))
     });

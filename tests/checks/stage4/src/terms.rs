@@ -1,7 +1,7 @@
 //! The diffuse and the specular term.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::unit;
 use checks::judge::{compare, known};
 use checks::paste::call;
@@ -27,7 +27,7 @@ pub(super) fn paste_term(name: &str, query: &TermQuery) -> String {
     }
 }
 
-pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
+pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[TermQuery]| {
         compare(queries, trial.kit.diffuse_term(queries), |query, yours| {
             let cosine = query.normal.as_dvec3().dot(query.to_light.as_dvec3());
@@ -58,7 +58,7 @@ pub(super) fn diffuse_term_is_the_cosine(trial: &Trial<'_>) -> Outcome {
     let (to_light, to_viewer) = (vec3(0.6, 0.8, 0.0), Vec3::Y);
     judge(&[TermQuery { normal: Vec3::Y, to_light, to_viewer, exponent: 1.0 }])
         .into_iter()
-        .collect::<Outcome>()?;
+        .collect::<CheckResult>()?;
     trial.forall(2000, terms(), judge)
 }
 
@@ -75,7 +75,7 @@ pub(super) fn specular(query: &TermQuery) -> f64 {
     if cos_theta > 0.0 && cos_phi > 0.0 { cos_phi.powf(f64::from(query.exponent)) } else { 0.0 }
 }
 
-pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> Outcome {
+pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> CheckResult {
     // Begin with a highlight for which every known mistake gives a different number.
     let drawn = TermQuery {
         normal: Vec3::Y,
@@ -83,11 +83,11 @@ pub(super) fn specular_term_is_the_mirrored_cosine(trial: &Trial<'_>) -> Outcome
         to_viewer: vec3(-0.28, 0.96, 0.0),
         exponent: 2.0,
     };
-    judge_highlights(trial, &[drawn]).into_iter().collect::<Outcome>()?;
+    judge_highlights(trial, &[drawn]).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, terms(), |queries| judge_highlights(trial, queries))
 }
 
-fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
+fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.specular_term(queries), |query, yours| {
         let [n, l, v] = [query.normal, query.to_light, query.to_viewer].map(Vec3::as_dvec3);
         let exponent = f64::from(query.exponent);
@@ -123,7 +123,7 @@ fn judge_highlights(trial: &Trial<'_>, queries: &[TermQuery]) -> Vec<Outcome> {
     })
 }
 
-pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> Outcome {
+pub(super) fn light_from_behind_adds_nothing(trial: &Trial<'_>) -> CheckResult {
     // L1: a negative cos φ to an even power is positive, to a fractional power NaN. Some lights are below the horizon.
     let below = vec3(0.6, -0.8, 0.0);
     let aside = vec3(0.8, 0.6, 0.0);

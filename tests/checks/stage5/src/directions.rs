@@ -1,7 +1,7 @@
 //! The directions of reflected and refracted rays.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::unit;
 use checks::judge::{compare, known};
 use checks::paste::call;
@@ -16,7 +16,7 @@ pub(super) fn arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
     })
 }
 
-pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
+pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[(Vec3, Vec3)]| {
         compare(queries, trial.kit.reflect(queries), |(direction, normal), yours| {
             let (d, n) = (direction.as_dvec3(), normal.as_dvec3());
@@ -46,11 +46,11 @@ pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> Outcome {
         })
     };
     // Begin with a slanted ray: along the normal or the surface, several mistakes give the same answer.
-    judge(&[(vec3(0.6, -0.8, 0.0), Vec3::Y)]).into_iter().collect::<Outcome>()?;
+    judge(&[(vec3(0.6, -0.8, 0.0), Vec3::Y)]).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, arrival(), judge)
 }
 
-pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> Outcome {
+pub(super) fn reflect_stays_of_unit_length_in_a_corridor(trial: &Trial<'_>) -> CheckResult {
     // R7: a thousand reflections on two mirrors that are not parallel to an axis.
     let normals = [vec3(0.6, 0.8, 0.0), vec3(-0.48, -0.64, 0.6)];
     let mut direction = vec3(0.3, -0.7, 0.2).normalize();
@@ -96,7 +96,7 @@ fn paste(query: &RefractQuery) -> String {
     call("refract", &[&query.direction, &query.normal, &query.n1, &query.n2])
 }
 
-pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> Vec<Outcome> {
+pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.refract(queries), |query, yours| {
         let (expected, margin) = snell(query);
         // Near the critical angle the error grows with the root of the rounding, and both `None` and a direction pass.
@@ -146,7 +146,7 @@ pub(super) fn judge_refractions(trial: &Trial<'_>, queries: &[RefractQuery]) -> 
     })
 }
 
-pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> Outcome {
+pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> CheckResult {
     let indices = || (8..=24i32).prop_map(|eighths| eighths as f32 / 8.0);
     let inputs = (arrival(), indices(), indices()).prop_map(|((direction, normal), n1, n2)| RefractQuery {
         direction,
@@ -155,11 +155,11 @@ pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> Outcome {
         n2,
     });
     let drawn = RefractQuery { direction: vec3(0.6, -0.8, 0.0), normal: Vec3::Y, n1: 1.0, n2: 1.25 };
-    judge_refractions(trial, &[drawn]).into_iter().collect::<Outcome>()?;
+    judge_refractions(trial, &[drawn]).into_iter().collect::<CheckResult>()?;
     trial.forall(4000, inputs, |queries| judge_refractions(trial, queries))
 }
 
-pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> Outcome {
+pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckResult {
     // R1: along the normal sin θ1 is 0. With equal indices the direction does not change.
     let slanted = vec3(0.6, -0.8, 0.0);
     let cases = [(Vec3::NEG_Y, 1.0, 1.5), (Vec3::NEG_Y, 1.5, 1.0), (slanted, 1.0, 1.0), (slanted, 1.7, 1.7)];
@@ -175,7 +175,7 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> Outcome 
     Ok(())
 }
 
-pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Outcome {
+pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> CheckResult {
     // R2: 60° inside glass; then the critical angle, and one float of the sine to either side, where NaN is wrong.
     let at_sine = |sine: f32| {
         let direction = vec3(sine, -(1.0 - f64::from(sine).powi(2)).sqrt() as f32, 0.0);
@@ -186,7 +186,7 @@ pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Ou
     judge_refractions(trial, &queries).into_iter().collect()
 }
 
-pub(super) fn refract_survives_rounded_directions(trial: &Trial<'_>) -> Outcome {
+pub(super) fn refract_survives_rounded_directions(trial: &Trial<'_>) -> CheckResult {
     // R3: one unit vector in five is slightly longer than 1, and the root of 1 - cos² is NaN near the normal.
     let inputs = (unit(), -40..=40i32, -40..=40i32, any::<bool>()).prop_map(|(normal, x, y, glass)| {
         let (u, v) = normal.any_orthonormal_pair();

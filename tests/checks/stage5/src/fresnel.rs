@@ -1,7 +1,7 @@
 //! The Fresnel reflectance.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::call;
 use proptest::prelude::*;
@@ -48,7 +48,7 @@ fn judge(
     answers: Vec<f32>,
     reference: fn(&FresnelQuery) -> f64,
     mistakes: fn(&FresnelQuery) -> Vec<(f64, &'static str)>,
-) -> Vec<Outcome> {
+) -> Vec<CheckResult> {
     compare(queries, answers, |query, yours| {
         let expected = reference(query);
         // Near the critical angle the reflectance and its rounding error change with the root of the distance to it.
@@ -119,18 +119,18 @@ fn drawn() -> [FresnelQuery; 3] {
     })
 }
 
-pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[FresnelQuery]| {
         judge("fresnel_schlick", queries, trial.kit.fresnel_schlick(queries), schlick, schlick_mistakes)
     };
-    judge(&drawn()).into_iter().collect::<Outcome>()?;
+    judge(&drawn()).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, queries(), judge)
 }
 
-pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[FresnelQuery]| {
         judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact, exact_mistakes)
     };
-    judge(&drawn()).into_iter().collect::<Outcome>()?;
+    judge(&drawn()).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, queries(), judge)
 }

@@ -3,7 +3,7 @@
 use super::directions::arrival;
 use super::fresnel::{exact, schlick};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
 use checks::judge::{compare, known};
 use checks::paste::Paste;
@@ -78,8 +78,8 @@ pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     )
 }
 
-pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> Outcome {
-    judge_weights(trial, &drawn()).into_iter().collect::<Outcome>()?;
+pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckResult {
+    judge_weights(trial, &drawn()).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, queries(), |queries| judge_weights(trial, queries))
 }
 
@@ -101,7 +101,7 @@ pub(super) fn drawn() -> [ScatterQuery; 3] {
     ]
 }
 
-fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
+fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.scatter(queries), |query, yours| {
         let (n1, n2, share) = share(query);
         let [weight, mirror, transmission] =
@@ -159,7 +159,7 @@ fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Outcome> {
 const ENTERING: &str = "entering: n1 = 1 (air), n2 = index_of_refraction (glass)";
 
 /// R4: a ray through a pane of glass leaves it in the direction in which it entered.
-pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> CheckResult {
     let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
     for direction in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
         let enter = ScatterQuery {
@@ -173,7 +173,7 @@ pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Out
         };
         let inside = trial.kit.scatter(std::slice::from_ref(&enter)).remove(0);
         let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
-        super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<Outcome>()?;
+        super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<CheckResult>()?;
         let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
             let broken =
                 Broken::with_texts(paste(&enter), describe(&inside), "a refracted ray", "into glass");
@@ -201,7 +201,7 @@ pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Out
     Ok(())
 }
 
-pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) -> CheckResult {
     // R5: 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
     for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
         let query = ScatterQuery {
@@ -234,7 +234,7 @@ pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) ->
     Ok(())
 }
 
-pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResult {
     // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing.
     let dull = (queries(), 0..3i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },

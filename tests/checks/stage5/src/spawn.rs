@@ -1,7 +1,7 @@
 //! The origins of secondary rays.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{magnitude, rough_point, unit};
 use checks::judge::{compare, known};
 use checks::paste::Paste;
@@ -48,16 +48,16 @@ fn describe((surface, child): &Leaving) -> String {
 }
 
 /// R6: the slide starts the ray at `hit.Point()`, which is rounded, so about half of the rays hit their own surface.
-pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> Outcome {
+pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResult {
     // Begin with a point with a large error, because known mistakes differ most there.
     let drawn = [Bounce::Reflection, Bounce::Transmission].map(|bounce| {
         leaving(vec3(30.0, -20.0, 10.0), vec3(0.0, 0.6, 0.8), vec3(0.6, 0.0, 0.8), bounce, 1e-3)
     });
-    compare(&drawn, trial.kit.spawn_ray(&drawn), judge).into_iter().collect::<Outcome>()?;
+    compare(&drawn, trial.kit.spawn_ray(&drawn), judge).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, at_any_scale(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
 }
 
-fn judge(query: &Leaving, ray: Ray) -> Outcome {
+fn judge(query: &Leaving, ray: Ray) -> CheckResult {
     let (surface, child) = query;
     let broken = |yours: String, expected: String, diagnosis: &'static str| {
         Err(Broken::with_texts(describe(query), yours, expected, "closed form").looks_like(known(diagnosis)))

@@ -1,7 +1,7 @@
 //! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
 use super::scatter::{FAR, paste};
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::{Trial, golden};
 use glam::{Vec3, vec3};
 use raykata::kit::{Bounce, Limits, ScatterQuery};
@@ -46,7 +46,7 @@ fn judge(
     limits: Limits,
     expected: usize,
     diagnosis: &str,
-) -> Outcome {
+) -> CheckResult {
     let material = Material {
         mirror: Vec3::splat(mirror),
         transmission: Vec3::splat(transmission),
@@ -62,7 +62,7 @@ fn judge(
     Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
 }
 
-pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
+pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
     let depth = "a ray of depth max_depth has no secondary rays: compare depth with limits.max_depth";
     for (max_depth, expected) in [(0, 1), (1, 3), (2, 7), (5, 63), (10, 2047)] {
         judge(trial, 0.5, 0.5, Limits { max_depth, ..FAR }, expected, depth)?;
@@ -71,7 +71,7 @@ pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> Outcome {
     judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "you trace rays of weight 0")
 }
 
-pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> Outcome {
+pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult {
     // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays.
     let parent = "you test the weight of the incoming ray: test the secondary ray's own weight";
     let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
@@ -103,7 +103,7 @@ pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> Outcome {
+pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> CheckResult {
     // A perfect mirror keeps the whole weight, so only the depth ends the tree.
     judge(
         trial,
@@ -116,7 +116,7 @@ pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> Outcome {
 }
 
 /// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution gives this tree.
-pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> Outcome {
+pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> CheckResult {
     let glass = Material {
         transmission: Vec3::ONE,
         index_of_refraction: 1.5,

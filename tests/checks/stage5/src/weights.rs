@@ -2,7 +2,7 @@
 
 use super::scatter::{FAR, drawn, find, paste, queries};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -10,7 +10,7 @@ use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
 use raykata::material::{Fresnel, Material};
 
 /// X8: a secondary ray's own weight decides, not that of the incoming ray and not that of the other secondary ray.
-pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> Outcome {
+pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckResult {
     let [slanted, ..] = drawn();
     let (direction, normal) = (slanted.direction, slanted.normal);
     // Weights are exact and often equal to the limit, because they are products of eighths. The index is 1, so that
@@ -36,11 +36,11 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> Outcome
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
     let judge = |queries: &[ScatterQuery]| compare(queries, trial.kit.scatter(queries), judge_own_weight);
-    judge(&drawn).into_iter().collect::<Outcome>()?;
+    judge(&drawn).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, queries, judge)
 }
 
-fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> Outcome {
+fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResult {
     let least = query.limits.min_contribution;
     let [parent, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
     let weights = [mirror, transmission].map(|share| (parent * share).max_element());

@@ -2,14 +2,14 @@
 
 use super::lens::{polar, uneven_disk};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::{Disk, Sphere};
 
-pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
     let (corner, edges) = (vec3(1.0, 5.0, -2.0), (vec3(3.0, 0.0, 0.0), vec3(0.5, 0.0, 2.0)));
     let queries: Vec<RectangleQuery> =
         pairs(trial.seed, SAMPLES).into_iter().map(|u| RectangleQuery { corner, edges, u }).collect();
@@ -56,7 +56,7 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult {
     let disk = Disk { center: vec3(1.0, 2.0, 3.0), normal: vec3(0.0, 3.0, -4.0), radius: 2.5 };
     let u = pairs(trial.seed, SAMPLES);
     let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disk, *u)).collect();
@@ -134,7 +134,7 @@ fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>
 
 const AXES: [&str; 2] = ["1 - cos θ, as a fraction of the rim's", "the angle around the axis"];
 
-pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> CheckResult {
     let sphere = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
     let from = vec3(1.0, 1.0, 2.0);
     let shares = seen(trial, sphere, from)?;
@@ -161,7 +161,7 @@ pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> Outcome {
+pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
     // Ten thousand radii away 1 - cos θ of the rim is 5e-9, so cos θ is rounded to 1 in f32.
     let sphere = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
     let rounded = "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)";
@@ -172,7 +172,7 @@ pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> Outcome {
+pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckResult {
     let sphere = Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 };
     let shares = seen(trial, sphere, vec3(0.5, 0.0, 0.5))?;
     covers_evenly("sample_sphere from inside", &shares, AXES, |counts| {
@@ -196,7 +196,7 @@ pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> Outcom
 }
 
 /// The fraction of a sphere that is visible past the straight edge of a wall.
-pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> Outcome {
+pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> CheckResult {
     let sphere = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
     let queries: Vec<SphereSampleQuery> = pairs(trial.seed, SAMPLES)
         .into_iter()

@@ -2,7 +2,7 @@
 
 use super::pixels::unit_number;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
@@ -32,7 +32,7 @@ pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
     }
 }
 
-pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
     let u = pairs(trial.seed, SAMPLES);
     let places = trial.kit.sample_disk(&u);
     for (u, place) in u.iter().zip(&places) {
@@ -51,7 +51,7 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> Outcome {
     has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, "")
 }
 
-pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
+pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
     let numbers = (unit_number(), unit_number()).prop_map(|(x, y)| vec2(x, y));
     // Formulas divide by 0 at the middle of the square and on its diagonals.
     let corners = [0.0, 0.25, 0.5, 0.75].map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)]);
@@ -67,7 +67,7 @@ pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> Outcome {
                 .looks_like(nan))
         })
     };
-    judge(corners.as_flattened()).into_iter().collect::<Outcome>()?;
+    judge(corners.as_flattened()).into_iter().collect::<CheckResult>()?;
     trial.forall(1000, numbers, judge)
 }
 
@@ -108,7 +108,7 @@ fn paste(query: &LensQuery) -> String {
     format!("{camera}\nlens_ray(&camera, {}, &{lens}, {})", query.pinhole.paste(), query.on_lens.paste())
 }
 
-pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> CheckResult {
     let queries = lens_query(vec3(1.0, 2.0, 3.0)).prop_map(|query| match query.on_lens.x > 0.0 {
         true => LensQuery { lens: Lens { aperture: 0.0, ..query.lens }, ..query },
         false => LensQuery { on_lens: Vec2::ZERO, ..query },
@@ -139,7 +139,7 @@ fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
     start + (f64::from(query.lens.focal_distance) - start.dot(towards)) / direction.dot(towards) * direction
 }
 
-pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> Outcome {
+pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
@@ -180,7 +180,7 @@ pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> Outcome {
             .looks_like(known(diagnosis)))
         })
     };
-    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    judge(&[drawn()]).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
 }
 
@@ -206,7 +206,7 @@ impl NanAnywhere for Ray {
     }
 }
 
-pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[LensQuery]| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
             let camera = &query.camera;
@@ -242,11 +242,11 @@ pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> Outcome {
             .looks_like(known(diagnosis)))
         })
     };
-    judge(&[drawn()]).into_iter().collect::<Outcome>()?;
+    judge(&[drawn()]).into_iter().collect::<CheckResult>()?;
     trial.forall(1000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
 }
 
-pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> CheckResult {
     // Near a million f32 numbers are 1/16 apart: the origin is rounded, but the direction can be precise.
     trial.forall(1000, lens_query(vec3(1e6, -1e6, 1e6)), |queries| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {

@@ -2,7 +2,7 @@
 
 use super::pixels::unit_number;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{magnitude, point, rough_point};
 use checks::judge::{compare, known};
 use checks::paste::{Paste, call};
@@ -16,7 +16,7 @@ use raykata::kit::{KitError, TimeQuery, kit_error};
 /// The table of the slide.
 const TABLE: [[u32; 4]; 4] = [[7, 11, 3, 14], [4, 15, 13, 9], [16, 1, 8, 12], [6, 10, 5, 2]];
 
-pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> Outcome {
+pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> CheckResult {
     // Any 4 × 4 cells in a square have each slot once, because blocks repeat.
     for (left, top) in [(0, 0), (4, 8), (1, 3), (1022, 765)] {
         let cells: Vec<(u32, u32)> = (0..16).map(|index| (left + index % 4, top + index / 4)).collect();
@@ -74,7 +74,7 @@ fn paste(query: &TimeQuery) -> String {
     )
 }
 
-pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
+pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> CheckResult {
     let shutter = (0.0..1.0f32, 0.0..=1.0f32)
         .prop_map(|(first, second)| Shutter { open: first.min(second), close: first.max(second) });
     let whole = Just(Shutter { open: 0.0, close: 1.0 });
@@ -115,11 +115,11 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> Outcome {
     };
     // Begin with a shutter for which all known mistakes give different times.
     let drawn = TimeQuery { shutter: Shutter { open: 0.25, close: 0.875 }, slot: 2, slots: 4, u: 0.375 };
-    judge(&[drawn]).into_iter().collect::<Outcome>()?;
+    judge(&[drawn]).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, queries, judge)
 }
 
-pub(super) fn times_are_even(trial: &Trial<'_>) -> Outcome {
+pub(super) fn times_are_even(trial: &Trial<'_>) -> CheckResult {
     let shutter = Shutter { open: 0.25, close: 0.75 };
     let u = pairs(trial.seed, SAMPLES);
     let queries: Vec<TimeQuery> = u
@@ -146,7 +146,7 @@ fn describe((start, end, time): &Move) -> String {
     call("lerp", &[start, end, time])
 }
 
-pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
     let ends = || (rough_point(1000.0), rough_point(1000.0));
     let time = prop_oneof![Just(0.0f32), Just(1.0f32)];
     let at_ends = (ends(), time).prop_map(|((start, end), time)| (start, end, time));
@@ -177,7 +177,7 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
     let near_each_other = (point(4), point(4), magnitude(-7.0, 3.0))
         .prop_map(|(start, step, scale)| (start, start + scale * step));
     let queries = (near_each_other, 0.0..=1.0f32).prop_map(|((start, end), time)| (start, end, time));
@@ -207,11 +207,11 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> Outcome {
                 .looks_like(known(diagnosis)))
         })
     };
-    judge(&[(vec3(1.0, 2.0, -3.0), vec3(2.0, -2.0, 4.5), 0.25)]).into_iter().collect::<Outcome>()?;
+    judge(&[(vec3(1.0, 2.0, -3.0), vec3(2.0, -2.0, 4.5), 0.25)]).into_iter().collect::<CheckResult>()?;
     trial.forall(4000, queries, judge)
 }
 
-pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Outcome {
+pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> CheckResult {
     let around = || (point(4), point(2)).prop_map(|(min, size)| Aabb::new(min, min + size.abs()));
     let ways = (around(), around()).prop_map(|(start, end)| (start, end));
     let judge = |queries: &[(Aabb, Aabb)]| {
@@ -255,6 +255,6 @@ pub(super) fn motion_bounds_covers_the_way_and_no_more(trial: &Trial<'_>) -> Out
     // Begin with a box that moves along each axis and changes its size.
     let drawn =
         (Aabb::new(Vec3::ZERO, vec3(1.0, 1.0, 2.0)), Aabb::new(vec3(0.5, -1.0, 1.0), vec3(4.0, 0.5, 1.5)));
-    judge(&[drawn]).into_iter().collect::<Outcome>()?;
+    judge(&[drawn]).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, ways, judge)
 }

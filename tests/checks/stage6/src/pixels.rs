@@ -1,7 +1,7 @@
 //! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, covers_evenly, pairs};
@@ -32,7 +32,7 @@ fn stratum() -> impl Strategy<Value = Stratum> + Clone {
 /// A cell for which all known mistakes give different positions.
 const DRAWN: Stratum = Stratum { cell: uvec2(2, 1), grid: uvec2(4, 3), u: vec2(0.25, 0.625) };
 
-pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> Outcome {
+pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckResult {
     let judge = |queries: &[Stratum]| {
         compare(queries, trial.kit.jittered(queries), |query, yours| {
             let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
@@ -67,11 +67,11 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> Outcome
                 .looks_like(known(diagnosis)))
         })
     };
-    judge(&[DRAWN]).into_iter().collect::<Outcome>()?;
+    judge(&[DRAWN]).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, stratum(), judge)
 }
 
-pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> Outcome {
+pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
     let samplers = prop_oneof![
         Just(Sampler::Center),
         Just(Sampler::Random),
@@ -117,7 +117,7 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> Outcome {
     };
     let drawn =
         [Sampler::Center, Sampler::Random, Sampler::LowDiscrepancy, Sampler::Jittered, Sampler::Gaussian];
-    judge(&drawn.map(|sampler| (sampler, DRAWN))).into_iter().collect::<Outcome>()?;
+    judge(&drawn.map(|sampler| (sampler, DRAWN))).into_iter().collect::<CheckResult>()?;
     trial.forall(2000, (samplers, stratum()), judge)
 }
 
@@ -127,7 +127,7 @@ fn bell(x: f64) -> f64 {
     ((-2.0 * x * x).exp() - (-2.0 * radius * radius).exp()).max(0.0)
 }
 
-pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome {
+pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckResult {
     let coordinate = (-16..=16i32).prop_map(|eighths| eighths as f32 / 8.0);
     let offsets = (coordinate.clone(), coordinate).prop_map(|(x, y)| vec2(x, y));
     let judge = |queries: &[Vec2]| {
@@ -175,7 +175,7 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> Outcome 
         })
     };
     // Begin with an offset off the axes: on the axes several mistakes give the same answer.
-    judge(&[vec2(0.5, -0.25)]).into_iter().collect::<Outcome>()?;
+    judge(&[vec2(0.5, -0.25)]).into_iter().collect::<CheckResult>()?;
     trial.forall(1000, offsets, judge)
 }
 
@@ -186,7 +186,7 @@ fn paste_samples(samples: &[WeightedColor]) -> String {
     format!("filter_pixel(&[{}])", samples.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
-pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
+pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResult {
     let share = || (0..=16i32).prop_map(|n| n as f32 / 8.0);
     let color = (share(), share(), share()).prop_map(|(r, g, b)| vec3(r, g, b));
     let sample = (color, share()).prop_map(|(color, weight)| WeightedColor { color, weight });
@@ -228,11 +228,11 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> Outcome {
     let drawn = [(vec3(0.25, 0.5, 2.5), 0.5), (vec3(1.0, 0.0, 2.25), 1.75)];
     judge(&[drawn.map(|(color, weight)| WeightedColor { color, weight }).to_vec()])
         .into_iter()
-        .collect::<Outcome>()?;
+        .collect::<CheckResult>()?;
     trial.forall(1000, samples, judge)
 }
 
-pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> Outcome {
+pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> CheckResult {
     let nothing = [vec![], vec![WeightedColor { color: Vec3::ONE, weight: 0.0 }; 3]];
     for (samples, yours) in nothing.iter().zip(trial.kit.filter_pixel(&nothing)) {
         if yours != Vec3::ZERO {
@@ -245,7 +245,7 @@ pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> Outcome 
     Ok(())
 }
 
-pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> Outcome {
+pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> CheckResult {
     // Use sixteen cells in turn, each with its own random numbers.
     let strata: Vec<Stratum> = pairs(trial.seed, SAMPLES)
         .into_iter()

@@ -3,7 +3,7 @@
 use super::pixels::unit_number;
 use crate::unit_arrival;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::call;
 use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
@@ -15,7 +15,7 @@ fn paste(query: &PhongLobeQuery) -> String {
     call("sample_phong_lobe", &[&query.ideal, &query.normal, &query.roughness, &query.u])
 }
 
-pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> Outcome {
+pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
     let queries = (unit_arrival(), unit_number(), unit_number())
         .prop_map(|((ideal, normal), u, v)| PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) });
     trial.forall(500, queries, |queries| {
@@ -68,7 +68,7 @@ const AXES: [&str; 2] = ["cosⁿ⁺¹ θ", "the angle around ideal"];
 const TOO_BLURRED: &str = "your lobe is too wide: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
 const TOO_SHARP: &str = "your lobe is too narrow: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
 
-pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> Outcome {
+pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> CheckResult {
     for roughness in [0.2, 0.5, 1.0] {
         let shares = lobe(trial, roughness)?;
         covers_evenly(&format!("sample_phong_lobe with roughness {roughness}"), &shares, AXES, |counts| {
@@ -94,7 +94,7 @@ pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -
     Ok(())
 }
 
-pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
+pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResult {
     // n is 2,000,000, so cosines differ from 1 in their last four bits only.
     let shares = lobe(trial, 0.001)?;
     covers_evenly("sample_phong_lobe with roughness 0.001", &shares, AXES, |counts| {
@@ -108,7 +108,7 @@ pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> Outcome {
+pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
     let queries = (unit_arrival(), 1..=16i32, unit_number(), unit_number()).prop_map(
         |((ideal, normal), sixteenths, u, v)| PhongLobeQuery {
             ideal,

@@ -2,7 +2,7 @@
 
 use super::scenes::{light, sphere_light};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use checks::paste::Paste;
 use glam::{Vec3, vec3};
@@ -12,7 +12,7 @@ use raykata::kit::{LightQuery, MaterialQuery};
 use raykata::material::{Fresnel, Light, Material};
 use raykata::scene::Quality;
 
-pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
     let quality = |light_samples| Quality { light_samples, ..Quality::default() };
     let one = LightEffects { samples: 1, area: false, shadows: true };
     let nothing = LightEffects::default();
@@ -324,7 +324,7 @@ fn compare_effects(
     yours: &MaterialEffects,
     expected: &MaterialEffects,
     source: &'static str,
-) -> Outcome {
+) -> CheckResult {
     if yours == expected {
         return Ok(());
     }
@@ -397,7 +397,7 @@ fn describe(query: &MaterialQuery) -> String {
 /// Compares simple materials with recorded answers, and other materials with the student's own answers for simpler
 /// ones: a material needs the union of what its colours need, and the union of what its channels need. Each setting
 /// changes only its own effect.
-pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> Outcome {
+pub(super) fn materials_take_what_they_show(trial: &Trial<'_>) -> CheckResult {
     let recorded = recorded();
     let queries: Vec<MaterialQuery> = recorded.iter().map(|(query, _)| query.clone()).collect();
     for ((query, expected), yours) in recorded.iter().zip(trial.kit.material_effects(&queries)) {

@@ -1,7 +1,7 @@
 //! Checks of `rays_of_hits` and `samples_for_error`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
@@ -180,7 +180,7 @@ fn parts(query: &HitsQuery) -> Parts {
 }
 
 /// Checks known counts: the fixed table, single hits and single light samples. All other tables must be sums of those.
-pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
+pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
     let query = drawn();
     let yours = trial.kit.rays_of_hits(std::slice::from_ref(&query)).remove(0);
     if yours != DRAWN {
@@ -218,7 +218,7 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Outcome {
+pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> CheckResult {
     // Powers of two, so that every quotient is exact.
     let cases = [
         (1.0, 0.5, 4),

@@ -1,7 +1,7 @@
 //! Checks of `texel` and `texture_color`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
@@ -35,7 +35,7 @@ fn row(size: u32, wrap: Wrap, reach: i64) -> Vec<u32> {
     below.into_iter().skip(1).rev().chain(walk(1)).collect()
 }
 
-pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> Outcome {
+pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
     let wrap = prop_oneof![Just(Wrap::Repeat), Just(Wrap::Clamp), Just(Wrap::Mirror)];
     let queries =
         (-REACH..REACH, 1..9u32, wrap).prop_map(|(index, size, wrap)| TexelQuery { index, size, wrap });
@@ -74,7 +74,7 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> Outcome {
     let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)];
     judge(&drawn.map(|(index, wrap)| TexelQuery { index, size: 4, wrap }))
         .into_iter()
-        .collect::<Outcome>()?;
+        .collect::<CheckResult>()?;
     trial.forall(3000, queries, judge)
 }
 
@@ -119,7 +119,7 @@ fn place(texture: &Texture, [column, row]: [i64; 2], [right, down]: [f64; 2]) ->
     TextureQuery { texture: texture.clone(), uv: vec2(u as f32, v as f32) }
 }
 
-pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> Outcome {
+pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult {
     let texture = texture(4, 3, Wrap::Clamp);
     let pixels: Vec<[i64; 2]> = (0..12).map(|i| [i % 4, i / 4]).collect();
     let queries: Vec<TextureQuery> = pixels.iter().map(|&pixel| place(&texture, pixel, [0.0, 0.0])).collect();
@@ -273,7 +273,7 @@ fn stretches() -> impl Strategy<Value = Stretch> + Clone {
     )
 }
 
-fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) -> Outcome {
+fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) -> CheckResult {
     let [column, row] = stretch.pixel;
     let pixel = at(&stretch.texture, column, row);
     if !(apart(yours[0], pixel) < NEAR) {
@@ -301,7 +301,7 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
 
 /// Checks the two laws of bilinear interpolation: at the centre of each pixel, also outside of the image, the colour is
 /// that of the pixel, and between four centres it changes linearly along both axes.
-pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
+pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
     let image = texture(4, 3, Wrap::Mirror);
     let drawn = DRAWN.map(|(u, v)| TextureQuery { texture: image.clone(), uv: vec2(u, v) });
     let yours = trial.kit.texture_color(&drawn);
@@ -322,7 +322,7 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> Outcome {
+pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
     let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -0.0, 1e-40];
     for wrap in WRAPS {
         let image = texture(3, 2, wrap);

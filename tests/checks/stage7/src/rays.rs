@@ -2,7 +2,7 @@
 
 use super::scenes::{light, one_sphere};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use glam::Vec3;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
@@ -42,7 +42,7 @@ fn judge(
     query: BoundQuery,
     expected: RayCounts,
     diagnose: impl Fn(&RayCounts) -> &'static str,
-) -> Outcome {
+) -> CheckResult {
     let input = format!("most_rays of {what}");
     match kit_error::catch(|| trial.kit.most_rays(&[query]).remove(0)) {
         Ok(yours) if yours == expected => Ok(()),
@@ -76,7 +76,7 @@ fn mirror_and_glass(quality: Quality) -> BoundQuery {
     query
 }
 
-pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> Outcome {
+pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult {
     // Slide "Cost of shadow computation": 1000 × 1000 pixels, 10 lights.
     let mut query = query(Material::default(), 10, Quality::default());
     query.scene.film = film(1000, 1000);
@@ -116,7 +116,7 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> CheckResult {
     let grey = Vec3::splat(0.5);
     let parameters =
         |max_depth, min_contribution| Quality { max_depth, min_contribution, ..Quality::default() };
@@ -229,7 +229,7 @@ pub(super) fn bound_follows_the_bounces(trial: &Trial<'_>) -> Outcome {
     )
 }
 
-pub(super) fn bound_stays_at_the_largest_number(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bound_stays_at_the_largest_number(trial: &Trial<'_>) -> CheckResult {
     let both = Material { mirror: Vec3::ONE, transmission: Vec3::ONE, ..Material::default() };
     let query = query(both, 3, Quality { max_depth: 1000, min_contribution: 0.0, ..Quality::default() });
     let expected = RayCounts { primary: 1, shadow: u64::MAX, reflection: u64::MAX, transmission: u64::MAX };

@@ -2,7 +2,7 @@
 
 use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use glam::Vec3;
 use raykata::camera::{Lens, Shutter};
@@ -23,7 +23,7 @@ fn plain() -> Effects {
     }
 }
 
-fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagnosis: &str) -> Outcome {
+fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagnosis: &str) -> CheckResult {
     let yours = trial.kit.effects(&[scene]).remove(0);
     if yours == *expected {
         return Ok(());
@@ -44,7 +44,7 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
     Err(broken.looks_like(known(diagnosis)))
 }
 
-pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome {
+pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckResult {
     let scene = one_sphere(Material::default());
     judge(
         trial,
@@ -68,7 +68,7 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> Outcome 
     judge(trial, "a diffuse sphere under a black light and a white one", dark, &expected, in_place)
 }
 
-pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
+pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult {
     let shown = "only shapes that a root reaches are shown: use scene.shown()";
     let mut scene = one_sphere(Material::default());
     scene.materials.push(Material { mirror: Vec3::ONE, ..Material::default() });
@@ -113,7 +113,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> Outcome {
     judge(trial, "a diffuse sphere, and a mesh that is half a mirror", scene, &expected, several)
 }
 
-pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> Outcome {
+pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> CheckResult {
     let still = one_sphere(Material::default());
     let mut moving = still.clone();
     moving.nodes[0].transform_end = Some(glam::Affine3A::from_translation(Vec3::X));
@@ -175,7 +175,7 @@ pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -
     Ok(())
 }
 
-pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> Outcome {
+pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> CheckResult {
     // Test all 2⁹ scenes that have a subset of the nine effects.
     let all = everything();
     let subset =

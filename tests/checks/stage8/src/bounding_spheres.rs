@@ -1,7 +1,7 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point, sphere};
 use checks::judge::compare;
 use checks::paste::{call, list};
@@ -16,7 +16,7 @@ fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
     prop::collection::vec(point(8), 1..12)
 }
 
-pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
+pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {
     let judge = |points: &Vec<Vec3>, sphere: Sphere| {
         let center = sphere.center.as_dvec3();
         let outside =
@@ -44,7 +44,7 @@ pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> Outcome {
         .forall(300, far, |queries: &[Vec<Vec3>]| compare(queries, trial.kit.bounding_sphere(queries), judge))
 }
 
-pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
+pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, clouds(), |queries| {
         compare(queries, trial.kit.bounding_sphere(queries), |points, sphere| {
             let pairs = points.iter().flat_map(|p| points.iter().map(move |q| p.distance(*q)));
@@ -68,7 +68,7 @@ pub(super) fn sphere_is_small(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<Outcome> {
+fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.enter_bounding_sphere(queries), |query, yours| {
         let BoundingSphereQuery { ray, sphere } = *query;
         let first =
@@ -144,21 +144,21 @@ fn entries(aimed: bool) -> impl Strategy<Value = BoundingSphereQuery> + Clone {
     })
 }
 
-pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> Outcome {
+pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> CheckResult {
     // S3: the ray starts inside, and the centre lies behind it.
     let facing_away = BoundingSphereQuery {
         ray: Ray::new(Vec3::new(0.5, 0.0, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
     };
-    judge_entries(trial, &[facing_away]).into_iter().collect::<Outcome>()?;
+    judge_entries(trial, &[facing_away]).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, entries(true), |queries| judge_entries(trial, queries))
 }
 
-pub(super) fn enter_bounding_sphere_passes_what_is_missed(trial: &Trial<'_>) -> Outcome {
+pub(super) fn enter_bounding_sphere_passes_what_is_missed(trial: &Trial<'_>) -> CheckResult {
     let behind = BoundingSphereQuery {
         ray: Ray::new(Vec3::new(5.0, 0.0, 0.0), Vec3::X),
         sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
     };
-    judge_entries(trial, &[behind]).into_iter().collect::<Outcome>()?;
+    judge_entries(trial, &[behind]).into_iter().collect::<CheckResult>()?;
     trial.forall(3000, entries(false), |queries| judge_entries(trial, queries))
 }

@@ -1,7 +1,7 @@
 //! Checks of `bounds_to_world`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::U;
 use checks::judge::{compare, known};
 use checks::paste::call;
@@ -44,7 +44,7 @@ fn describe(query: &BoundsQuery) -> String {
     call("bounds_to_world", &[&query.to_world, &query.bounds])
 }
 
-pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) -> Outcome {
+pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) -> CheckResult {
     let queries = moved(trial);
     let judge = |query: &BoundsQuery, yours: Aabb| {
         for row in 0..3 {
@@ -78,7 +78,7 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
     compare(&queries, trial.kit.bounds_to_world(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outcome {
+pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> CheckResult {
     let queries = moved(trial);
     let judge = |query: &BoundsQuery, yours: Aabb| {
         for row in 0..3 {
@@ -103,7 +103,7 @@ pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> Outc
         }
         Ok(())
     };
-    compare(&queries, trial.kit.bounds_to_world(&queries), judge).into_iter().collect::<Outcome>()?;
+    compare(&queries, trial.kit.bounds_to_world(&queries), judge).into_iter().collect::<CheckResult>()?;
     let empty = BoundsQuery { to_world: Affine3A::from_scale(Vec3::splat(2.0)), bounds: Aabb::EMPTY };
     let yours = trial.kit.bounds_to_world(&[empty])[0];
     if yours.min.cmpgt(yours.max).all() {

@@ -3,7 +3,7 @@
 use super::hard::{judge_cases, of};
 use super::solids::{agrees_flat, input};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
@@ -11,7 +11,7 @@ use raykata::kit::SolidQuery;
 use raykata::ray::Ray;
 use raykata::shape::{Disk, Polygon};
 
-pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> Outcome {
+pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> CheckResult {
     agrees_flat::<Disk>(trial)?;
     // Test the rim, which the general laws leave out, at points whose distance from the centre is a whole number.
     let coin = Disk { center: Vec3::ZERO, normal: 2.0 * Vec3::Z, radius: 5.0 };
@@ -28,7 +28,7 @@ pub(super) fn disk_agrees_with_exact_arithmetic(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Rays at edges and corners, and at an edge that two polygons share (traps T8–T10, 35–37).
-pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> Outcome {
+pub(super) fn polygon_at_edges_and_corners(trial: &Trial<'_>) -> CheckResult {
     let square = Polygon {
         corners: vec![vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0), vec3(2.0, 2.0, 0.0), vec3(0.0, 2.0, 0.0)],
     };

@@ -1,7 +1,7 @@
 //! Checks of `closest_hit_in_graph` with tables that hold the answers of `enter` and `hit`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::tree::closest_of;
 use glam::Vec3;
@@ -80,7 +80,7 @@ fn describe(query: &GraphQuery) -> String {
     )
 }
 
-pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 1);
     let mut queries: Vec<GraphQuery> = Vec::new();
     for _ in 0..300 {
@@ -121,7 +121,7 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> Outcome {
     compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Outcome {
+pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 2);
     let mut queries: Vec<GraphQuery> = (0..200).map(|_| random_query(&mut random, NOTHING)).collect();
     plainest_first(&mut queries);
@@ -148,7 +148,7 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ou
     compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
 }
 
-pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> Outcome {
+pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 3);
     let mut queries: Vec<GraphQuery> = (0..200).map(|_| random_query(&mut random, VOLUMES)).collect();
     plainest_first(&mut queries);
@@ -209,7 +209,7 @@ fn row(order: &[u32], savings: Savings) -> GraphQuery {
 }
 
 /// Compares the primitives that are tested, in order, with the expected ones. Each case has a diagnosis.
-fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)]) -> Outcome {
+fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)]) -> CheckResult {
     let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
     compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, diagnosis), yours| {
         if yours.asked == *expected {
@@ -227,7 +227,7 @@ fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)
     .collect()
 }
 
-pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> CheckResult {
     let beyond = "skip a volume that begins beyond the closest hit: it cannot contain a closer hit";
     let mut meets_again = row(&[0, 1], SKIP);
     // The second volume begins at the t of the first hit and has a hit at the same t, so it must be visited.
@@ -253,7 +253,7 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Outco
     )
 }
 
-pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> Outcome {
+pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResult {
     let order = "visit first the child that the ray enters first";
     judge_orders(
         trial,

@@ -3,7 +3,7 @@
 use super::solid::Solid;
 use super::solids::input;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use glam::{Vec3, vec3};
 use oracle::splitmix::Random;
@@ -14,7 +14,7 @@ use raykata::shape::{Cone, Cuboid, Cylinder};
 pub(super) type Case<S> = (SolidQuery<S>, Option<f32>, &'static str);
 
 /// Judges cases whose `t` needs few bits: any correct formula gives it up to one or two rounding errors.
-pub(super) fn judge_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Outcome {
+pub(super) fn judge_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> CheckResult {
     let queries: Vec<SolidQuery<S>> = cases.iter().map(|(query, ..)| query.clone()).collect();
     compare(cases, S::ask(trial.kit, &queries), |(query, expected, diagnosis), yours| {
         let t = yours.map(|hit| hit.t);
@@ -46,7 +46,7 @@ pub(super) fn judge_from_inside<S: Solid>(
     solid: &S,
     aims: impl Fn(&mut Random) -> Vec3,
     diagnosis: &'static str,
-) -> Outcome {
+) -> CheckResult {
     let mut random = Random::new(trial.seed, 8);
     let queries: Vec<SolidQuery<S>> = (0..3000)
         .map(|_| {
@@ -66,7 +66,7 @@ pub(super) fn judge_leaving<S: Solid>(
     queries: &[SolidQuery<S>],
     leave: std::ops::Range<f32>,
     diagnosis: &'static str,
-) -> Outcome {
+) -> CheckResult {
     compare(queries, S::ask(trial.kit, queries), |query, yours| match yours {
         Some(hit) if leave.contains(&hit.t) => Ok(()),
         _ => Err(Broken::with_texts(
@@ -89,7 +89,7 @@ pub(super) fn judge_ties_at_the_rim<S: Solid>(
     solid: &S,
     ends: [f32; 2],
     diagnosis: &'static str,
-) -> Outcome {
+) -> CheckResult {
     let mut random = Random::new(trial.seed, 10);
     let mut short = |n: u64| random.below(2 * n + 1) as f32 - n as f32;
     let mut query = || {
@@ -107,7 +107,7 @@ pub(super) fn judge_ties_at_the_rim<S: Solid>(
 }
 
 /// Rays in the plane of a face, at edges and at flat boxes (traps B3, B4, B7; 38–43, 46).
-pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> CheckResult {
     let unit = Cuboid { min: Vec3::ZERO, max: Vec3::ONE };
     let ask = of(&unit);
     let in_face =
@@ -149,7 +149,7 @@ pub(super) fn cuboid_seen_along_its_faces(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Rays parallel to the axis (traps C1; 29).
-pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
     let can = Cylinder { base: Vec3::ZERO, top: vec3(0.0, 2.0, 0.0), radius: 1.0 };
     let ask = of(&can);
     let along = "the ray is parallel to the axis, so a = |d × A|² is 0 and 0/0 is NaN: it is in the infinite \
@@ -171,7 +171,7 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Rays from inside to the rim, and rays that touch the side (traps C1; 30, 31).
-pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> CheckResult {
     let can = Cylinder { base: vec3(0.25, -0.5, 0.125), top: vec3(0.75, 1.5, 0.5), radius: 0.8 };
     let (x, y) = (can.top - can.base).normalize().any_orthonormal_pair();
     let rim = |random: &mut Random| {
@@ -192,7 +192,7 @@ pub(super) fn cylinder_at_its_rim(trial: &Trial<'_>) -> Outcome {
 const HAT: Cone = Cone { base: Vec3::ZERO, apex: Vec3::Y, radius: 1.0 };
 
 /// Rays above the apex, where the equation describes a second cone (traps C2; 33).
-pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
     let ghost =
         "above the apex the equation describes a second cone, upside down, which is not part of the solid";
@@ -214,7 +214,7 @@ pub(super) fn cone_is_not_its_mirror_image(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Rays parallel to the side, and steeper rays (traps C2; 34).
-pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
     let ask = of(&HAT);
     let linear = "the ray is parallel to the side, so a is 0: solve 2 b t + c = 0";
     let steep =
@@ -234,7 +234,7 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Rays to the apex and to the rim (traps C2; 32).
-pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> CheckResult {
     let lost = "you lose a ray at the apex: a rounded point lies above the apex; intersect intervals instead \
         of testing points";
     judge_cases(

@@ -2,7 +2,7 @@
 
 use super::solid::Solid;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point};
 use checks::judge::{compare, known};
 use checks::paste::call;
@@ -14,7 +14,7 @@ use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
 
 macro_rules! laws {
     ($($solid:ty: $($name:ident $law:ident)*;)*) => {
-        $($(pub(super) fn $name(trial: &Trial<'_>) -> Outcome {
+        $($(pub(super) fn $name(trial: &Trial<'_>) -> CheckResult {
             $law::<$solid>(trial)
         })*)*
     };
@@ -93,7 +93,7 @@ pub(super) fn input<S: Solid>(query: &SolidQuery<S>) -> String {
     call(S::NAME, &[&query.ray, &query.solid])
 }
 
-pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<Outcome> {
+pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<CheckResult> {
     compare(queries, S::ask(trial.kit, queries), |query, yours| {
         let Some(expected) = expected(query) else { return Ok(()) };
         let right = match (yours, expected) {
@@ -161,12 +161,12 @@ fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Op
     }
 }
 
-fn agrees<S: Solid>(trial: &Trial<'_>) -> Outcome {
+fn agrees<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     trial.forall(4000, rays::<S>(false), |queries| judge(trial, queries))
 }
 
 /// For flat shapes this judges the normal, too, which must be that of the shape's description.
-pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> Outcome {
+pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     agrees::<S>(trial)?;
     outwards::<S>(trial)
 }
@@ -174,7 +174,7 @@ pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> Outcome {
 /// At a point `p` of a convex solid, `n` is an outward normal if no point `q` of the solid has `n · (q - p) > 0`. This
 /// holds on faces, rims and apexes, for each of the possible normals there. A flat shape has two such normals, and the
 /// one that its description gives is right.
-fn outwards<S: Solid>(trial: &Trial<'_>) -> Outcome {
+fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     trial.forall(3000, rays::<S>(false), |queries| {
         compare(queries, S::ask(trial.kit, queries), |query, yours| {
             let (Some(hit), Some(Some(_))) = (yours, expected(query)) else { return Ok(()) };
@@ -225,7 +225,7 @@ fn own_normal<S: Solid>(query: &SolidQuery<S>) -> Option<DVec3> {
     Some((2..corners.len()).map(|i| edge(i - 1).cross(edge(i))).sum())
 }
 
-fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
+fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     trial.forall(2000, rays::<S>(true), |queries| judge(trial, queries))?;
     // A direction 1024 times as long must give 1/1024 of t, because t counts lengths of the direction.
     trial.forall(500, rays::<S>(false), |queries| {
@@ -268,7 +268,7 @@ fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> Outcome {
     invalid_numbers::<S>(trial)
 }
 
-fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> Outcome {
+fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     let mut solids = Vec::new();
     let mut runner = proptest::test_runner::TestRunner::deterministic();
     for _ in 0..20 {

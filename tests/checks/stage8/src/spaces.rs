@@ -1,7 +1,7 @@
 //! Checks of `ray_to_object`, `normal_to_world` and `placement`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point, rough_point};
 use checks::judge::{compare, known};
 use checks::paste::{call, list};
@@ -21,12 +21,12 @@ fn transform() -> impl Strategy<Value = Affine3A> + Clone {
         .prop_filter("it has an inverse", |transform| transform.matrix3.determinant().abs() >= 1.0)
 }
 
-pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Outcome {
+pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> CheckResult {
     // X1: first a quarter turn of a stretched object, for which the matrix, its inverse and the transposes of both all
     // differ. Scales along the axes do not show a wrong transpose.
     let to_object = Affine3A::from_mat3(Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z));
     let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)), to_object };
-    judge_points(trial, &[turned]).into_iter().collect::<Outcome>()?;
+    judge_points(trial, &[turned]).into_iter().collect::<CheckResult>()?;
     let inputs = (point(4), direction(), transform()).prop_map(|(origin, direction, to_object)| {
         ObjectRayQuery { ray: Ray::new(origin, direction), to_object }
     });
@@ -42,7 +42,7 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Out
     trial.forall(500, far, |queries| judge_points(trial, queries))
 }
 
-fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<Outcome> {
+fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.ray_to_object(queries), |query, yours| {
         let ObjectRayQuery { ray, to_object } = query;
         let exact = to_object.as_daffine3();
@@ -108,7 +108,7 @@ fn is_along(yours: Vec3, right: DVec3) -> bool {
     yours.dot(right) > 0.0 && yours.cross(right).length() <= 16.0 * checks::double::U * length
 }
 
-pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> Outcome {
+pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult {
     // X2: an object that is scaled is hit at the same t, which counts lengths of the direction.
     let grown = ObjectRayQuery {
         ray: Ray::new(Vec3::new(0.0, 0.0, -5.0), 2.0 * Vec3::Z),
@@ -165,7 +165,7 @@ fn normal(query: &NormalQuery) -> DVec3 {
     (query.to_object.as_daffine3().matrix3.transpose() * query.normal.as_dvec3()).normalize()
 }
 
-fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
+fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.normal_to_world(queries), |query, yours| {
         let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
         // The tolerance covers a normalized sum of three products whose terms are at most ten times as large as the sum.
@@ -196,12 +196,12 @@ fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<Outcome> {
     })
 }
 
-pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> Outcome {
+pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> CheckResult {
     // Stretch and shear, so that the matrix, its inverse and the transposes of both all differ.
     let to_object =
         Affine3A::from_mat3(Mat3::from_cols(Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.0), Vec3::Z));
     let leaning = NormalQuery { normal: Vec3::new(0.6, 0.8, 0.0), to_object };
-    judge_normals(trial, &[leaning]).into_iter().collect::<Outcome>()?;
+    judge_normals(trial, &[leaning]).into_iter().collect::<CheckResult>()?;
     let inputs = (direction(), transform())
         .prop_filter("another check tests reflections", |(_, transform)| {
             transform.matrix3.determinant() > 0.0
@@ -216,7 +216,7 @@ pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> O
     trial.forall(200, extreme, |queries| judge_normals(trial, queries))
 }
 
-pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> Outcome {
+pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
     let inputs = (direction(), transform()).prop_map(|(normal, to_object)| {
         let mirrored = to_object.matrix3.determinant() < 0.0;
         let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
@@ -226,7 +226,7 @@ pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> Outcome {
     trial.forall(1000, inputs, |queries| judge_normals(trial, queries))
 }
 
-pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outcome {
+pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> CheckResult {
     let empty = trial.kit.placement(&[Vec::new()])[0];
     if empty.is_none_or(|place| (place.to_world, place.to_object) != (Affine3A::IDENTITY, Affine3A::IDENTITY))
     {
@@ -286,7 +286,7 @@ pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> Outc
     })
 }
 
-pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outcome {
+pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> CheckResult {
     let flat = Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0));
     let line = Affine3A::from_mat3(Mat3::from_cols(Vec3::ONE, Vec3::ONE, 2.0 * Vec3::ONE));
     let turn = Affine3A::from_rotation_y(0.5);
@@ -303,7 +303,7 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Outc
             "you accept a path with a singular transform: if one factor has no inverse, the product has none",
         ))),
     };
-    compare(&paths, trial.kit.placement(&paths), judge).into_iter().collect::<Outcome>()?;
+    compare(&paths, trial.kit.placement(&paths), judge).into_iter().collect::<CheckResult>()?;
     // Scales by very small and very large numbers have inverses.
     let small =
         vec![Affine3A::from_scale(Vec3::splat(1e-4)), Affine3A::from_scale(Vec3::new(1e-3, 1e3, -1.0))];

@@ -2,7 +2,7 @@
 
 use super::quarters::triangles_are_quarters;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use glam::{DVec3, Vec3, vec2, vec3};
 use raykata::mesh::Mesh;
@@ -91,7 +91,7 @@ fn opposite(mesh: &Mesh, (p, q): (u32, u32)) -> Vec<u32> {
 pub(super) type Unlike = (String, String, &'static str);
 
 /// Judges one law for every mesh.
-fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) -> Outcome {
+fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) -> CheckResult {
     let meshes = meshes();
     let queries: Vec<Mesh> = meshes.iter().map(|(_, mesh)| mesh.clone()).collect();
     let pairs: Vec<_> = meshes.iter().zip(trial.kit.loop_subdivide(&queries)).collect();
@@ -103,7 +103,7 @@ fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) ->
     })
 }
 
-pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> Outcome {
+pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> CheckResult {
     judge(trial, |mesh, yours| {
         let (n_old, n_edges) = (mesh.positions.len(), edges(mesh).len());
         let describe =
@@ -339,17 +339,17 @@ impl<'a> Step<'a> {
 }
 
 /// Measures the weights: moves each old vertex a little and compares the answers.
-fn judge_weights(trial: &Trial<'_>, border: bool) -> Outcome {
+fn judge_weights(trial: &Trial<'_>, border: bool) -> CheckResult {
     judge(trial, |mesh, yours| {
         let moved = trial.kit.loop_subdivide(&moved(mesh));
         Step::new(mesh, yours, &moved).judge(border)
     })
 }
 
-pub(super) fn loop_places_vertices_by_the_rule(trial: &Trial<'_>) -> Outcome {
+pub(super) fn loop_places_vertices_by_the_rule(trial: &Trial<'_>) -> CheckResult {
     judge_weights(trial, false)
 }
 
-pub(super) fn loop_borders_depend_on_borders(trial: &Trial<'_>) -> Outcome {
+pub(super) fn loop_borders_depend_on_borders(trial: &Trial<'_>) -> CheckResult {
     judge_weights(trial, true)
 }

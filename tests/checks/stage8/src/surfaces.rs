@@ -1,7 +1,7 @@
 //! Checks of `bezier_point`.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
 use checks::judge::{compare, known};
 use checks::paste::{Paste, list};
@@ -23,7 +23,7 @@ fn describe(query: &PatchQuery) -> String {
     format!("bezier_point(&BezierPatch {{ rows: [{a}, {b},\n{c}, {d}] }},\n{})", query.uv.paste())
 }
 
-pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckResult {
     let rough = patch().prop_map(|mut patch| {
         // Use thirds: p + t (q - p) does not return them exactly at t = 1.
         patch.rows.iter_mut().flatten().for_each(|point| *point /= 3.0);
@@ -61,25 +61,25 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> Outcom
             .iter()
             .enumerate()
             .map(judge)
-            .collect::<Vec<Outcome>>()
+            .collect::<Vec<CheckResult>>()
             .chunks(4)
             .map(|four| four.iter().cloned().collect())
             .collect()
     })
 }
 
-pub(super) fn bezier_point_is_the_mean_of_its_net(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bezier_point_is_the_mean_of_its_net(trial: &Trial<'_>) -> CheckResult {
     // First test a net whose points all differ, so that the answer shows which mistake was made.
     let heights = [[0, 1, 0, -1], [2, -1, 1, 0], [1, 3, 0, 2], [0, -2, 1, 1]];
     let row = |row: usize| [0, 1, 2, 3].map(|i| Vec3::new(i as f32, row as f32, heights[row][i] as f32));
     let hilly = PatchQuery { patch: BezierPatch { rows: [0, 1, 2, 3].map(row) }, uv: vec2(0.25, 0.625) };
-    judge_points(trial, &[hilly]).into_iter().collect::<Outcome>()?;
+    judge_points(trial, &[hilly]).into_iter().collect::<CheckResult>()?;
     let inputs = (patch(), 0..=8u32, 0..=8u32)
         .prop_map(|(patch, u, v)| PatchQuery { patch, uv: vec2(u as f32, v as f32) / 8.0 });
     trial.forall(1000, inputs, |queries| judge_points(trial, queries))
 }
 
-fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<Outcome> {
+fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.bezier_point(queries), |query, yours| {
         let at = |[u, v]: [f32; 2], weights: fn(f64) -> [f64; 4]| -> DVec3 {
             let [across, along] = [u, v].map(|t| weights(f64::from(t)));

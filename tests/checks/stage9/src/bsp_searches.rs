@@ -5,14 +5,14 @@ use super::scenes::{Scene, Thing, sphere, wall};
 use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::bsp;
 use checks::Trial;
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use glam::{DVec3, Vec3, vec3};
 use raykata::kit::CellsQuery;
 use raykata::partition::{Bsp, CutPlane};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
 
-pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     // The box of the large sphere crosses the plane x + y = 0, so both leaves list it. Its hit is in front of the
     // plane, behind the hit of the small sphere.
     let large = Thing::Sphere(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
@@ -39,7 +39,7 @@ fn diagonal() -> CutPlane {
     CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
 }
 
-fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, says: &str) -> Outcome {
+fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, says: &str) -> CheckResult {
     let hits = scene.hits(ray);
     let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
     let yours = trial.kit.bsp_search(&[query]).remove(0);
@@ -47,7 +47,7 @@ fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, say
 }
 
 /// Trap A7: the plane lies behind the ray or beyond its end, or the ray is parallel to it.
-pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> CheckResult {
     let says = "trap A7: if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side";
     let scene = Scene::new(vec![
         sphere(-4.0, -4.0, 0.0, 1.0),
@@ -75,7 +75,7 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
 }
 
 /// Rays that run in the plane or start on it, and polygons that lie in it.
-pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResult {
     let says = "a ray in the plane, or that starts on it, is on both sides, and a primitive in the plane may be listed on one side only: search both";
     let spheres = Scene::new(vec![
         sphere(3.0, -3.0, 0.0, 0.5),
@@ -145,7 +145,7 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32 * 1.5);
     let (scene, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
     let cells = bsp(&scene.hulls(), 8);

@@ -2,7 +2,7 @@
 
 use super::lists::{Fault, ended, judge_references};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
 use checks::judge::compare;
 use glam::{Vec3, vec3};
@@ -35,7 +35,7 @@ fn usable(hull: &[Vec3]) -> bool {
     !hull.is_empty() && hull.iter().all(|corner| corner.is_finite())
 }
 
-fn judge_tree(query: &BspQuery, yours: &Bsp) -> Outcome {
+fn judge_tree(query: &BspQuery, yours: &Bsp) -> CheckResult {
     let nothing = !query.hulls.iter().any(|hull| usable(hull));
     super::lists::judge_tree(
         || describe(query),
@@ -98,7 +98,7 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
     None
 }
 
-pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let tile = (point(4), point(4), point(4), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
         0 => vec![a, Vec3::NAN, c],
         1..=3 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
@@ -112,7 +112,7 @@ pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
     let square = |size: f32, z: f32| {
         let s = size;
         vec![vec3(-s, -s, z), vec3(s, -s, z), vec3(s, s, z), vec3(-s, s, z)]
@@ -149,7 +149,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
-pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> Outcome {
+pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     let sheet = |at: f32| {
         let p = |u: f32, v: f32| vec3(at + u, at - u, v);
         vec![p(-40.0, -40.0), p(40.0, -40.0), p(40.0, 40.0), p(-40.0, 40.0)]

@@ -1,7 +1,7 @@
 //! The laws of the last hit and of packets of rays: the same answers with fewer tests and fewer opened nodes.
 
 use super::scenes::{Scene, closest, rays, scenes, sphere};
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::generate::unit;
 use checks::judge::{compare, known};
 use checks::paste::Paste;
@@ -22,7 +22,7 @@ fn cached(scene: &Scene, ray: &Ray, last: Option<u32>) -> CachedQuery {
     CachedQuery { last, ray: *ray, hits, entries }
 }
 
-pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
     let inputs = (scenes(), any::<u32>()).prop_map(|((scene, ray), pick)| {
         let n = scene.things.len() as u32;
         (cached(&scene, &ray, (n > 0).then(|| pick % n)), n)
@@ -65,11 +65,11 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> Outcome {
     };
     let behind = Scene::new(vec![sphere(2.0, 0.0, 0.0, 0.5), sphere(5.0, 0.0, 0.0, 1.0)]);
     let nearer = (cached(&behind, &ray, Some(1)), 2);
-    judge(&[nearer, tie]).into_iter().collect::<Outcome>()?;
+    judge(&[nearer, tie]).into_iter().collect::<CheckResult>()?;
     trial.forall(1000, inputs, judge)
 }
 
-pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> Outcome {
+pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
     // A row of spheres one behind the other, numbered from the far end: without a known hit the search tests all.
     let row = Scene::new((0..32).rev().map(|i| sphere(3.0 * i as f32, 0.0, 0.0, 1.0)).collect());
     let [first, again] =
@@ -121,7 +121,7 @@ fn packets() -> impl Strategy<Value = (Vec<Sphere>, Vec<Ray>)> + Clone {
     )
 }
 
-pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
+pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResult {
     trial.forall(500, packets(), |cases| {
         let asked: Vec<(PacketQuery, Vec<SearchQuery>)> =
             cases.iter().map(|(spheres, rays)| packet(spheres, rays)).collect();
@@ -153,7 +153,7 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> Outcome {
+pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
     // A row of spheres of which a ray from either end hits the first. No two boxes overlap, so the order is unique.
     let row: Vec<Sphere> =
         (0..64).map(|i| Sphere { center: vec3(4.0 * i as f32, 0.0, 0.0), radius: 1.0 }).collect();
@@ -207,7 +207,7 @@ fn opened_alone(query: &SearchQuery) -> u64 {
     tree::needed(query).0.len() as u64
 }
 
-fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> Outcome {
+fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> CheckResult {
     let mut opened = yours.opened.clone();
     opened.sort_unstable();
     let again = opened.windows(2).find(|pair| pair[0] == pair[1]);

@@ -6,7 +6,7 @@ use super::scenes::{Scene, Thing, rays, sphere, wall};
 use super::searches::{Searcher, agrees, grid_queries, judge, judge_visits};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::{compare, known};
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, uvec3, vec3};
@@ -17,17 +17,17 @@ use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=6u32, 1..=5u32, 1..=4u32)
         .prop_map(|(bounds, x, y, z)| GridQuery { bounds, resolution: uvec3(x, y, z) });
     let none = GridQuery { bounds: Vec::new(), resolution: UVec3::splat(2) };
     let flat =
         GridQuery { bounds: vec![Aabb::new(Vec3::ZERO, vec3(4.0, 4.0, 0.0)); 3], resolution: uvec3(4, 4, 1) };
-    judge_grids(trial, &[none, flat]).into_iter().collect::<Outcome>()?;
+    judge_grids(trial, &[none, flat]).into_iter().collect::<CheckResult>()?;
     trial.forall(200, inputs, |queries| judge_grids(trial, queries))
 }
 
-fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<Outcome> {
+fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.grid_build(queries), |query, yours| match grid_fault(query, &yours) {
         None => Ok(()),
         Some((yours, expected, diagnosis)) => {
@@ -98,12 +98,12 @@ fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'stati
     None
 }
 
-pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     agrees(trial, Searcher::Grid)
 }
 
 /// Trap A8: a large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
-pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
     let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
     let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25), sphere(0.0, 3.0, 0.0, 0.5)]);
     let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
@@ -124,7 +124,7 @@ fn bare_grid(bounds: Aabb, resolution: UVec3) -> Grid {
     Grid { bounds, resolution, starts: vec![0; n + 1], items: Vec::new() }
 }
 
-pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckResult {
     trial.forall(300, rays(), |rays| {
         let grid = bare_grid(Aabb::new(Vec3::splat(-5.0), vec3(5.0, 4.0, 6.0)), uvec3(6, 5, 4));
         let query = |ray: &Ray| CellsQuery { cells: grid.clone(), ray: *ray, hits: Vec::new() };
@@ -149,7 +149,7 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> Outcome
 }
 
 /// Whether the visits to empty cells are those of the ray.
-fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
+fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     let parts = parts::of_grid(&query.cells, &query.ray);
     let fault = |yours: String, expected: String, diagnosis: &'static str| {
         let input =
@@ -195,7 +195,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> Outcome {
 }
 
 /// Trap A8, second part: 250 cells along an axis.
-pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResult {
     // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along y, so that one
     // axis takes twice as many steps as the other.
     let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
@@ -250,7 +250,7 @@ fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
 }
 
 /// Rays through corners of cells, from faces, along faces and in a flat grid.
-pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> CheckResult {
     let lattice: Vec<Thing> = (0..27)
         .map(|i| sphere((i % 3) as f32 * 2.0, (i / 3 % 3) as f32 * 2.0, (i / 9) as f32 * 2.0, 0.5))
         .collect();

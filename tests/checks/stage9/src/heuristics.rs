@@ -1,7 +1,7 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::KdQuery;
@@ -51,7 +51,7 @@ fn refuse(
     cut: &Option<(usize, f32, [usize; 3])>,
     expected: &str,
     diagnosis: &'static str,
-) -> Outcome {
+) -> CheckResult {
     Err(Broken::with_texts(format!("build of {what}, leaf_size 2"), describe(cut), expected, "the heuristic")
         .looks_like(Some(diagnosis)))
 }
@@ -60,7 +60,7 @@ fn cubes(places: impl Iterator<Item = Vec3>) -> Vec<Aabb> {
     places.map(|p| Aabb::new(p, p + 0.5)).collect()
 }
 
-pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> CheckResult {
     for axis in 0..3 {
         let row = cubes((0..16).map(|i| {
             let mut p = vec3((i % 2) as f32, (i % 2) as f32, (i % 2) as f32);
@@ -104,7 +104,7 @@ pub(super) fn kd_cuts_across_the_longest_side(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> CheckResult {
     let crowd = cubes((0..40).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(400.0, 0.0, 0.0)]));
     let what = "40 boxes side by side from x = 0 and one at 400";
     let on = first_cut(&build(trial, &crowd, KdHeuristics { balanced_counts: true, ..NONE }));
@@ -128,7 +128,7 @@ pub(super) fn kd_balances_counts(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_avoids_straddlers(trial: &Trial<'_>) -> CheckResult {
     // 12 planks lie across the middle, side by side along y. 4 small boxes lie left of a gap between x = 2 and 3.
     let planks = (0..12).map(|i| Aabb::new(vec3(3.0, i as f32, 0.0), vec3(10.0, i as f32 + 0.5, 0.5)));
     let small =
@@ -178,7 +178,7 @@ fn empty_share(tree: &KdTree, most_depth: usize) -> f64 {
     empty / all
 }
 
-pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> CheckResult {
     // Two groups in opposite corners of a cube: one cut separates them, and three more per group cut off its empty
     // space.
     let crowd = |corner: f32| {
@@ -213,7 +213,7 @@ pub(super) fn kd_cuts_off_empty_space(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
     // Planks lie across the middle: a plane across x that divides the boxes has most of the planks on both sides.
     let planks = |n_across: usize, n_small: usize| -> Vec<Aabb> {
         let across =

@@ -6,7 +6,7 @@ use super::scenes::{Scene, Thing, closest, sphere, wall};
 use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::kd_tree;
 use checks::Trial;
-use checks::broken::Outcome;
+use checks::broken::CheckResult;
 use checks::judge::compare;
 use glam::{Vec3, uvec3, vec3};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn describe(query: &KdQuery) -> String {
 
 const WHAT_MAKES_IT: &str = "the definition of a kd-tree";
 
-fn judge_tree(query: &KdQuery, yours: &KdTree) -> Outcome {
+fn judge_tree(query: &KdQuery, yours: &KdTree) -> CheckResult {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
     super::lists::judge_tree(
         || describe(query),
@@ -68,7 +68,7 @@ fn heuristics() -> impl Strategy<Value = KdHeuristics> + Clone {
     })
 }
 
-pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), heuristics(), 1..=4usize)
         .prop_map(|(bounds, heuristics, leaf_size)| KdQuery { bounds, heuristics, leaf_size });
     trial.forall(300, inputs, |queries| {
@@ -76,7 +76,7 @@ pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outco
     })
 }
 
-pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
     for (name, bounds) in infinite() {
         for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
             let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
@@ -92,7 +92,7 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     agrees(trial, Searcher::KdTree)
 }
 
@@ -107,7 +107,7 @@ fn two_leaves(bounds: Aabb, at: f32, left: &[u32], right: &[u32]) -> KdTree {
     tree
 }
 
-fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, says: &str) -> Outcome {
+fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, says: &str) -> CheckResult {
     let hits = scene.hits(ray);
     let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
     let yours = trial.kit.kd_search(&[query]).remove(0);
@@ -115,7 +115,7 @@ fn ask(trial: &Trial<'_>, cells: &KdTree, scene: &Scene, ray: &Ray, what: &str, 
 }
 
 /// Traps A4 and A6: the hit lies on the face at which its cell ends, and `t` and `t'` are rounded differently.
-pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> CheckResult {
     let says = "traps A4 and A6: `hit.distance < t'` loses a hit on the far face, and the two t are rounded differently; keep the best hit, wherever its cell ends";
     for (size, rough) in [(1.0, false), (1.0, true), (100.0, true), (1e5, true)] {
         let walls = [wall(0, size, size), wall(0, 0.0, size)];
@@ -144,7 +144,7 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Outco
 
 /// Trap A6 alone: two primitives lie in one face; that of the right cell has a `t` one float smaller than that of the
 /// left.
-pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> Outcome {
+pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> CheckResult {
     let says = "trap A6: t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error";
     for (at, x) in [(1.0f32, -2.0f32), (0.75, -5.3), (-3.125, -7.7)] {
         let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(2.0 * at + 8.0));
@@ -164,7 +164,7 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
     Ok(())
 }
 
-pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
     let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
     let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25)]);
     let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 5.0, 4.0));
@@ -193,7 +193,7 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> Outcome {
 }
 
 /// Trap A5: a ray in the plane of a cut, or that starts on it, is on both sides.
-pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> CheckResult {
     let says = "trap A5: a ray in the plane, or that starts on it, is on both sides, and a primitive in the plane may be listed on one side only: search both";
     let bounds = Aabb::new(Vec3::splat(-8.0), Vec3::splat(8.0));
     for (left, right) in [(&[0u32, 1][..], &[2u32][..]), (&[2][..], &[0, 1][..]), (&[0][..], &[1, 2][..])] {
@@ -254,7 +254,7 @@ pub(super) fn kd_rays_in_the_plane_search_both_sides(trial: &Trial<'_>) -> Outco
     Ok(())
 }
 
-pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn kd_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
     let place = |i: usize| vec3((i % 16) as f32, (i / 16 % 4) as f32, (i / 64) as f32 * 1.5);
     let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 20.0);
     let cells = kd_tree(&scene.boxes(), 10);

@@ -1,6 +1,6 @@
 //! The laws that all builders share: which primitives a cell lists.
 
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use checks::paste::Paste;
 use glam::Vec3;
@@ -48,7 +48,7 @@ pub(super) fn judge_tree(
     source: &'static str,
     (nothing, n_nodes): (bool, usize),
     fault: impl FnOnce() -> Option<Fault>,
-) -> Outcome {
+) -> CheckResult {
     let fault = match (nothing, n_nodes) {
         (true, 0) => None,
         (true, n) => {
@@ -77,7 +77,7 @@ pub(super) fn ended<T>(
 }
 
 /// Whether the leaves hold at most `most` references. A primitive counts once per leaf that lists it.
-pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> Outcome {
+pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> CheckResult {
     let describe = |n: usize| format!("{n} references");
     if yours.len() <= most {
         return Ok(());

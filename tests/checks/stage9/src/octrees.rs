@@ -6,7 +6,7 @@ use super::scenes::{Scene, Thing, sphere};
 use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::Strategy;
@@ -23,7 +23,7 @@ fn describe(query: &OctreeQuery) -> String {
 
 const WHAT_MAKES_IT: &str = "the definition of an octree";
 
-fn judge_octree(query: &OctreeQuery, yours: &Octree) -> Outcome {
+fn judge_octree(query: &OctreeQuery, yours: &Octree) -> CheckResult {
     let nothing = query.bounds.iter().all(Aabb::is_empty);
     judge_tree(|| describe(query), WHAT_MAKES_IT, (nothing, yours.nodes.len()), || fault(query, yours))
 }
@@ -44,7 +44,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     lists_fault(&yours.bounds, &query.bounds, &leaves)
 }
 
-pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
         .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
     trial.forall(200, inputs, |queries| {
@@ -52,7 +52,7 @@ pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> Outcom
     })
 }
 
-pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResult {
     // 64 small boxes, one per cell of the third level, and 8 more in one of these cells.
     let at = |i: usize| vec3((i % 4) as f32, (i / 4 % 4) as f32, (i / 16) as f32) * 2.0;
     let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
@@ -102,7 +102,7 @@ fn below(octree: &Octree, node: u32) -> Vec<u32> {
     found
 }
 
-pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {
     for (name, bounds) in infinite() {
         let n = bounds.len();
         let query = OctreeQuery { bounds, leaf_size: 1, max_depth: 12 };
@@ -118,16 +118,16 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     agrees(trial, Searcher::OctreeByCells)
 }
 
-pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     agrees(trial, Searcher::Octree)
 }
 
 /// Rays along the edges and through the corners at which octants meet, with zeros of both signs in their directions.
-fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Outcome {
+fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> CheckResult {
     // Leave out the sphere in the middle, where octants meet.
     let things: Vec<Thing> = (0..27)
         .filter(|i| *i != 13)
@@ -158,18 +158,18 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Out
     Ok(())
 }
 
-pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
     let says = "a point on a face belongs to the cell that the ray is about to enter: choose it by the sign of d, and set the point exactly on the face";
     along_edges(trial, Searcher::OctreeByCells, says)
 }
 
-pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> CheckResult {
     let says = "trap A9: octants that the ray enters at the same t need an order, too, and a ray in the plane of a face gives 0 / 0";
     along_edges(trial, Searcher::Octree, says)
 }
 
 /// Trap A9: a large sphere that overlaps the first octant is hit in the second, behind a small one.
-pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResult {
     let says = "trap A9: the first hit lies beyond its octant, and the next octant has a nearer one: go on until the next octant begins behind the best hit";
     let large = Thing::Sphere(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
     let scene = Scene::new(vec![large, sphere(4.5, 1.0, 1.0, 0.25)]);
@@ -190,7 +190,7 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> Outcome {
     Ok(())
 }
 
-pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> Outcome {
+pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
     let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
     let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
     let cells = octree(&scene.boxes(), 4);

@@ -1,7 +1,7 @@
 //! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::double::slabs_interval;
 use checks::generate::point;
 use checks::judge::{compare, known};
@@ -11,17 +11,17 @@ use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{ResolutionQuery, SlabQuery};
 
-pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> Outcome {
+pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> CheckResult {
     let inputs = (point(4), point(3), super::scenes::rays()).prop_map(|(p, size, ray)| SlabQuery {
         ray,
         bounds: Aabb::new(p.round(), p.round() + size.abs().round()),
     });
     let empty = SlabQuery { ray: raykata::ray::Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY };
-    judge_spans(trial, &[empty]).into_iter().collect::<Outcome>()?;
+    judge_spans(trial, &[empty]).into_iter().collect::<CheckResult>()?;
     trial.forall(1500, inputs, |queries| judge_spans(trial, queries))
 }
 
-fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<Outcome> {
+fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.cell_span(queries), |query, yours| {
         let (near, far) = slabs_interval(&query.ray, &query.bounds);
         let range = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
@@ -64,7 +64,7 @@ fn describe(query: &ResolutionQuery) -> String {
     format!("resolution({}, {}, {:?})", query.bounds.paste(), query.n_primitives, query.density)
 }
 
-pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
     let size =
         (4..=40i32, 4..=40i32, 4..=40i32).prop_map(|(x, y, z)| vec3(x as f32, y as f32, z as f32) / 4.0);
     let inputs =
@@ -108,7 +108,7 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> Outcome {
     })
 }
 
-pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Outcome {
+pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> CheckResult {
     let query = |max: Vec3, n_primitives: usize, density: f32| ResolutionQuery {
         bounds: Aabb::new(Vec3::ZERO, max),
         n_primitives,

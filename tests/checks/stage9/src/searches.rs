@@ -3,7 +3,7 @@
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
 use super::structures;
 use checks::Trial;
-use checks::broken::{Broken, Outcome};
+use checks::broken::{Broken, CheckResult};
 use checks::judge::known;
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
@@ -95,7 +95,7 @@ pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, 
 }
 
 /// Compares the answer with that of brute force.
-pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> Outcome {
+pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> CheckResult {
     let expected = closest(hits, ray);
     let found = yours.hit.map(|hit| (hit.primitive, hit.t));
     if found == expected {
@@ -130,7 +130,7 @@ pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) ->
 }
 
 /// Compares a search with brute force, in random scenes and in degenerate ones.
-pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> Outcome {
+pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
     // with a nearer small one before it.
     let row = Scene::new((0..3).map(|i| sphere(2.0 * i as f32, 0.0, 0.0, 0.5)).collect());
@@ -174,7 +174,7 @@ pub(super) fn judge_visits(
     parts: &Parts,
     yours: &CellsAnswer,
     fewest: bool,
-) -> Outcome {
+) -> CheckResult {
     let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
     // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
     let room = (-14f64).exp2();

@@ -39,7 +39,7 @@ pub struct Agreement {
 }
 
 /// A ray and the answers that are right.
-struct Asked {
+struct JudgedRay {
     ray: Ray,
     /// The triangles that are met first by exact arithmetic; several for a tie.
     ties: Vec<usize>,
@@ -53,13 +53,13 @@ struct Asked {
 /// less than a millionth of a rounding error of single precision.
 const ON_AN_EDGE: f64 = 1e-6;
 
-impl Asked {
+impl JudgedRay {
     /// Computes the right answers for a ray. `brute` is the hit of brute force.
-    fn new(scene: &HardScene, ray: Ray, brute: Option<PrimitiveHit>) -> Asked {
+    fn new(scene: &HardScene, ray: Ray, brute: Option<PrimitiveHit>) -> JudgedRay {
         let ties = triangle::tie_set(&ray, &scene.triangles);
         let sure = scene.triangles.iter().filter(|triangle| !is_on_an_edge(&ray, triangle));
         let sure = sure.filter_map(|triangle| exact_t(&ray, triangle)).min_by(f32::total_cmp);
-        Asked { ray, ties, sure, brute }
+        JudgedRay { ray, ties, sure, brute }
     }
 
     fn judge(&self, triangles: &[Triangle], found: Option<PrimitiveHit>) -> Judgement {
@@ -134,8 +134,8 @@ fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agree
         ..Quality::default()
     };
     let brute = found_by(with(Accelerator::BruteForce, 1));
-    let asked: Vec<Asked> =
-        rays.iter().zip(&brute).map(|(ray, brute)| Asked::new(scene, *ray, *brute)).collect();
+    let asked: Vec<JudgedRay> =
+        rays.iter().zip(&brute).map(|(ray, brute)| JudgedRay::new(scene, *ray, *brute)).collect();
     let compared = |search: String, found: Vec<Option<PrimitiveHit>>| {
         let mut found = found.into_iter();
         agreement(scene, search, &asked, |one| one.judge(&scene.triangles, found.next().flatten()))
@@ -150,7 +150,7 @@ fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agree
         let quality = Quality { split, ..with(Accelerator::Bvh, leaf_size) };
         agreements.push(compared(named("nearer first"), found_by(quality)));
         let mut any = in_batches(&queries, |batch| kit.any_hit(batch)).into_iter();
-        let judge = |one: &Asked| one.judge_any(any.next().is_some_and(|(found, _)| found));
+        let judge = |one: &JudgedRay| one.judge_any(any.next().is_some_and(|(found, _)| found));
         agreements.push(agreement(scene, named("any hit"), &asked, judge));
     }
     for (search, quality) in structures(with) {
@@ -232,8 +232,8 @@ fn in_batches<A>(queries: &[SearchQuery], ask: impl Fn(&[SearchQuery]) -> Vec<A>
 fn agreement(
     scene: &HardScene,
     search: String,
-    asked: &[Asked],
-    mut judge: impl FnMut(&Asked) -> Judgement,
+    asked: &[JudgedRay],
+    mut judge: impl FnMut(&JudgedRay) -> Judgement,
 ) -> Agreement {
     let mut agreement = Agreement {
         scene: scene.name,

@@ -8,7 +8,7 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// An intersection method.
-pub struct Method {
+pub struct TriangleTest {
     /// The name, for the head of a row.
     pub name: &'static str,
     /// Returns the `t` of the hit.
@@ -16,32 +16,32 @@ pub struct Method {
 }
 
 /// All methods.
-pub const METHODS: [Method; 25] = [
-    Method { name: "Möller–Trumbore", hit: single::moeller_trumbore },
-    Method { name: "  cut off at |det| < 1e-6", hit: printed::moeller_trumbore_cut_off },
-    Method { name: "  in double", hit: double::moeller_trumbore },
-    Method { name: "Cramer", hit: single::cramer },
-    Method { name: "  as printed in 002", hit: printed::cramer },
-    Method { name: "  in double", hit: double::cramer },
-    Method { name: "plane and Gram", hit: single::gram },
-    Method { name: "  0 <= s + t <= 1 as printed in 001", hit: printed::gram_sum_only },
-    Method { name: "  in double", hit: double::gram },
-    Method { name: "003 I, planes", hit: single::by_planes },
-    Method { name: "  one winding, as printed", hit: printed::by_planes_of_one_winding },
-    Method { name: "  in double", hit: double::by_planes },
-    Method { name: "003 II, directions", hit: single::by_direction },
-    Method { name: "  in double", hit: double::by_direction },
-    Method { name: "003 III, areas", hit: single::by_areas },
-    Method { name: "  in double", hit: double::by_areas },
-    Method { name: "  without signs, as printed", hit: printed::by_unsigned_areas },
-    Method { name: "Plücker", hit: single::pluecker },
-    Method { name: "  with a band of one step", hit: printed::pluecker_with_a_band },
-    Method { name: "  in double", hit: double::pluecker },
-    Method { name: "Woop", hit: single::woop },
-    Method { name: "  t from the plane", hit: single::woop_with_plane },
-    Method { name: "  in double", hit: double::woop },
-    Method { name: "  in double, t from the plane", hit: double::woop_with_plane },
-    Method { name: "exact", hit: exactly },
+pub const METHODS: [TriangleTest; 25] = [
+    TriangleTest { name: "Möller–Trumbore", hit: single::moeller_trumbore },
+    TriangleTest { name: "  cut off at |det| < 1e-6", hit: printed::moeller_trumbore_cut_off },
+    TriangleTest { name: "  in double", hit: double::moeller_trumbore },
+    TriangleTest { name: "Cramer", hit: single::cramer },
+    TriangleTest { name: "  as printed in 002", hit: printed::cramer },
+    TriangleTest { name: "  in double", hit: double::cramer },
+    TriangleTest { name: "plane and Gram", hit: single::gram },
+    TriangleTest { name: "  0 <= s + t <= 1 as printed in 001", hit: printed::gram_sum_only },
+    TriangleTest { name: "  in double", hit: double::gram },
+    TriangleTest { name: "003 I, planes", hit: single::by_planes },
+    TriangleTest { name: "  one winding, as printed", hit: printed::by_planes_of_one_winding },
+    TriangleTest { name: "  in double", hit: double::by_planes },
+    TriangleTest { name: "003 II, directions", hit: single::by_direction },
+    TriangleTest { name: "  in double", hit: double::by_direction },
+    TriangleTest { name: "003 III, areas", hit: single::by_areas },
+    TriangleTest { name: "  in double", hit: double::by_areas },
+    TriangleTest { name: "  without signs, as printed", hit: printed::by_unsigned_areas },
+    TriangleTest { name: "Plücker", hit: single::pluecker },
+    TriangleTest { name: "  with a band of one step", hit: printed::pluecker_with_a_band },
+    TriangleTest { name: "  in double", hit: double::pluecker },
+    TriangleTest { name: "Woop", hit: single::woop },
+    TriangleTest { name: "  t from the plane", hit: single::woop_with_plane },
+    TriangleTest { name: "  in double", hit: double::woop },
+    TriangleTest { name: "  in double, t from the plane", hit: double::woop_with_plane },
+    TriangleTest { name: "exact", hit: exactly },
 ];
 
 fn exactly(ray: &Ray, triangle: &Triangle) -> Option<f32> {

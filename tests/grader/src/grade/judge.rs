@@ -177,7 +177,7 @@ impl Judge {
             return Answered::new(Outcome::NotTried, message);
         }
         let over = Arc::new(AtomicBool::new(false));
-        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Asked { worker, over: over.clone() }));
+        let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
         // Use the public inputs first, so that students can reproduce the message.
         let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
         let known = examine(0);
@@ -221,7 +221,7 @@ fn hidden_message(check: &Check) -> String {
     )
 }
 
-fn outcome(examined: &Result<checks::Outcome, KitError>) -> Outcome {
+fn outcome(examined: &Result<checks::CheckResult, KitError>) -> Outcome {
     match examined {
         Ok(Ok(())) => Outcome::Passed,
         Ok(Err(_)) | Err(KitError::Panicked { .. } | KitError::Malformed { .. }) => Outcome::Wrong,
@@ -232,7 +232,7 @@ fn outcome(examined: &Result<checks::Outcome, KitError>) -> Outcome {
 }
 
 /// Returns the compared pictures of a check about pictures.
-fn picture(examined: &Result<checks::Outcome, KitError>) -> Option<Picture> {
+fn picture(examined: &Result<checks::CheckResult, KitError>) -> Option<Picture> {
     let Ok(Err(Broken { picture: Some(png), .. })) = examined else { return None };
     let caption = "reference | yours | four times the difference".into();
     Some(Picture { caption, png: BASE64.encode(&png.0) })
@@ -281,12 +281,12 @@ impl Transport for Overheard {
 }
 
 /// A worker that gets questions until the check has its verdict.
-struct Asked {
+struct StoppableWorker {
     worker: Arc<Worker>,
     over: Arc<AtomicBool>,
 }
 
-impl Transport for Asked {
+impl Transport for StoppableWorker {
     fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
         if self.over.load(Ordering::Relaxed) {
             kit_error::unwind(KitError::Crashed { how: "the check has ended".into() });

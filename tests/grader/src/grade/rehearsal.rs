@@ -2,7 +2,7 @@
 //! attacks, untouched files), grades it, and compares every grade with the known one.
 
 use super::Options as GradeOptions;
-use super::attacks::{self, Attack, Place};
+use super::attacks::{self, Attack, AttackFolders};
 use super::options::{GradingOptions, Stages};
 use super::result::{Class, Graded, Outcome};
 use super::store::Store;
@@ -158,7 +158,7 @@ fn hand_in(root: &Path, class: &Path, number: usize, role: &Role) -> Result<Stri
         // The files that an attack must not reach lie beside the class.
         let folder = class.with_extension(format!("attack-{number}"));
         fs::create_dir_all(&folder)?;
-        let made = attacks::make(attack, &Place { root, folder: &folder })?;
+        let made = attacks::make(attack, &AttackFolders { root, folder: &folder })?;
         let name = made.file_name().context("a submission without a name")?;
         let ending =
             made.extension().filter(|_| made.is_file()).map(|ending| ending.to_string_lossy().into_owned());

@@ -1,7 +1,7 @@
 //! Restricts this process and then replaces it by the program. The process has one thread and runs no code between a fork
 //! and an exec, so safe code is enough.
 
-use super::{Confinement, Limits, Purpose, files, filter};
+use super::{Confinement, Purpose, ResourceLimits, files, filter};
 use anyhow::{Context, Result, bail, ensure};
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, setrlimit};
@@ -23,7 +23,7 @@ const CPU_GRACE_SECONDS: u64 = 2;
 
 pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
     let mut arguments = arguments.into_iter();
-    let asked = Asked::from(&mut arguments)?;
+    let asked = LaunchRequest::from(&mut arguments)?;
     close_inherited()?;
     // Make the kernel end this process together with the judge.
     prctl::set_pdeathsig(Signal::SIGKILL).context("the process cannot be made to end with its judge")?;
@@ -40,24 +40,24 @@ pub(super) fn launch(arguments: Vec<OsString>) -> Result<Infallible> {
     bail!("{} cannot be started: {error}", asked.program.display())
 }
 
-struct Asked {
+struct LaunchRequest {
     confinement: Confinement,
     purpose: Purpose,
     judge: i32,
-    limits: Limits,
+    limits: ResourceLimits,
     readable: Vec<PathBuf>,
     writable: Vec<PathBuf>,
     program: PathBuf,
 }
 
-impl Asked {
+impl LaunchRequest {
     /// Parses the arguments that [`super::Sandbox::command`] writes.
-    fn from(arguments: &mut impl Iterator<Item = OsString>) -> Result<Asked> {
+    fn from(arguments: &mut impl Iterator<Item = OsString>) -> Result<LaunchRequest> {
         let mut next = || arguments.next().context("an argument is missing");
         let confinement = Confinement::of_word(&next()?).context("unknown confinement")?;
         let purpose = Purpose::of_word(&next()?).context("unknown purpose")?;
         let judge = number(&next()?)? as i32;
-        let limits = Limits {
+        let limits = ResourceLimits {
             cpu_seconds: number(&next()?)?,
             memory_bytes: number(&next()?)?,
             file_bytes: number(&next()?)?,
@@ -70,7 +70,7 @@ impl Asked {
         };
         let (readable, writable) = (paths()?, paths()?);
         ensure!(writable.is_empty() || purpose.writes(), "a {} must not write", purpose.word());
-        Ok(Asked { confinement, purpose, judge, limits, readable, writable, program: next()?.into() })
+        Ok(LaunchRequest { confinement, purpose, judge, limits, readable, writable, program: next()?.into() })
     }
 }
 
@@ -96,7 +96,7 @@ fn close_inherited() -> Result<()> {
     Ok(())
 }
 
-fn restrict_resources(purpose: Purpose, limits: &Limits) -> Result<()> {
+fn restrict_resources(purpose: Purpose, limits: &ResourceLimits) -> Result<()> {
     let stack = match purpose {
         // These answer on their first thread, because they may start no other.
         Purpose::Worker | Purpose::Reader => raykata::worker::STACK_BYTES as u64 + STACK_ROOM,

@@ -63,7 +63,7 @@ pub enum Purpose {
 
 /// The resource limits of a sandboxed process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
+pub struct ResourceLimits {
     /// Most address space, in bytes.
     pub memory_bytes: u64,
     /// Most processor time per process, in seconds.
@@ -79,11 +79,11 @@ pub struct Limits {
 
 impl Purpose {
     /// Returns limits that are sufficient for honest code.
-    pub fn limits(self) -> Limits {
+    pub fn limits(self) -> ResourceLimits {
         match self {
             // A check needs about ten megabytes. Each call has its own time limit. This limit of processor time is for all
             // calls of a process together, and for a frame.
-            Purpose::Worker => Limits {
+            Purpose::Worker => ResourceLimits {
                 memory_bytes: 1 << 30,
                 cpu_seconds: 120,
                 file_bytes: 0,
@@ -91,10 +91,10 @@ impl Purpose {
                 processes: 1,
             },
             // The longest allowed file takes milliseconds.
-            Purpose::Reader => Limits { cpu_seconds: 10, ..Purpose::Worker.limits() },
+            Purpose::Reader => ResourceLimits { cpu_seconds: 10, ..Purpose::Worker.limits() },
             // rustc maps half a gigabyte and needs a second. Its output has a few megabytes. The user may run hundreds of
             // other processes.
-            Purpose::Compiler | Purpose::Linker => Limits {
+            Purpose::Compiler | Purpose::Linker => ResourceLimits {
                 memory_bytes: 3 << 30,
                 cpu_seconds: 10,
                 file_bytes: 256 << 20,
@@ -159,7 +159,7 @@ pub struct Sandbox {
     /// The strictness.
     pub confinement: Confinement,
     /// The resource limits.
-    pub limits: Limits,
+    pub limits: ResourceLimits,
     /// Files and folders that the program may read, besides itself and the system's libraries.
     pub readable: Vec<PathBuf>,
     /// Folders that a compiler or linker may write. The first one is its working folder and holds its temporary files.

@@ -31,7 +31,8 @@ pub fn self_test() -> Result<Level> {
         "the sandbox works only on Linux: grade submissions on a Linux machine"
     );
     let sandbox = Sandbox::new(Purpose::Worker);
-    let brief = Sandbox { limits: super::Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
+    let brief =
+        Sandbox { limits: super::ResourceLimits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
     // Run all tests at the same time.
     let (through, spun, flooded) = std::thread::scope(|scope| {
         let spun = scope.spawn(|| act_in(&brief, "spin", PATIENCE));

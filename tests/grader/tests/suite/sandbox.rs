@@ -1,7 +1,7 @@
 //! Tests that a sandboxed program cannot leave its sandbox.
 
 use grader::sandbox::{
-    self, Confinement, Ended, How, Limits, Purpose, Sandbox, got_through, run, this_program,
+    self, Confinement, Ended, How, ResourceLimits, Purpose, Sandbox, got_through, run, this_program,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -66,7 +66,7 @@ fn without_walls_limits_still_hold() {
     assert!(said.contains("through: read a file of the system"), "{said}");
     // A worker may not write a single byte to a file, so the test that writes one ends it (SIGXFSZ).
     assert_eq!(all.how, How::Signalled(25), "{said}");
-    let brief = Sandbox { limits: Limits { cpu_seconds: 1, ..open.limits }, ..open };
+    let brief = Sandbox { limits: ResourceLimits { cpu_seconds: 1, ..open.limits }, ..open };
     assert_eq!(probe(&brief, "spin").how, How::UsedUpCpu);
 }
 
@@ -87,7 +87,7 @@ fn an_open_file_of_the_judge_is_not_inherited() {
 #[test]
 fn endless_work_output_and_sleep_end() {
     let sandbox = Sandbox::new(Purpose::Worker);
-    let brief = Sandbox { limits: Limits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
+    let brief = Sandbox { limits: ResourceLimits { cpu_seconds: 1, ..sandbox.limits }, ..sandbox.clone() };
     let spun = probe(&brief, "spin");
     assert_eq!(spun.how, How::UsedUpCpu);
     assert!(spun.cpu >= Duration::from_millis(900), "{:?}", spun.cpu);

@@ -44,7 +44,7 @@ pub fn serve(mut asked: impl Read, mut answers: impl Write) -> Result<()> {
 }
 
 /// A ray and its exact first hit.
-struct Asked {
+struct ExactRay {
     ray: Ray,
     /// The `t` of the first hit, correctly rounded; `None` if there is none.
     first: Option<f32>,
@@ -55,7 +55,7 @@ struct Asked {
 /// The bodies of a scene, and the rays with their exact hits.
 struct Jury {
     bodies: Vec<Body>,
-    asked: Vec<Asked>,
+    asked: Vec<ExactRay>,
 }
 
 impl Jury {
@@ -82,7 +82,7 @@ impl Jury {
                     let (index, one) = search.asked(Ray::new(ray.origin, aim.target - ray.origin));
                     // Another body may occlude the target.
                     let closed = index.is_some_and(|index| aim.around.contains(&index));
-                    asked.push(Asked { closed, ..one });
+                    asked.push(ExactRay { closed, ..one });
                 }
             }
             Ok(asked)
@@ -101,7 +101,7 @@ impl Jury {
         Ok(verdicts)
     }
 
-    fn is_wrong(&self, asked: &Asked, found: Option<PrimitiveHit>) -> bool {
+    fn is_wrong(&self, asked: &ExactRay, found: Option<PrimitiveHit>) -> bool {
         let met = |hit: PrimitiveHit| meet(&asked.ray, *self.bodies.get(hit.primitive as usize)?)?.t;
         match (found, asked.first) {
             (None, first) => first.is_some(),

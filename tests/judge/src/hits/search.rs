@@ -1,6 +1,6 @@
 //! Finds the exact first hit of a ray among many bodies.
 
-use super::Asked;
+use super::ExactRay;
 use glam::Vec3;
 use oracle::STABLE;
 use oracle::exact::{Body, aabb, meet, triangle};
@@ -60,7 +60,7 @@ impl<'a> Search<'a> {
     }
 
     /// The index of the body that the ray hits first, and the ray with the `t` of that hit.
-    pub fn asked(&self, ray: Ray) -> (Option<u32>, Asked) {
+    pub fn asked(&self, ray: Ray) -> (Option<u32>, ExactRay) {
         let is_met = |around: &Aabb| {
             *around == EVERYWHERE
                 || aabb::overlap(&ray, around).is_none_or(|overlap| overlap.verdict.is_hit())
@@ -84,7 +84,7 @@ impl<'a> Search<'a> {
             }
             _ => false,
         });
-        (best.map(|(_, index)| index), Asked { ray, first: best.map(|(t, _)| t), closed })
+        (best.map(|(_, index)| index), ExactRay { ray, first: best.map(|(t, _)| t), closed })
     }
 }
 

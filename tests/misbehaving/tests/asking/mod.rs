@@ -6,7 +6,7 @@ use raykata::ray::Ray;
 use raykata::shape::Sphere;
 use raykata_cli::worker::Worker;
 
-pub type Asked = Result<Vec<Option<f32>>, KitError>;
+pub type HitsOrError = Result<Vec<Option<f32>>, KitError>;
 
 pub fn query(radius: f32) -> SphereQuery {
     SphereQuery {
@@ -15,11 +15,11 @@ pub fn query(radius: f32) -> SphereQuery {
     }
 }
 
-pub fn ask(door: &Door<Worker>, radius: f32) -> Asked {
+pub fn ask(door: &Door<Worker>, radius: f32) -> HitsOrError {
     kit_error::catch(|| door.sphere_algebraic(&[query(radius)]))
 }
 
-pub fn how_it_crashed(asked: Asked) -> String {
+pub fn how_it_crashed(asked: HitsOrError) -> String {
     match asked {
         Err(KitError::Crashed { how }) => how,
         other => panic!("not a crash: {other:?}"),

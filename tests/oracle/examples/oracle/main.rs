@@ -10,7 +10,7 @@ mod cases;
 mod reference;
 
 use cases::Case;
-use oracle::exact::{Body, Tier, Verdict, aabb, meet, meet_with, order, triangle, verdict};
+use oracle::exact::{Body, Contact, Tier, aabb, meet, meet_with, order, triangle, verdict};
 use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use std::hint::black_box;
@@ -94,11 +94,11 @@ fn tiers(with_widest: bool) -> impl Iterator<Item = Tier> {
 }
 
 /// A shape, and the function that answers for it with big integers.
-type Asked = (Body, fn(&Case) -> reference::Answer);
+type TestedBody = (Body, fn(&Case) -> reference::Answer);
 
 fn compare(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) -> Result<(), String> {
     let ray = &case.ray;
-    let bodies: [Asked; 7] = [
+    let bodies: [TestedBody; 7] = [
         (Body::Triangle(case.triangle), |c| reference::triangle(&c.ray, &c.triangle)),
         (Body::Plane(case.plane), |c| reference::plane(&c.ray, &c.plane)),
         (Body::Disk(case.disk), |c| reference::disk(&c.ray, &c.disk)),
@@ -109,7 +109,7 @@ fn compare(case: &Case, with_big: bool, with_widest: bool, tally: &mut Tally) ->
     ];
     for (body, slow) in bodies {
         let truth = meet_with(Tier::Auto, ray, body).ok_or(format!("no answer for {body:?}"))?;
-        let words = [Verdict::Out, Verdict::On, Verdict::In];
+        let words = [Contact::Out, Contact::On, Contact::In];
         let place = words.iter().position(|&word| word == truth.verdict).unwrap_or(0);
         tally.verdicts[place] += 1;
         for tier in tiers(with_widest) {
@@ -236,7 +236,7 @@ fn measure(seed: u64) {
     for (name, make) in kinds {
         let all: Vec<Case> = (0..20_000).map(|case| make(seed, case)).collect();
         let on =
-            all.iter().filter(|c| verdict(&c.ray, Body::Triangle(c.triangle)) == Some(Verdict::On)).count();
+            all.iter().filter(|c| verdict(&c.ray, Body::Triangle(c.triangle)) == Some(Contact::On)).count();
         println!("{name}: {on} of {} triangles are met on an edge or corner", all.len());
         rate("triangle, verdict", &all, |c| verdict(&c.ray, Body::Triangle(c.triangle)));
         rate("triangle, verdict and t", &all, |c| meet(&c.ray, Body::Triangle(c.triangle)));

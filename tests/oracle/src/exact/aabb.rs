@@ -4,7 +4,7 @@ use super::ring::{Ring, minus};
 use super::root::{Root, RootBits, beyond};
 use super::scale::{Frame, Scale};
 use super::solid::Span;
-use super::{Question, Tier, Verdict, decide, is_ray_finite};
+use super::{Contact, Question, Tier, decide, is_ray_finite};
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
@@ -43,7 +43,7 @@ pub(super) fn span<R: Ring>(ray: &Ray, cuboid: &Cuboid, frame: &Frame) -> Option
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
     /// `On` if they have common points, but two slabs, or a slab and an end of the segment, only touch.
-    pub verdict: Verdict,
+    pub verdict: Contact,
     /// The least `|difference| / (2^-24 * sum of absolute values of its terms)` over the comparisons that decide, to
     /// `1e-6` absolute; infinite if no comparison is rounded.
     pub margin: f64,
@@ -54,22 +54,22 @@ pub struct Overlap {
 pub fn overlap(ray: &Ray, bounds: &Aabb) -> Option<Overlap> {
     let question = match ask(ray, bounds)? {
         Some(question) => question,
-        None => return Some(Overlap { verdict: Verdict::Out, margin: f64::INFINITY }),
+        None => return Some(Overlap { verdict: Contact::Out, margin: f64::INFINITY }),
     };
     Some(Overlap { verdict: decide(&question, Tier::Auto)?, margin: question.margin() })
 }
 
 /// The verdict alone, from one tier only.
-pub fn verdict_with(tier: Tier, ray: &Ray, bounds: &Aabb) -> Option<Verdict> {
+pub fn verdict_with(tier: Tier, ray: &Ray, bounds: &Aabb) -> Option<Contact> {
     match ask(ray, bounds)? {
         Some(question) => decide(&question, tier),
-        None => Some(Verdict::Out),
+        None => Some(Contact::Out),
     }
 }
 
 /// The verdict alone.
 #[inline]
-pub fn verdict(ray: &Ray, bounds: &Aabb) -> Option<Verdict> {
+pub fn verdict(ray: &Ray, bounds: &Aabb) -> Option<Contact> {
     verdict_with(Tier::Auto, ray, bounds)
 }
 
@@ -124,7 +124,7 @@ impl Segment<'_> {
 }
 
 impl Question for Segment<'_> {
-    type Answer = Verdict;
+    type Answer = Contact;
 
     #[inline(always)]
     fn frame(&self, fine: bool) -> Frame {
@@ -148,14 +148,14 @@ impl Question for Segment<'_> {
     }
 
     #[inline(always)]
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Verdict> {
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Contact> {
         if self.ray.direction == Vec3::ZERO {
             // The segment is its origin, which is inside for each t of a segment that is not empty.
             let inside = Aabb::new(self.cuboid.min, self.cuboid.max).contains(self.ray.origin);
-            return Some(if inside { Verdict::In } else { Verdict::Out });
+            return Some(if inside { Contact::In } else { Contact::Out });
         }
         let Span::Lerp(entries, exits) = span::<R>(self.ray, &self.cuboid, frame)? else {
-            return Some(Verdict::Out);
+            return Some(Contact::Out);
         };
         // The sign of "later than": 1 is a miss, 0 a touch. One miss decides, even if other comparisons are
         // undecided.
@@ -170,22 +170,22 @@ impl Question for Segment<'_> {
                 continue;
             };
             if misses(beyond(entry, self.ray.t_max, frame)) {
-                return Some(Verdict::Out);
+                return Some(Contact::Out);
             }
             if misses(beyond(exit, self.ray.t_min, frame).map(|sign| -sign)) {
-                return Some(Verdict::Out);
+                return Some(Contact::Out);
             }
             for j in (0..3).filter(|&j| j != i) {
                 if let Some(other) = &exits[j]
                     && misses(entry.compare(other))
                 {
-                    return Some(Verdict::Out);
+                    return Some(Contact::Out);
                 }
             }
         }
         if undecided {
             return None;
         }
-        Some(if touches { Verdict::On } else { Verdict::In })
+        Some(if touches { Contact::On } else { Contact::In })
     }
 }

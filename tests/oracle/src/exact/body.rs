@@ -3,7 +3,7 @@
 use super::ring::{Ring, Vector, dot, minus};
 use super::root::{Root, RootBits, Rounded, in_range};
 use super::scale::{Frame, Scale};
-use super::{Question, Verdict, aabb, quadric, solid, sphere, triangle};
+use super::{Contact, Question, aabb, quadric, solid, sphere, triangle};
 use glam::Vec3;
 use raykata::ray::Ray;
 use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Sphere, Triangle};
@@ -31,8 +31,8 @@ pub(super) struct Hit<R> {
 }
 
 impl<R> Hit<R> {
-    fn verdict(&self) -> Verdict {
-        if self.touches { Verdict::On } else { Verdict::In }
+    fn verdict(&self) -> Contact {
+        if self.touches { Contact::On } else { Contact::In }
     }
 }
 
@@ -178,7 +178,7 @@ pub(super) struct First<'a> {
 }
 
 impl Question for First<'_> {
-    type Answer = Verdict;
+    type Answer = Contact;
 
     #[inline(always)]
     fn frame(&self, fine: bool) -> Frame {
@@ -190,8 +190,8 @@ impl Question for First<'_> {
     }
 
     #[inline(always)]
-    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Verdict> {
-        Some(self.body.first::<R>(self.ray, frame)?.map_or(Verdict::Out, |hit| hit.verdict()))
+    fn ask<R: Ring>(&self, frame: &Frame) -> Option<Contact> {
+        Some(self.body.first::<R>(self.ray, frame)?.map_or(Contact::Out, |hit| hit.verdict()))
     }
 }
 
@@ -202,7 +202,7 @@ pub(super) struct Meet<'a> {
 }
 
 impl Question for Meet<'_> {
-    type Answer = Option<(Verdict, Rounded)>;
+    type Answer = Option<(Contact, Rounded)>;
 
     #[inline(always)]
     fn frame(&self, fine: bool) -> Frame {

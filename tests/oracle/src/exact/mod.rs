@@ -33,7 +33,7 @@ use std::cmp::Ordering;
 
 /// How a ray meets a closed shape within the open range of the ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Verdict {
+pub enum Contact {
     /// The ray passes through the inside.
     In,
     /// The ray only touches the shape: through an edge or corner of a triangle, along the rim, tangent to a sphere.
@@ -42,10 +42,10 @@ pub enum Verdict {
     Out,
 }
 
-impl Verdict {
+impl Contact {
     /// Whether a closed shape is hit.
     pub fn is_hit(self) -> bool {
-        self != Verdict::Out
+        self != Contact::Out
     }
 }
 
@@ -53,7 +53,7 @@ impl Verdict {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
     /// How the shape is met.
-    pub verdict: Verdict,
+    pub verdict: Contact,
     /// The exact `t` rounded to nearest, ties to even: the correctly rounded answer. `None` if missed.
     pub t: Option<f32>,
 }
@@ -148,7 +148,7 @@ pub fn meet_with(tier: Tier, ray: &Ray, body: Body) -> Option<Meeting> {
         return None;
     }
     let Some((verdict, rounded)) = decide(&Meet { ray, body }, tier)? else {
-        return Some(Meeting { verdict: Verdict::Out, t: None });
+        return Some(Meeting { verdict: Contact::Out, t: None });
     };
     let t = match rounded {
         Rounded::Known(t) => t,
@@ -161,12 +161,12 @@ pub fn meet_with(tier: Tier, ray: &Ray, body: Body) -> Option<Meeting> {
 }
 
 /// Hit, touch or miss alone, which costs a little less than [`meet`].
-pub fn verdict(ray: &Ray, body: Body) -> Option<Verdict> {
+pub fn verdict(ray: &Ray, body: Body) -> Option<Contact> {
     verdict_with(Tier::Auto, ray, body)
 }
 
 /// The same from one tier only; `None` also if the tier cannot decide.
-pub fn verdict_with(tier: Tier, ray: &Ray, body: Body) -> Option<Verdict> {
+pub fn verdict_with(tier: Tier, ray: &Ray, body: Body) -> Option<Contact> {
     if !is_finite(ray, &body) {
         return None;
     }

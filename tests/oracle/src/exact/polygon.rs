@@ -3,7 +3,7 @@
 //! the inside.
 
 use super::body::Body;
-use super::{Meeting, Tier, Verdict, meet, triangle, verdict_with};
+use super::{Contact, Meeting, Tier, meet, triangle, verdict_with};
 use raykata::ray::Ray;
 use raykata::shape::{Polygon, Triangle};
 
@@ -23,16 +23,16 @@ pub fn meet_fan(ray: &Ray, polygon: &Polygon) -> Option<(Meeting, Option<usize>)
     }
     let ties = triangle::tie_set(ray, &triangles);
     let Some(&index) = ties.first() else {
-        return Some((Meeting { verdict: Verdict::Out, t: None }, None));
+        return Some((Meeting { verdict: Contact::Out, t: None }, None));
     };
     let t = meet(ray, Body::Triangle(triangles[index]))?.t;
     // Inside means inside one triangle, or on a shared diagonal but not at its ends, which are corners.
     let inside_one =
-        |&tie: &usize| verdict_with(Tier::Auto, ray, Body::Triangle(triangles[tie])) == Some(Verdict::In);
+        |&tie: &usize| verdict_with(Tier::Auto, ray, Body::Triangle(triangles[tie])) == Some(Contact::In);
     let on_diagonal = || match ties[..] {
         [first, second] => second == first + 1 && triangle::is_within_edge(ray, &triangles[first]),
         _ => false,
     };
     let inside = ties.iter().any(inside_one) || on_diagonal();
-    Some((Meeting { verdict: if inside { Verdict::In } else { Verdict::On }, t }, Some(index)))
+    Some((Meeting { verdict: if inside { Contact::In } else { Contact::On }, t }, Some(index)))
 }

@@ -24,7 +24,7 @@ const SHAPES: &str = "exercises/src/stage1_shapes.rs";
 pub const CANARY: &str = "canary-7c1e-of-somebody-else";
 
 /// The folders in which a submission is made.
-pub struct Place<'a> {
+pub struct AttackFolders<'a> {
     /// The root of the kit.
     pub root: &'a Path,
     /// An empty folder. The submission goes into `submissions`, and the files that it must not reach into `beside`.
@@ -32,7 +32,7 @@ pub struct Place<'a> {
 }
 
 /// Makes the submission of an attack and returns its path.
-pub fn make(attack: &Attack, place: &Place<'_>) -> Result<PathBuf> {
+pub fn make(attack: &Attack, place: &AttackFolders<'_>) -> Result<PathBuf> {
     let name = match (&attack.student, &attack.student_hex) {
         (Some(name), None) => name.into(),
         (None, Some(hex)) => OsString::from_vec(bytes_of(hex)?),
@@ -55,7 +55,7 @@ pub fn make(attack: &Attack, place: &Place<'_>) -> Result<PathBuf> {
 
 struct Maker<'a> {
     attack: &'a Attack,
-    place: &'a Place<'a>,
+    place: &'a AttackFolders<'a>,
     submission: PathBuf,
 }
 

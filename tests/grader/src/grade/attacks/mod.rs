@@ -15,7 +15,7 @@ mod source;
 mod step;
 mod verdict;
 
-pub use make::{CANARY, Place, make};
+pub use make::{AttackFolders, CANARY, make};
 pub use run::{Tried, run_all};
 pub use verdict::{Earned, Expectation, complaints};
 

@@ -51,7 +51,7 @@ pub enum Kind {
 
 /// An entry of an archive.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Entry {
+pub(super) struct ArchiveEntry {
     /// Its name, as any bytes.
     pub name: Vec<u8>,
     /// The kind that it claims to have.
@@ -66,7 +66,7 @@ pub(super) struct Entry {
     pub encrypted: bool,
 }
 
-impl Entry {
+impl ArchiveEntry {
     fn size(&self) -> u64 {
         self.content.len() as u64 + self.zeros
     }
@@ -82,7 +82,7 @@ impl Entry {
 }
 
 /// Writes an archive.
-pub(super) fn write(format: Format, entries: &[Entry], out: impl Write) -> Result<()> {
+pub(super) fn write(format: Format, entries: &[ArchiveEntry], out: impl Write) -> Result<()> {
     let written = match format {
         Format::Zip => zip(entries, out),
         Format::Tar => tar(entries, out),
@@ -110,7 +110,7 @@ impl Header {
     }
 }
 
-fn zip(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
+fn zip(entries: &[ArchiveEntry], mut out: impl Write) -> io::Result<()> {
     const DEFLATED: u16 = 8;
     // Midnight of 1 January 1980, the date of zip entries without a time.
     const DATE: u16 = 0x21;
@@ -159,7 +159,7 @@ impl Write for Checksum {
     }
 }
 
-fn tar(entries: &[Entry], mut out: impl Write) -> io::Result<()> {
+fn tar(entries: &[ArchiveEntry], mut out: impl Write) -> io::Result<()> {
     const BLOCK: u64 = 512;
     for entry in entries {
         let (letter, target, holds) = match entry.kind {
@@ -215,14 +215,18 @@ mod tests {
     use super::*;
     use std::io::Read;
 
-    fn entries() -> Vec<Entry> {
-        let file =
-            Entry { name: b"../a.rs".to_vec(), content: b"one".to_vec(), zeros: 600, ..Entry::default() };
-        let link = Entry {
+    fn entries() -> Vec<ArchiveEntry> {
+        let file = ArchiveEntry {
+            name: b"../a.rs".to_vec(),
+            content: b"one".to_vec(),
+            zeros: 600,
+            ..ArchiveEntry::default()
+        };
+        let link = ArchiveEntry {
             name: b"b".to_vec(),
             kind: Kind::Symlink,
             content: b"/etc/passwd".to_vec(),
-            ..Entry::default()
+            ..ArchiveEntry::default()
         };
         vec![file, link]
     }
@@ -243,7 +247,7 @@ mod tests {
 
     #[test]
     fn an_encrypted_entry_cannot() {
-        let entry = Entry { encrypted: true, ..entries().remove(0) };
+        let entry = ArchiveEntry { encrypted: true, ..entries().remove(0) };
         let mut bytes = Vec::new();
         write(Format::Zip, &[entry], &mut bytes).unwrap();
         assert!(zip::ZipArchive::new(io::Cursor::new(bytes)).unwrap().by_index(0).is_err());

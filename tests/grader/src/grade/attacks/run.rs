@@ -1,6 +1,6 @@
 //! Grades all attacks.
 
-use super::{Attack, Expectation, Place, complaints, make};
+use super::{Attack, AttackFolders, Expectation, complaints, make};
 use crate::grade::result::Graded;
 use crate::queue;
 use anyhow::{Context, Result};
@@ -48,7 +48,7 @@ fn try_one(
     grade: &impl Fn(&Path, &[u8], &[String]) -> Result<Graded>,
 ) -> Result<Tried> {
     let folder = tempfile::tempdir()?;
-    let submission = make(attack, &Place { root, folder: folder.path() })?;
+    let submission = make(attack, &AttackFolders { root, folder: folder.path() })?;
     // Grade the submission, with and without the syntax check.
     let before = fingerprints(folder.path())?;
     let try_it = |expected: &Expectation| {

@@ -19,7 +19,7 @@ fn attack(text: &str) -> Attack {
 
 fn made(text: &str) -> Result<(tempfile::TempDir, PathBuf)> {
     let folder = tempfile::tempdir().unwrap();
-    let path = make(&attack(text), &Place { root: &root(), folder: folder.path() })?;
+    let path = make(&attack(text), &AttackFolders { root: &root(), folder: folder.path() })?;
     Ok((folder, path))
 }
 
@@ -60,7 +60,7 @@ fn every_attack_can_be_read_and_made() {
     assert!(attacks.len() >= 200, "{}", attacks.len());
     let made = queue::run(&queue::one_a_core(), &attacks, |(), attack| {
         let folder = tempfile::tempdir()?;
-        let path = make(attack, &Place { root: &root(), folder: folder.path() })?;
+        let path = make(attack, &AttackFolders { root: &root(), folder: folder.path() })?;
         ensure!(fs::symlink_metadata(&path).is_ok(), "{}: there is no submission", attack.name);
         ensure!(!attack.title.is_empty() && attack.what.ends_with('.'), "{}: words are missing", attack.name);
         // Files that are meant to compile must be valid Rust. Files that attack the compiler would also break this test.

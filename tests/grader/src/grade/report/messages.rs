@@ -1,10 +1,10 @@
 //! The text about a check that a student reads. It is the same in every format.
 
 use crate::grade::result::{CheckResult, Graded, Outcome};
-use checks::rubric::{self, Entry, Visibility};
+use checks::rubric::{self, CheckEntry, Visibility};
 
 /// Returns the rubric entry of a check.
-pub fn entry(check: &CheckResult) -> Entry {
+pub fn entry(check: &CheckResult) -> CheckEntry {
     rubric::entry(check.stage, &check.name)
 }
 

@@ -2,7 +2,7 @@
 
 use super::messages;
 use crate::grade::result::{CheckResult, Class, Graded, Outcome};
-use checks::rubric::{Entry, RUBRIC};
+use checks::rubric::{CheckEntry, RUBRIC};
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ pub(super) struct Tally {
     pub name: String,
     pub points: u32,
     /// The rubric entry of the check.
-    pub entry: Entry,
+    pub entry: CheckEntry,
     /// The number of submissions per outcome, in the order of [`Outcome::ALL`].
     pub counts: [usize; Outcome::ALL.len()],
 }

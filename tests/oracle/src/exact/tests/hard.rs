@@ -1,7 +1,7 @@
 //! Known hard cases, each with its name.
 
 use crate::exact::{
-    Body, Meeting, Tier, Verdict, aabb, meet, meet_with, order, polygon, sphere, triangle, verdict,
+    Body, Contact, Meeting, Tier, aabb, meet, meet_with, order, polygon, sphere, triangle, verdict,
 };
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -19,42 +19,42 @@ pub(super) fn ray(o: [f32; 3], d: [f32; 3]) -> Ray {
     Ray::new(o.into(), d.into())
 }
 
-fn met(ray: &Ray, body: Body) -> (Verdict, Option<f32>) {
+fn met(ray: &Ray, body: Body) -> (Contact, Option<f32>) {
     let Meeting { verdict, t } = meet(ray, body).expect("all is finite");
     (verdict, t)
 }
 
-const MISS: (Verdict, Option<f32>) = (Verdict::Out, None);
+const MISS: (Contact, Option<f32>) = (Contact::Out, None);
 
 #[test]
 fn triangles_edges_corners_and_slivers() {
     // tri/exact-edge, tri/vertex-fan: every edge and corner is part of the triangle.
     for (x, y, verdict) in [
-        (0.25, 0.25, Verdict::In),
-        (0.5, 0.5, Verdict::On),
-        (0.5, 0.0, Verdict::On),
-        (0.0, 0.0, Verdict::On),
-        (1.0, 0.0, Verdict::On),
-        (0.5, 0.5f32.next_up(), Verdict::Out),
-        (0.5, -f32::from_bits(1), Verdict::Out),
+        (0.25, 0.25, Contact::In),
+        (0.5, 0.5, Contact::On),
+        (0.5, 0.0, Contact::On),
+        (0.0, 0.0, Contact::On),
+        (1.0, 0.0, Contact::On),
+        (0.5, 0.5f32.next_up(), Contact::Out),
+        (0.5, -f32::from_bits(1), Contact::Out),
     ] {
         assert_eq!(met(&ray([x, y, 2.0], [0.0, 0.0, -4.0]), Body::Triangle(UNIT)).0, verdict, "{x} {y}");
     }
     // The determinant of the slides is wrong for this triangle.
     let steep = triangle([0.0, 0.0, 0.0], [-1.0, -1.0, 0.0], [-1.0, -1.0, -1.0]);
-    assert_eq!(met(&ray([-2.5, -4.5, -6.25], [1.0, 2.0, 3.0]), steep), (Verdict::In, Some(2.0)));
+    assert_eq!(met(&ray([-2.5, -4.5, -6.25], [1.0, 2.0, 3.0]), steep), (Contact::In, Some(2.0)));
     // tri/needle, tri/tiny, tri/scale: the same triangle at any scale.
     for scale in [1.0, (-140f32).exp2(), 100f32.exp2()] {
         let [a, b, c] = [UNIT.a, UNIT.b, UNIT.c].map(|p| p * scale);
         let ray = Ray::new(vec3(0.25, 0.25, 1.0) * scale, Vec3::NEG_Z);
-        assert_eq!(met(&ray, Body::Triangle(Triangle { a, b, c })), (Verdict::In, Some(scale)));
+        assert_eq!(met(&ray, Body::Triangle(Triangle { a, b, c })), (Contact::In, Some(scale)));
     }
     // tri/both-windings, tri/permuted-vertices.
     let corners = [vec3(0.1, 0.2, 0.3), vec3(5.0, -1.0, 0.7), vec3(0.3, 4.0, -0.2)];
     let ray = ray([1.0, 1.0, 9.0], [0.01, -0.02, -1.0]);
     let answers = [[0, 1, 2], [1, 2, 0], [2, 1, 0], [0, 2, 1]]
         .map(|[i, j, k]| met(&ray, Body::Triangle(Triangle { a: corners[i], b: corners[j], c: corners[k] })));
-    assert!(answers.iter().all(|answer| *answer == answers[0] && answer.0 == Verdict::In));
+    assert!(answers.iter().all(|answer| *answer == answers[0] && answer.0 == Contact::In));
 }
 
 #[test]
@@ -71,10 +71,10 @@ fn triangles_missed() {
     assert_eq!(met(&ray([0.25, 0.25, 0.0], [0.0, 0.0, 1.0]), Body::Triangle(UNIT)), MISS);
     let third = ray([0.25, 0.25, 1.0], [0.0, 0.0, -3.0]);
     let rounded = 1.0f32 / 3.0;
-    assert_eq!(met(&third, Body::Triangle(UNIT)), (Verdict::In, Some(rounded)));
+    assert_eq!(met(&third, Body::Triangle(UNIT)), (Contact::In, Some(rounded)));
     // Above 1/3 when rounded, so that the exact t lies below it.
     assert!(rounded > 1.0 / 3.000_000_2 && f64::from(rounded) > 1.0 / 3.0);
-    assert_eq!(met(&third.with_range(0.0, rounded), Body::Triangle(UNIT)).0, Verdict::In);
+    assert_eq!(met(&third.with_range(0.0, rounded), Body::Triangle(UNIT)).0, Contact::In);
     assert_eq!(met(&third.with_range(rounded, 1.0), Body::Triangle(UNIT)), MISS);
     assert_eq!(met(&third.with_range(0.0, rounded.next_down()), Body::Triangle(UNIT)), MISS);
 }
@@ -147,18 +147,18 @@ fn spheres_and_planes() {
     let unit = sphere([0.0; 3], 1.0);
     let along_x = |x: f32, y: f32| ray([x, y, 0.0], [1.0, 0.0, 0.0]);
     // sph/inside, behind, tangent-exact and one ulp to either side, r = 0 and below.
-    assert_eq!(met(&along_x(0.0, 0.0), unit), (Verdict::In, Some(1.0)));
+    assert_eq!(met(&along_x(0.0, 0.0), unit), (Contact::In, Some(1.0)));
     assert_eq!(met(&along_x(5.0, 0.0), unit), MISS);
-    assert_eq!(met(&along_x(-5.0, 1.0), unit), (Verdict::On, Some(5.0)));
+    assert_eq!(met(&along_x(-5.0, 1.0), unit), (Contact::On, Some(5.0)));
     assert_eq!(met(&along_x(-5.0, 1.0f32.next_up()), unit), MISS);
-    assert_eq!(met(&along_x(-5.0, 1.0f32.next_down()), unit).0, Verdict::In);
+    assert_eq!(met(&along_x(-5.0, 1.0f32.next_down()), unit).0, Contact::In);
     assert_eq!(met(&along_x(-5.0, 0.0), sphere([0.0; 3], 0.0)), MISS);
     assert_eq!(met(&along_x(-5.0, 0.0), sphere([0.0; 3], -1.0)), MISS);
     // sph/far, ground, on-surface-outward, and a direction that is not of unit length.
-    assert_eq!(met(&along_x(-1e5, 0.0), unit), (Verdict::In, Some(99_999.0)));
+    assert_eq!(met(&along_x(-1e5, 0.0), unit), (Contact::In, Some(99_999.0)));
     assert_eq!(
         met(&ray([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), sphere([0.0, -1e5, 0.0], 1e5)),
-        (Verdict::In, Some(1.0))
+        (Contact::In, Some(1.0))
     );
     assert_eq!(met(&along_x(1.0, 0.0), unit), MISS);
     let roots = sphere::roots(&along_x(-1.0, 0.0), &Sphere { center: Vec3::ZERO, radius: 1.0 }).unwrap();
@@ -172,7 +172,7 @@ fn spheres_and_planes() {
     // Spheres in order, equal surds included: √2 from two spheres.
     // Along (1, 1, 0) both are left at t = √½: from 0, and from (-1, 1, 0), which is √2 away from the same point.
     let diagonal = ray([0.0; 3], [1.0, 1.0, 0.0]);
-    assert_eq!(met(&diagonal, unit), (Verdict::In, Some(0.5f32.sqrt())));
+    assert_eq!(met(&diagonal, unit), (Contact::In, Some(0.5f32.sqrt())));
     assert_eq!(order(&diagonal, unit, unit), Some(Ordering::Equal));
     assert_eq!(
         order(&diagonal, unit, sphere([-1.0, 1.0, 0.0], 3f32.sqrt())),
@@ -188,7 +188,7 @@ fn spheres_and_planes() {
     let floor = Body::Plane(Plane { point: Vec3::ZERO, normal: vec3(0.0, 3.0, 0.0) });
     assert_eq!(met(&along_x(-5.0, 1.0), floor), MISS);
     assert_eq!(met(&along_x(-5.0, 0.0), floor), MISS);
-    assert_eq!(met(&ray([0.0, 1.0, 0.0], [1.0, -4.0, 0.0]), floor), (Verdict::In, Some(0.25)));
+    assert_eq!(met(&ray([0.0, 1.0, 0.0], [1.0, -4.0, 0.0]), floor), (Contact::In, Some(0.25)));
 }
 
 #[test]
@@ -208,8 +208,8 @@ fn t_is_rounded_to_nearest_even() {
     }
     // Beyond the largest number a hit is a hit, and its t is rounded to infinity; below the smallest, to zero.
     let slow = Ray::new(Vec3::ZERO, vec3(1e-30, 0.0, 0.0));
-    assert_eq!(met(&slow, wall(1e30)), (Verdict::In, Some(f32::INFINITY)));
-    assert_eq!(met(&Ray::new(Vec3::ZERO, vec3(1e30, 0.0, 0.0)), wall(1e-30)), (Verdict::In, Some(0.0)));
+    assert_eq!(met(&slow, wall(1e30)), (Contact::In, Some(f32::INFINITY)));
+    assert_eq!(met(&Ray::new(Vec3::ZERO, vec3(1e30, 0.0, 0.0)), wall(1e-30)), (Contact::In, Some(0.0)));
 }
 
 #[test]
@@ -218,21 +218,21 @@ fn cylinders_and_cones() {
     let tip = Body::Cone(Cone { base: Vec3::ZERO, apex: Vec3::Z, radius: 1.0 });
     // cyl/axis-parallel with either zero, cyl/rim, cyl/tangent-side.
     for zero in [0.0, -0.0] {
-        assert_eq!(met(&ray([0.5, 0.0, -1.0], [zero, zero, 1.0]), can), (Verdict::In, Some(1.0)));
-        assert_eq!(met(&ray([1.0, 0.0, -1.0], [zero, zero, 1.0]), can).0, Verdict::In);
+        assert_eq!(met(&ray([0.5, 0.0, -1.0], [zero, zero, 1.0]), can), (Contact::In, Some(1.0)));
+        assert_eq!(met(&ray([1.0, 0.0, -1.0], [zero, zero, 1.0]), can).0, Contact::In);
         assert_eq!(met(&ray([1.0f32.next_up(), 0.0, -1.0], [zero, zero, 1.0]), can), MISS);
     }
-    assert_eq!(met(&ray([2.0, 0.0, -1.0], [-1.0, 0.0, 1.0]), can), (Verdict::In, Some(1.0)));
-    assert_eq!(met(&ray([2.0, 0.0, 1.0], [-1.0, 0.0, -1.0]), can), (Verdict::On, Some(1.0)));
-    assert_eq!(met(&ray([-3.0, 1.0, 1.0], [1.0, 0.0, 0.0]), can), (Verdict::On, Some(3.0)));
+    assert_eq!(met(&ray([2.0, 0.0, -1.0], [-1.0, 0.0, 1.0]), can), (Contact::In, Some(1.0)));
+    assert_eq!(met(&ray([2.0, 0.0, 1.0], [-1.0, 0.0, -1.0]), can), (Contact::On, Some(1.0)));
+    assert_eq!(met(&ray([-3.0, 1.0, 1.0], [1.0, 0.0, 0.0]), can), (Contact::On, Some(3.0)));
     assert_eq!(met(&ray([-3.0, 1.0f32.next_up(), 1.0], [1.0, 0.0, 0.0]), can), MISS);
     // cone/apex, mirror-nappe, generator-parallel and along a generator.
-    assert_eq!(met(&ray([-3.0, 0.0, 1.0], [1.0, 0.0, 0.0]), tip), (Verdict::On, Some(3.0)));
+    assert_eq!(met(&ray([-3.0, 0.0, 1.0], [1.0, 0.0, 0.0]), tip), (Contact::On, Some(3.0)));
     assert_eq!(met(&ray([-3.0, 0.0, 1.5], [1.0, 0.0, 0.0]), tip), MISS);
-    assert_eq!(met(&ray([-1.5, 0.0, 0.0], [1.0, 0.0, 0.5]), tip).0, Verdict::In);
-    assert_eq!(met(&ray([-1.0, 0.0, 0.5], [1.0, 0.0, -1.0]), tip), (Verdict::In, Some(0.25)));
-    assert_eq!(met(&ray([-1.0, 0.0, 2.0], [1.0, 0.0, -1.0]), tip), (Verdict::In, Some(1.0)));
-    assert_eq!(met(&ray([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), tip), (Verdict::In, Some(2.0)));
+    assert_eq!(met(&ray([-1.5, 0.0, 0.0], [1.0, 0.0, 0.5]), tip).0, Contact::In);
+    assert_eq!(met(&ray([-1.0, 0.0, 0.5], [1.0, 0.0, -1.0]), tip), (Contact::In, Some(0.25)));
+    assert_eq!(met(&ray([-1.0, 0.0, 2.0], [1.0, 0.0, -1.0]), tip), (Contact::In, Some(1.0)));
+    assert_eq!(met(&ray([0.0, 0.0, 3.0], [0.0, 0.0, -1.0]), tip), (Contact::In, Some(2.0)));
 }
 
 #[test]
@@ -245,18 +245,18 @@ fn polygons() {
         (meeting.verdict, index)
     };
     // poly/fan-diagonal is inside, poly/vertex and edges are on it.
-    assert_eq!(at(0.0, 0.0), (Verdict::In, Some(0)));
-    assert_eq!(at(0.5, 0.0), (Verdict::In, Some(0)));
-    assert_eq!(at(0.0, 0.5), (Verdict::In, Some(1)));
-    assert_eq!(at(1.0, 1.0), (Verdict::On, Some(0)));
-    assert_eq!(at(-1.0, -1.0), (Verdict::On, Some(0)));
-    assert_eq!(at(1.0, 0.25), (Verdict::On, Some(0)));
-    assert_eq!(at(1.0f32.next_up(), 0.25), (Verdict::Out, None));
+    assert_eq!(at(0.0, 0.0), (Contact::In, Some(0)));
+    assert_eq!(at(0.5, 0.0), (Contact::In, Some(0)));
+    assert_eq!(at(0.0, 0.5), (Contact::In, Some(1)));
+    assert_eq!(at(1.0, 1.0), (Contact::On, Some(0)));
+    assert_eq!(at(-1.0, -1.0), (Contact::On, Some(0)));
+    assert_eq!(at(1.0, 0.25), (Contact::On, Some(0)));
+    assert_eq!(at(1.0f32.next_up(), 0.25), (Contact::Out, None));
     // poly/collinear-vertex.
     let mut bent = square.clone();
     bent.corners.insert(1, vec3(0.0, -1.0, 0.0));
     let (meeting, _) = polygon::meet_fan(&ray([0.0, 0.0, 2.0], [0.0, 0.0, -1.0]), &bent).unwrap();
-    assert_eq!(meeting, Meeting { verdict: Verdict::In, t: Some(2.0) });
+    assert_eq!(meeting, Meeting { verdict: Contact::In, t: Some(2.0) });
 }
 
 #[test]
@@ -270,6 +270,6 @@ fn filters_decide_what_is_clear() {
     ];
     for body in bodies {
         assert!(meet_with(Tier::Filter, &clear, body).is_some_and(|meeting| meeting.t.is_some()), "{body:?}");
-        assert_eq!(verdict(&clear, body), Some(Verdict::In));
+        assert_eq!(verdict(&clear, body), Some(Contact::In));
     }
 }

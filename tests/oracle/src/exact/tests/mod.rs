@@ -9,7 +9,7 @@ mod hard;
 #[path = "../../../examples/oracle/reference/mod.rs"]
 mod reference;
 
-use super::{Body, Tier, Verdict, aabb, meet_with, order_with, verdict_with};
+use super::{Body, Contact, Tier, aabb, meet_with, order_with, verdict_with};
 use crate::splitmix::Random;
 use cases::Case;
 use raykata::aabb::Aabb;
@@ -20,7 +20,7 @@ fn agree(ray: &Ray, body: Body, answer: &Answer, context: u64) {
     // The widest integers are slow in this profile; the long run of `examples/oracle` asks them always.
     for tier in Tier::ALL.into_iter().filter(|&tier| tier != Tier::Widest || context.is_multiple_of(8)) {
         let must = matches!(tier, Tier::Auto | Tier::Widest);
-        let word = |verdict| [Verdict::Out, Verdict::On, Verdict::In].iter().position(|&v| v == verdict);
+        let word = |verdict| [Contact::Out, Contact::On, Contact::In].iter().position(|&v| v == verdict);
         let verdict = verdict_with(tier, ray, body);
         assert!(verdict.is_some() || !must, "case {context} {tier:?} {ray:?} {body:?}: no answer");
         if let Some(verdict) = verdict {

@@ -1,7 +1,7 @@
 //! Makes submissions that are archives.
 
 use super::{Maker, SOURCES};
-use crate::grade::attacks::pack::{self, Entry, Format};
+use crate::grade::attacks::pack::{self, ArchiveEntry, Format};
 use crate::grade::attacks::step::{Packed, Step, bytes_of, need};
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
@@ -20,7 +20,7 @@ impl Maker<'_> {
             for name in names {
                 let content = fs::read(folder.join(&name))?;
                 let name = [prefix.as_bytes(), SOURCES.as_bytes(), b"/", name.as_encoded_bytes()].concat();
-                entries.push(Entry { name, content, ..Entry::default() });
+                entries.push(ArchiveEntry { name, content, ..ArchiveEntry::default() });
             }
         }
         for packed in step.entries.take().unwrap_or_default() {
@@ -32,7 +32,7 @@ impl Maker<'_> {
         self.become_archive(format, &bytes)
     }
 
-    fn entries(&self, packed: Packed) -> Result<Vec<Entry>> {
+    fn entries(&self, packed: Packed) -> Result<Vec<ArchiveEntry>> {
         let content = match packed.to {
             Some(to) => self.filled(&to).into_bytes(),
             None => self.bytes(packed.content)?,
@@ -43,7 +43,7 @@ impl Maker<'_> {
             _ => bail!("an entry needs either a `name` or a `name_hex`"),
         };
         let entry = |index: usize| {
-            Ok(Entry {
+            Ok(ArchiveEntry {
                 name: name(index)?,
                 kind: packed.kind,
                 content: content.clone(),
