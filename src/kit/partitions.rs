@@ -165,7 +165,7 @@ impl Cells for CellsProbe<'_> {
     fn visit(&mut self, node: u32) {
         assert!(
             self.answer.visits.len() < MOST_VISITS,
-            "the search goes on for ever: does every step advance?"
+            "the search does not end: does every step advance?"
         );
         self.answer.visits.push(node);
     }

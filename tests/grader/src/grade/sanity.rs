@@ -1,5 +1,5 @@
 //! Rejects malformed structures in the answers of a worker. The checks traverse trees with loops and recursion. A tree
-//! whose root is its own child would make them loop for ever or overflow the judge's stack.
+//! whose root is its own child would make them loop without end or overflow the judge's stack.
 
 use raykata::bvh::Contents;
 use raykata::count::Counts;
