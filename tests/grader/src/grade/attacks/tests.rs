@@ -106,9 +106,9 @@ fn attacks_of_every_family_are_there() {
 #[test]
 fn bodies_are_right_or_wrong_as_a_step_says() {
     assert!(shapes_of("").contains("todo!(\"solve the quadratic"));
-    assert!(shapes_of("base = \"solutions\"").contains("let discriminant ="));
+    assert!(shapes_of("base = \"solutions\"").contains("let half_chord_squared ="));
     let wrong = shapes_of("base = \"wrong\"");
-    assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let discriminant ="));
+    assert!(wrong.contains("{ Some(-1.25) }") && !wrong.contains("let half_chord_squared ="));
     let step = "base = \"wrong\"\n[[step]]\ndo = \"body\"\nfunction = \"face_forward\"\ntext = \"if true @right@ else @wrong@\"";
     let both = shapes_of(step);
     assert!(both.contains("if normal.dot(direction) > 0.0 { -normal } else { normal }"));
