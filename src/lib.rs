@@ -10,6 +10,7 @@
 //! | [`material`], [`camera`], [`film`] | what surfaces and lights are made of, where rays start, where colours end |
 //! | [`scene`], [`world`] | scene files (TOML, PLY, OBJ), and the scene flattened into primitives |
 //! | [`effects`], [`count`], [`random`] | what a scene needs, what it cost, and random numbers that are looked up by address |
+//! | [`rounding`] | bounds on rounding errors |
 //! | [`kit`] | the list of student functions, the door through which they are called, and the messages to a worker |
 //! | [`tracer`], [`frame`], [`building`] | the renderer, its tiles and threads, and the progress of a build |
 //! | [`rubric`], [`worker`] | points, titles and hints of the checks; the process that answers for a kit |
@@ -37,6 +38,7 @@ pub mod mesh;
 pub mod partition;
 pub mod random;
 pub mod ray;
+pub mod rounding;
 pub mod rubric;
 pub mod scene;
 pub mod shape;

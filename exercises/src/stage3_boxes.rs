@@ -1,10 +1,13 @@
 //! Stage 3 · bounding boxes: the box around a shape, and where a ray enters and leaves it.
 //!
 //! Slides: "Bounding Volume Hierarchy" and the box intersection with `t_b = t_x ∩ t_y ∩ t_z`.
+//!
+//! Given: [`gamma`], the bound γₙ on the relative error of `n` roundings.
 
 use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::ray::Ray;
+use raykata::rounding::gamma;
 use raykata::shape::{Sphere, Triangle};
 
 /// The smallest box around a triangle.

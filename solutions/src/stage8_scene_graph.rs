@@ -15,6 +15,7 @@ use raykata::shape::Sphere;
 
 // <solution>
 use crate::stage3_traversal::{keep_closest, nearer};
+use raykata::rounding::UNIT_ROUNDOFF;
 // </solution>
 
 /// Transforms a ray from the world to the space of an object, so that each hit has the same `t` in both spaces.
@@ -166,10 +167,10 @@ pub fn enter_bounding_sphere(ray: &Ray, sphere: &Sphere) -> Option<f32> {
 }
 
 // <solution>
-/// The relative widening of the interval in a sphere: eight times the error `u = 2⁻²⁴` of one rounding. A search compares
+/// The relative widening of the interval in a sphere: eight times the unit roundoff `u = 2⁻²⁴`. A search compares
 /// the entry with the `t` of hits, which has other rounding errors. With this room it does not skip a sphere that contains
 /// a hit at exactly the best `t`.
-const ROOM: f64 = 8.0 * (f32::EPSILON as f64) / 2.0;
+const ROOM: f64 = 8.0 * UNIT_ROUNDOFF as f64;
 // </solution>
 
 /// Finds the closest hit of `ray` in a scene graph: tests a node's own primitives first, then visits its children. Node

@@ -12,6 +12,7 @@ use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cell, Cells};
 use raykata::ray::Ray;
+use raykata::rounding::UNIT_ROUNDOFF;
 
 // <solution>
 use crate::stage3_traversal::keep_closest;
@@ -24,7 +25,7 @@ use glam::DVec3;
 /// times `u = 2⁻²⁴`. Three roundings give an error of 3 u, and a grazing triangle gives some more. If lists are tight,
 /// only this room keeps a hit on a face. It costs one more cell for about one ray in 10,000, as the test
 /// `room_for_rounding_costs_next_to_no_visits` counts (solutions/tests/suite/partitions.rs).
-pub const ROUNDING: f64 = 16.0 * (f32::EPSILON as f64) / 2.0;
+pub const ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF as f64;
 
 /// Boxes for builders, each widened by some room for rounding.
 pub struct Widened {

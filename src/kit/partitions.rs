@@ -163,10 +163,7 @@ impl<'a> CellsProbe<'a> {
 impl Cells for CellsProbe<'_> {
     #[track_caller]
     fn visit(&mut self, node: u32) {
-        assert!(
-            self.answer.visits.len() < MOST_VISITS,
-            "the search does not end: does every step advance?"
-        );
+        assert!(self.answer.visits.len() < MOST_VISITS, "the search does not end: does every step advance?");
         self.answer.visits.push(node);
     }
 

@@ -8,6 +8,7 @@ use super::solids::intersect_solid;
 use crate::graph::Placement;
 use crate::kit::{StudentFunctions, Surface};
 use crate::ray::Ray;
+use crate::rounding::{UNIT_ROUNDOFF, gamma};
 use crate::shape::{Plane, Sphere, Triangle};
 use crate::world::{Geometry, Instance, Primitive, Solid, SolidShape, World, around_sphere};
 use glam::{DVec3, Vec2, Vec3, vec2};
@@ -119,7 +120,7 @@ fn on_sphere<F: StudentFunctions>(ray: &Ray, t: f32, sphere: &Sphere) -> Point {
     // Project the hit onto the sphere, with five roundings of the offset from the centre and one of the sum.
     let normal = F::sphere_normal(sphere.center, ray.at(t));
     let point = sphere.center + sphere.radius * normal;
-    let error = rounding(5) * (sphere.radius * normal).abs() + rounding(1) * point.abs();
+    let error = gamma(5) * (sphere.radius * normal).abs() + gamma(1) * point.abs();
     Point { point, error, normal, smooth: None }
 }
 
@@ -137,7 +138,7 @@ fn on_triangle<F: StudentFunctions>(
     // Compute the point from the corners: its error is seven roundings of the terms, however long the ray is.
     let terms = [weights.x * a, weights.y * b, weights.z * c];
     let point = terms[0] + terms[1] + terms[2];
-    let error = rounding(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+    let error = gamma(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
     let normal = (b - a).cross(c - a).normalize_or(Vec3::Z);
     // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
     let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
@@ -179,7 +180,7 @@ fn on_plane(ray: &Ray, t: f32, plane: &Plane) -> Point {
     let normal = plane.normal.normalize();
     let offset = rough - plane.point;
     let point = rough - offset.dot(normal) * normal;
-    let error = rounding(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element()));
+    let error = gamma(8) * (point.abs() + plane.point.abs() + Vec3::splat(offset.abs().max_element()));
     Point { point, error, normal: plane.normal, smooth: None }
 }
 
@@ -194,7 +195,7 @@ fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid:
     let point = own.at(hit.t);
     // Bound the error: the rounding of `t` moves the point along the ray, and product and sum are rounded as
     // well. Twice that is enough for tests in single precision.
-    let error = 4.0 * HALF_STEP * (hit.t * own.direction).abs() + 2.0 * HALF_STEP * point.abs();
+    let error = 4.0 * UNIT_ROUNDOFF * (hit.t * own.direction).abs() + 2.0 * UNIT_ROUNDOFF * point.abs();
     to_world::<F>(Point { point, error, normal, smooth: None }, placement)
 }
 
@@ -219,7 +220,7 @@ fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
     let back = down.transform_point3(point.as_dvec3());
     let residue = (back - own.point.as_dvec3()).abs();
     // Add the rounding of a secondary ray, which is transformed back into the space of the object.
-    let rounded = f64::from(HALF_STEP) * back.abs();
+    let rounded = f64::from(UNIT_ROUNDOFF) * back.abs();
     let in_object = own.error.as_dvec3() + residue + 2.0 * rounded;
     // Transform the error bound to the world, with absolute values.
     let in_world = [up.matrix3.x_axis, up.matrix3.y_axis, up.matrix3.z_axis]
@@ -229,7 +230,7 @@ fn to_world<F: StudentFunctions>(own: Point, placement: &Placement) -> Point {
         .sum::<DVec3>();
     Point {
         point,
-        error: in_world.as_vec3() + HALF_STEP * point.abs(),
+        error: in_world.as_vec3() + UNIT_ROUNDOFF * point.abs(),
         normal: F::normal_to_world(own.normal, &placement.to_object),
         smooth: own.smooth.map(|normal| F::normal_to_world(normal, &placement.to_object)),
     }
@@ -285,14 +286,4 @@ pub fn texture_coordinates<F: StudentFunctions>(
 fn uv_on_triangle(world: &World, image: usize, weights: Vec3) -> Vec2 {
     let [a, b, c] = world.uvs[image];
     weights.x * a + weights.y * b + weights.z * c
-}
-
-/// Half the distance between 1 and the next `f32`: the largest relative error of one rounding.
-const HALF_STEP: f32 = f32::EPSILON / 2.0;
-
-/// `γ_n = n u / (1 - n u)`, a bound on the relative error of `n` roundings (Higham, "Accuracy and Stability
-/// of Numerical Algorithms").
-fn rounding(n: u32) -> f32 {
-    let nu = n as f32 * HALF_STEP;
-    nu / (1.0 - nu)
 }

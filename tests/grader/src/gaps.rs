@@ -8,6 +8,7 @@ use crate::corpus::workshop::{Built, Workshop};
 use crate::kits::{Need, Source, Which, root};
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
+use crate::report::bar_of_steps;
 use crate::sync::{self, Block};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
@@ -91,7 +92,15 @@ pub fn run(options: &Options) -> Result<bool> {
 
 /// Returns for each of these functions what pictures lack without it.
 fn text(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
-    queue::run(workshops, gaps, |workshop, gap| lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole))
+    let bar = bar_of_steps(gaps.len());
+    let text = queue::run(workshops, gaps, |workshop, gap| {
+        bar.set_message(gap.title());
+        let text = lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole)?;
+        bar.inc(1);
+        Ok(text)
+    });
+    bar.finish_and_clear();
+    text
 }
 
 /// Returns how the pictures of the solutions with these changes differ from those of the unchanged solutions.

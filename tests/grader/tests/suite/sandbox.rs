@@ -1,7 +1,7 @@
 //! Tests that a sandboxed program cannot leave its sandbox.
 
 use grader::sandbox::{
-    self, Confinement, Ended, How, ResourceLimits, Purpose, Sandbox, got_through, run, this_program,
+    self, Confinement, Ended, How, Purpose, ResourceLimits, Sandbox, got_through, run, this_program,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
