@@ -65,6 +65,7 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales.
 ///
 /// Slides "Shadow ray" and "Cost of shadow computation".
+#[inline]
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     todo!("return None for a light behind the surface, otherwise a ray that excludes both ends")
 }

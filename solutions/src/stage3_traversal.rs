@@ -44,6 +44,7 @@ fn closest_below(node: u32, bvh: &Bvh, probe: &mut impl Probe, ray: &Ray) -> Opt
 
 /// The hit with the smaller `t`; at the same `t` the one with the smaller primitive number, so that the result does not
 /// depend on the order of the tests.
+#[inline]
 pub fn nearer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Option<PrimitiveHit> {
     match (first, second) {
         (Some(p), Some(q)) => Some(if (q.t, q.primitive) < (p.t, p.primitive) { q } else { p }),
@@ -55,6 +56,7 @@ pub fn nearer(first: Option<PrimitiveHit>, second: Option<PrimitiveHit>) -> Opti
 ///
 /// The range of a ray is open. So the ray ends one float above `t`, and a primitive at exactly the same `t` is still
 /// reported.
+#[inline]
 pub fn keep_closest(closest: &mut Option<PrimitiveHit>, ray: &mut Ray, hit: PrimitiveHit) {
     *closest = nearer(*closest, Some(hit));
     ray.t_max = hit.t.next_up().min(ray.t_max);

@@ -82,6 +82,7 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales.
 ///
 /// Slides "Shadow ray" and "Cost of shadow computation".
+#[inline]
 pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
     // <solution>
     // Return None for a light that cannot add anything.
@@ -106,6 +107,7 @@ const BEFORE_THE_LIGHT: f32 = 0.9999;
 /// The origin of a ray that leaves the surface on the side of the unit normal `side`, as close to the surface as the
 /// rounding error of `point` allows (Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th edition, section
 /// 6.8.6).
+#[inline]
 pub fn off_surface(point: Vec3, error: Vec3, side: Vec3) -> Vec3 {
     // Move along the normal by the bound on the error: the true surface is at most this far from the point.
     let origin = point + error.dot(side.abs()) * side;

@@ -127,6 +127,7 @@ impl<F: StudentFunctions> Intersector<F> {
     }
 
     /// The closest hit with an infinite plane, and a copy of the ray that ends there.
+    #[inline(always)]
     fn closest_plane<T: Tally>(&self, ray: &Ray, tally: &mut T) -> (Option<Ray>, Option<Hit>) {
         let mut ray = *ray;
         let mut closest = None;

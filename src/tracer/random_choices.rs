@@ -7,6 +7,7 @@ use crate::random::{Points, Purpose};
 
 /// Sample `part` of `parts` of the area light `light`, number `index` in the scene, with outline `shape`: the
 /// light that arrives at `surface` from a random point of it, divided by `parts`.
+#[inline(always)]
 pub fn sample_area_light<F: StudentFunctions>(
     (index, light, shape): (usize, &Light, &AreaShape),
     surface: &Surface,
