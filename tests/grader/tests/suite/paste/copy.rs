@@ -10,9 +10,11 @@ pub fn copy(root: &Path, to: &Path, open: &[String]) {
     for folder in ["src", "solutions/src", "tests/checks", "tests/judge", "tests/oracle", "tests/golden"] {
         copy_folder(root, to, folder, open);
     }
-    for file in ["Cargo.lock", ".cargo/config.toml", "tests/rubric.toml", "solutions/tests/stages.rs"] {
+    for file in ["Cargo.lock", ".cargo/config.toml", "tests/rubric.toml"] {
         write(&to.join(file), &read(&root.join(file)));
     }
+    // The test of the reference against its checks, as a program of its own.
+    write(&to.join("solutions/tests/stages.rs"), &read(&root.join("solutions/tests/suite/stages.rs")));
     let manifest = without_sections(&read(&root.join("Cargo.toml")));
     let members = "members = [\"solutions\", \"tests/checks\", \"tests/checks/all\", \"tests/checks/stage*\", \"tests/oracle\"]";
     let lines = manifest.lines().filter(|line| !line.starts_with("default-members"));
@@ -38,7 +40,7 @@ pub fn build(folder: &Path) -> String {
         .args(["test", "--quiet", "--package", "solutions", "--test", "stages", "--no-run"])
         .args([
             "--message-format=json",
-            "--target-direction",
+            "--target-dir",
             "target",
             "--config",
             "profile.dev.debug=false",
