@@ -38,13 +38,7 @@ pub fn build(folder: &Path) -> String {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(folder)
         .args(["test", "--quiet", "--package", "solutions", "--test", "stages", "--no-run"])
-        .args([
-            "--message-format=json",
-            "--target-dir",
-            "target",
-            "--config",
-            "profile.dev.debug=false",
-        ])
+        .args(["--message-format=json", "--target-dir", "target", "--config", "profile.dev.debug=false"])
         .stdin(Stdio::null())
         .output()
         .expect("cargo");
