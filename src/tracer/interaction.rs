@@ -139,7 +139,7 @@ fn on_triangle<F: StudentFunctions>(
     let terms = [weights.x * a, weights.y * b, weights.z * c];
     let point = terms[0] + terms[1] + terms[2];
     let error = gamma(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
-    let normal = (b - a).cross(c - a).normalize_or(Vec3::Z);
+    let normal = normal_of(triangle);
     // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
     let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
         let at = |index: usize| F::interpolate(weights, world.normals[index]);
@@ -149,6 +149,25 @@ fn on_triangle<F: StudentFunctions>(
         }
     });
     Point { point, error, normal, smooth }
+}
+
+/// The unit normal of a triangle of any size, on the side from which its corners run anticlockwise.
+#[inline(always)]
+fn normal_of(&Triangle { a, b, c }: &Triangle) -> Vec3 {
+    let normal = (b - a).cross(c - a);
+    // Without underflow and overflow, single precision is enough.
+    let length_squared = normal.length_squared();
+    if (1e-20..1e20).contains(&length_squared) {
+        return normal.normalize_or(Vec3::Z);
+    }
+    normal_in_double(a, b, c)
+}
+
+/// The same for edges below 1e-5 or above 1e5: in double precision no product of single precision under- or overflows.
+#[cold]
+fn normal_in_double(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
+    let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+    (b - a).cross(c - a).normalize_or(DVec3::Z).as_vec3()
 }
 
 /// Barycentric coordinates `(α, β, γ)` of the hit, with `α >= 0`. If the search did not keep those of the

@@ -9,7 +9,7 @@ use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Scene, Split, load};
 use std::path::Path;
 
-fn scene(text: &str) -> Scene {
+pub fn scene(text: &str) -> Scene {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/test.toml"));
     load::parse(folder, text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -19,7 +19,7 @@ fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled")
 }
 
-fn render(scene: &Scene) -> Rendering {
+pub fn render(scene: &Scene) -> Rendering {
     render_with(scene, 1, true)
 }
 

@@ -6,6 +6,7 @@ mod frames;
 mod instances;
 mod partitions;
 mod precision;
+mod scales;
 mod seeds;
 mod specials;
 mod stages;
