@@ -155,7 +155,8 @@ fn on_triangle<F: StudentFunctions>(
 #[inline(always)]
 fn normal_of(&Triangle { a, b, c }: &Triangle) -> Vec3 {
     let normal = (b - a).cross(c - a);
-    // Without underflow and overflow, single precision is enough.
+    // Single precision is enough here: a product that underflows is below 1e-38, which is nothing beside a length of
+    // 1e-10, and a product that overflows makes the length infinite or NaN.
     let length_squared = normal.length_squared();
     if (1e-20..1e20).contains(&length_squared) {
         return normal.normalize_or(Vec3::Z);
@@ -163,7 +164,8 @@ fn normal_of(&Triangle { a, b, c }: &Triangle) -> Vec3 {
     normal_in_double(a, b, c)
 }
 
-/// The same for edges below 1e-5 or above 1e5: in double precision no product of single precision under- or overflows.
+/// The unit normal of a triangle whose edges are shorter than about 1e-5 or longer than about 1e5. In double precision
+/// no product of two single precision numbers underflows or overflows.
 #[cold]
 fn normal_in_double(a: Vec3, b: Vec3, c: Vec3) -> Vec3 {
     let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);

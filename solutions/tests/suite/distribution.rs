@@ -2,19 +2,14 @@
 //! sharp, half a visible light gives half the light, and every search finds moving shapes on any number of
 //! threads.
 
+use crate::scene::scene;
 use glam::Vec3;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, StudentKit, View};
-use raykata::scene::{Accelerator, Sampler, Scene, load};
-use std::path::Path;
+use raykata::scene::{Accelerator, Sampler, Scene};
 
 const SAMPLERS: [Sampler; 5] =
     [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian, Sampler::LowDiscrepancy];
-
-fn scene(text: &str) -> Scene {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
-    load::parse(&beside, text).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn job(scene: &Scene, threads: usize) -> RenderJob {
     RenderJob { scene: scene.clone(), view: View::Shaded, seed: 5, threads, count: true }

@@ -1,18 +1,13 @@
 //! Whole frames of the reference: the picture is the same for every search and any number of threads, no
 //! unnecessary ray is traced, and there is no shadow acne at any size.
 
+use crate::scene::scene;
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, StudentKit, View};
-use raykata::scene::{Accelerator, Scene, Split, load};
-use std::path::Path;
-
-pub fn scene(text: &str) -> Scene {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/test.toml"));
-    load::parse(folder, text).unwrap_or_else(|error| panic!("{error}"))
-}
+use raykata::scene::{Accelerator, Scene, Split};
 
 fn render_with(scene: &Scene, threads: usize, count: bool) -> Rendering {
     let job = RenderJob { scene: scene.clone(), view: View::Shaded, seed: 1, threads, count };

@@ -1,6 +1,7 @@
 //! Shapes in object spaces of their own, in whole frames: instances look like copies, there is no shadow
 //! acne, transforms that reflect keep the outside outside, and every accelerator makes the same picture.
 
+use crate::scene::scene;
 use glam::Vec3;
 use raykata::count::Counts;
 use raykata::film::Film;
@@ -8,11 +9,6 @@ use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, Rendering, StudentKit, View};
 use raykata::scene::{Accelerator, Scene, load};
 use std::path::Path;
-
-fn scene(text: &str) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
-    load::parse(&file, text).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn file(name: &str, width: u32, height: u32) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);

@@ -7,6 +7,7 @@ mod instances;
 mod partitions;
 mod precision;
 mod scales;
+mod scene;
 mod seeds;
 mod specials;
 mod stages;

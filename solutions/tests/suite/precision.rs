@@ -1,5 +1,6 @@
 //! `precision = "double"` in whole frames: the same picture in easy scenes, and the correct one in hard scenes.
 
+use crate::scene::scene;
 use glam::{Vec3, vec3};
 use oracle::exact::{Body, verdict};
 use raykata::count::Counts;
@@ -9,11 +10,6 @@ use raykata::scene::{Accelerator, Precision, Scene, TriangleMethod, load};
 use raykata::shape::{Shape, Sphere};
 use raykata::world::camera_for;
 use std::path::Path;
-
-fn scene(text: &str) -> Scene {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
-    load::parse(&file, text).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn in_precision(scene: &Scene, precision: Precision) -> Rendering {
     let mut scene = scene.clone();

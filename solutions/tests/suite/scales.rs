@@ -1,7 +1,8 @@
-//! A scene that is scaled by a power of two, with its camera, gives the same picture bit for bit: no rounding and no
-//! comparison with a fixed number depends on the size.
+//! A scene that is scaled by 2^k, from k = -45 to 60, with its camera, gives the same picture bit for bit: no rounding
+//! and no comparison with a fixed number depends on the size.
 
-use crate::frames::{render, scene};
+use crate::frames::render;
+use crate::scene::scene;
 use raykata::scene::Scene;
 
 /// Shapes of size `2^k` with a mirror, glass and shadows of a directional light, which does not get weaker with the

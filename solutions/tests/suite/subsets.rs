@@ -2,6 +2,7 @@
 //! effects of `scenes/effects.toml`. `raykata explain scenes/effects.toml --subsets` prints what each set
 //! costs.
 
+use crate::scene::scene;
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
 use raykata::count::Counts;
@@ -10,7 +11,7 @@ use raykata::film::Film;
 use raykata::frame::Unwatched;
 use raykata::kit::{RayKind, RenderJob, StudentKit, TracedRay, View};
 use raykata::mesh::Mesh;
-use raykata::scene::{Scene, load};
+use raykata::scene::Scene;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -50,11 +51,6 @@ fn text() -> String {
     std::fs::read_to_string(file).expect("a scene of this kit")
 }
 
-fn parse(text: &str) -> Scene {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/test.toml");
-    load::parse(&beside, text).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// The scene in few pixels, with one sample each, and with a coarse smooth mesh in place of the vase.
 fn small(mut scene: Scene) -> Scene {
     (scene.film.width, scene.film.height) = (20, 12);
@@ -69,7 +65,7 @@ fn small(mut scene: Scene) -> Scene {
 }
 
 fn only(set: Set) -> Scene {
-    set.absent().fold(small(parse(&text())), |scene, effect| effect.removed_from(&scene))
+    set.absent().fold(small(scene(&text())), |scene, effect| effect.removed_from(&scene))
 }
 
 /// A frame of a set, and the rays behind each of its pixels.
@@ -152,7 +148,7 @@ fn what_is_left_out_of_the_file_and_what_is_switched_off_are_the_same() {
         let lines: Vec<&str> = text.lines().filter(absent).collect();
         let others = set.absent().filter(|effect| keys.iter().all(|(other, _)| other != effect));
         let written =
-            others.fold(small(parse(&lines.join("\n"))), |scene, effect| effect.removed_from(&scene));
+            others.fold(small(scene(&lines.join("\n"))), |scene, effect| effect.removed_from(&scene));
         assert_eq!(written, only(set), "without {:?}", set.absent().collect::<Vec<_>>());
     }
 }

@@ -53,7 +53,8 @@ pub struct Ladder {
 /// The number of samples that ladders reach at least.
 const MOST_SAMPLES: u32 = 64;
 
-/// The most primitives for which a structure that tests a ray against many of them is measured. With more, it takes minutes.
+/// Structures that test most primitives with each ray are measured up to this number of primitives. Above it, one
+/// measurement takes minutes.
 const MOST_ASKED: u64 = 2_000;
 
 /// The most primitives for a BSP tree: over more it takes more than ten seconds to build, and it is built for
