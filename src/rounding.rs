@@ -21,3 +21,33 @@ pub const fn gamma(n: u32) -> f32 {
     let nu = n as f32 * UNIT_ROUNDOFF;
     nu / (1.0 - nu)
 }
+
+/// The sum of `terms`, as if it were computed exactly and rounded at the end: its sign is right, and its relative error is
+/// at most 2⁻⁵². The terms need not have similar sizes. The sum is NaN or infinite if a term is, or if a partial sum
+/// overflows.
+///
+/// The algorithm keeps partial sums that do not overlap, so that no digit is lost (Shewchuk 1997, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates"; it is also Python's `math.fsum`).
+///
+/// ```
+/// use raykata::rounding::exact_sum;
+///
+/// assert_eq!(1e100 + 1.0 - 1e100, 0.0);
+/// assert_eq!(exact_sum([1e100, 1.0, -1e100]), 1.0);
+/// ```
+pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> f64 {
+    // The partial sums, the smallest first. No two have a binary digit in the same place.
+    let mut partials: Vec<f64> = Vec::new();
+    for term in terms {
+        let mut sum = term;
+        // Add each partial sum to the term, and keep the rounding error of each sum, which is exact, as a partial sum.
+        partials.retain_mut(|partial| {
+            let (large, small) = if sum.abs() < partial.abs() { (*partial, sum) } else { (sum, *partial) };
+            sum = large + small;
+            *partial = small - (sum - large);
+            *partial != 0.0
+        });
+        partials.push(sum);
+    }
+    partials.into_iter().sum()
+}

@@ -12,6 +12,7 @@ use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
+use raykata::rounding::exact_sum;
 use raykata::shape::Triangle;
 
 /// Computes the real roots of `a t² + b t + c = 0` without cancellation.
@@ -28,19 +29,24 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     todo!("avoid the difference of two nearly equal numbers: q first, then q / a and c / q")
 }
 
-/// Intersects a ray with a triangle such that no ray escapes between two triangles that share an edge or a corner, at
-/// any size and at any place.
+/// Intersects a ray with a triangle such that no ray escapes from a closed mesh: neither between two triangles that share
+/// an edge or a corner, nor through a triangle that is seen edge-on, at any size and at any place.
 ///
-/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. Scaling ray
-/// and triangle by a power of two changes no answer, unless a number over- or underflows. `t` is accurate also on
-/// triangles a million times as long as wide. NaN or infinite inputs give `None` or a finite hit.
+/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. A ray that lies
+/// in the plane of the triangle misses it. Scaling ray and triangle by a power of two changes no answer, unless a number
+/// over- or underflows. `t` is accurate also on triangles a million times as long as wide. NaN or infinite inputs give
+/// `None` or a finite hit.
 ///
 /// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
 /// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
 ///
+/// Pitfall: where the triangle is seen edge-on, `t` is a quotient of two rounding errors and may have the wrong sign.
+/// Where rounding errors may decide, compute the determinants with [`exact_sum`], which loses no digit.
+///
 /// Your pictures use this function for triangles as soon as it is written; before, they use `triangle_choice` of stage 2.
 ///
-/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 #[inline]
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     todo!("transform the triangle to the ray's coordinates, and decide each edge by its two ends only")
@@ -49,18 +55,21 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 /// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that
 /// the ray meets.
 ///
-/// This holds at corners, for flat boxes, far away, along faces and for directions of -0.0, with `t_min >= 0` and with
-/// `inverse_direction` finite wherever the direction is not 0. A box with a hit at `t` is entered at `t` or before. A
-/// box that the ray passes by at more than 64 roundings gives `None`, and so does the empty box. Neither result is ever
-/// NaN.
+/// This holds for every range, also for negative `t`, and for every direction: at corners, for flat boxes, far away,
+/// along faces, for a direction of -0.0, and where `inverse_direction` is infinite because `1/d` overflows. A box with a
+/// hit at `t` is entered at `t` or before. A box that the ray passes by at more than 64 roundings gives `None`, and so
+/// does the empty box. Neither result is ever NaN. Coordinates and directions are below 1e37 in size, and a `t` that is
+/// not 0 is above 1e-30.
 ///
-/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Multiply the exit by `1 + 2 γ₃`, the
-/// bound on its own three rounding errors, and the entry by `1 - 2 γ₃`, because a search compares the entry with the
-/// `t` of hits, which are rounded differently.
+/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Move the exit later by `2 γ₃ |t|`,
+/// the bound on its own three rounding errors, and the entry earlier by as much, because a search compares the entry
+/// with the `t` of hits, which are rounded differently. A factor of `1 + 2 γ₃` moves a negative exit the wrong way.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
-    todo!("compare so that NaN changes nothing; make the exit a little later and the entry a little earlier")
+    todo!(
+        "compare so that NaN changes nothing; make the exit a little later and the entry a little earlier, on both sides of 0"
+    )
 }
 
 /// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same

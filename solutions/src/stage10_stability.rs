@@ -12,11 +12,12 @@ use glam::Vec3;
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
+use raykata::rounding::exact_sum;
 use raykata::shape::Triangle;
 
 // <solution>
 use crate::{stage1_shapes::nearest_root, stage3_boxes::slab, stage4_shading::off_surface};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 // </solution>
 
 /// Computes the real roots of `a t² + b t + c = 0` without cancellation.
@@ -51,97 +52,173 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     // </solution>
 }
 
-/// Intersects a ray with a triangle such that no ray escapes between two triangles that share an edge or a corner, at
-/// any size and at any place.
+/// Intersects a ray with a triangle such that no ray escapes from a closed mesh: neither between two triangles that share
+/// an edge or a corner, nor through a triangle that is seen edge-on, at any size and at any place.
 ///
-/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. Scaling ray
-/// and triangle by a power of two changes no answer, unless a number over- or underflows. `t` is accurate also on
-/// triangles a million times as long as wide. NaN or infinite inputs give `None` or a finite hit.
+/// Returns `t` and the barycentric coordinates β and γ of the hit. Points on edges belong to the triangle. A ray that lies
+/// in the plane of the triangle misses it. Scaling ray and triangle by a power of two changes no answer, unless a number
+/// over- or underflows. `t` is accurate also on triangles a million times as long as wide. NaN or infinite inputs give
+/// `None` or a finite hit.
 ///
 /// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
 /// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
 ///
+/// Pitfall: where the triangle is seen edge-on, `t` is a quotient of two rounding errors and may have the wrong sign.
+/// Where rounding errors may decide, compute the determinants with [`exact_sum`], which loses no digit.
+///
 /// Your pictures use this function for triangles as soon as it is written; before, they use `triangle_choice` of stage 2.
 ///
-/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013.
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Shewchuk, "Adaptive Precision
+/// Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
 #[inline]
 pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     // <solution>
-    // Convert everything to double precision, which holds products of sizes from 1e-38 to 1e38 without overflow or
-    // underflow. In single precision neighbouring triangles also agree, but rounding may give a ray to the neighbour
-    // of the triangle that it hits, and the ray may miss the neighbour's box: in a hierarchy 7 of 10⁸ rays at edges
-    // leaked out of meshes. Double precision makes a plain frame of 57,600 triangles a tenth slower.
+    // Convert everything to double precision, in which no product of three single precision numbers overflows or
+    // underflows.
     let [o, d, a, b, c] = [ray.origin, ray.direction, triangle.a, triangle.b, triangle.c].map(Vec3::as_dvec3);
 
     // Transform the triangle: the ray's origin to zero, the ray's longest axis to z, and a shear that turns the ray
     // into (0 0 z).
-    let z = longest_axis(ray.direction);
+    let z = ray.direction.abs().max_position();
     let (x, y) = ((z + 1) % 3, (z + 2) % 3);
     let shear = DVec2::new(d[x], d[y]) / d[z];
-    let project = |corner: DVec3| {
-        let corner = corner - o;
-        DVec2::new(corner[x], corner[y]) - shear * corner[z]
-    };
-    let [p, q, r] = [a, b, c].map(project);
+    let corners = [a - o, b - o, c - o];
+    let [p, q, r] = corners.map(|corner| DVec2::new(corner[x], corner[y]) - shear * corner[z]);
 
-    // Compute three edge functions. The sign of each tells on which side of the edge the ray passes. Two triangles
-    // compute a shared edge from the same two points, and rounding is monotone, so it cannot turn "inside" into
-    // "outside".
+    // Compute three edge functions. The sign of each tells on which side of the edge the ray passes.
     let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
-    // Reject the ray if two signs differ or if the projected triangle has no area.
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
     let sum = alpha + beta + gamma;
-    if (least < 0.0 && most > 0.0) || sum == 0.0 || sum.is_nan() {
+    // Bound their rounding errors, and reject the ray if two signs differ for certain.
+    let width = largest([p.x, p.y, q.x, q.y, r.x, r.y]);
+    let depth = largest(corners.map(|corner| corner[z]));
+    let edge_error = EDGE_ERROR * width * (width + depth);
+    if least < -edge_error && most > edge_error {
         return None;
     }
 
-    // Compute t from the plane: t = (a - o)·n / d·n. The paper takes t from the sheared z of the corners, which loses
-    // all digits on a needle seen from inside.
+    // Compute t from the plane, t = (a - o)·n / d·n, and bound the rounding errors of both products. The paper takes t
+    // from the sheared z of the corners, which loses all digits on a needle seen from inside.
     let normal = (b - a).cross(c - a);
-    let t = ((a - o).dot(normal) / d.dot(normal)) as f32;
+    let (distance, slope) = (corners[0].dot(normal), d.dot(normal));
+    let size = largest((b - a).to_array()) * largest((c - a).to_array());
+    let distance_error = PLANE_ERROR * size * largest(corners[0].to_array());
+    let slope_error = PLANE_ERROR * size * largest(d.to_array());
+
+    // Where rounding errors may decide, compute the exact answer. That is rare: the ray meets an edge, or the triangle is a
+    // needle, is seen edge-on, or contains the origin of the ray up to rounding.
+    let certain = (least > edge_error || most < -edge_error)
+        && sum.abs() > DIGITS * edge_error
+        && distance.abs() > DIGITS * distance_error
+        && slope.abs() > DIGITS * slope_error;
+    if !certain {
+        return exact_hit(ray, triangle);
+    }
     // Reject hits outside the ray's range. Divide by the sum to get barycentric coordinates.
+    let t = (distance / slope) as f32;
     ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
     // <stub> todo!("transform the triangle to the ray's coordinates, and decide each edge by its two ends only")
     // </solution>
 }
 
 // <solution>
+/// A bound on the rounding errors of an edge function is `EDGE_ERROR · w (w + z)`, with `w` the largest coordinate of the
+/// three sheared corners and `z` their largest depth.
+///
+/// With `u = 2⁻⁵³`: the shear, a corner and their product have a relative error of `u` each, so a sheared coordinate
+/// `x - s z` has an error of at most `u (|x| + 3 |s z|) + u w ≤ u (2 w + 4 z)`, because `|s| ≤ 1` and `|x| ≤ w + |z|`. An
+/// edge function is the difference of two products of sheared coordinates: that makes `4 w` times this error, plus `4 u w²`
+/// for its own three roundings. Together `u w (12 w + 16 z)`; `32 u` leaves room for products of errors.
+const EDGE_ERROR: f64 = 16.0 * f64::EPSILON;
+
+/// A bound on the rounding errors of `v·n`, with `n` the cross product of two edges, is `PLANE_ERROR` times the largest
+/// coordinates of `v` and of both edges.
+///
+/// With `e` and `f` for the largest coordinates of the edges: each coordinate of `n` is at most `2 e f` and has an error of
+/// `8 u e f` at most (two differences, a product and a difference each). The scalar product adds three products of it with
+/// `v`, which has an error of `u`: `3 · (8 + 2 · 4) u e f v`. That is `48 u`; `96 u` leaves room for products of errors.
+const PLANE_ERROR: f64 = 48.0 * f64::EPSILON;
+
+/// A number that exceeds its error bound by this factor has 26 right binary digits, two more than single precision keeps.
+const DIGITS: f64 = (1 << 26) as f64;
+
 /// Twice the signed area of the triangle from the origin over `p` to `q`.
 fn edge(p: DVec2, q: DVec2) -> f64 {
     p.x * q.y - p.y * q.x
 }
 
-/// The axis along which `v` is longest.
-fn longest_axis(v: Vec3) -> usize {
-    let v = v.abs();
-    if v.x >= v.y && v.x >= v.z {
-        0
-    } else if v.y >= v.z {
-        1
-    } else {
-        2
+/// The largest absolute value.
+fn largest<const N: usize>(numbers: [f64; N]) -> f64 {
+    numbers.into_iter().fold(0.0, |most, number| if number.abs() > most { number.abs() } else { most })
+}
+
+/// The hit of a ray with a triangle, computed exactly; only the results are rounded.
+///
+/// Why no ray escapes from a closed mesh: let the ray start inside, on no triangle. Move its origin by a little, such that
+/// the ray meets no edge and lies in no plane of a triangle. It still starts inside, so it crosses some triangle at `t > 0`.
+/// Let these moves tend to zero: as there are finitely many triangles, one of them is crossed again and again. It contains
+/// the limit, which is a point of the original ray, because triangles are closed. Its determinant depends only on the
+/// direction, which was not moved, so it is not 0. Its `t` tends to a number that is not negative, and not 0, because the
+/// origin lies on no triangle. This triangle is hit by exact arithmetic, so it is hit by `watertight`, whose answers are
+/// exact: wherever rounding errors may decide, it comes here. Rounding keeps `t > 0`, unless it underflows.
+///
+/// The same holds for a mesh with a border, such as a fan around a vertex, if the ray would hit it after every small move
+/// of the origin. A ray in the plane of a triangle misses that triangle and hits its neighbours.
+#[cold]
+fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
+    let (o, d, Triangle { a, b, c }) = (ray.origin, ray.direction, *triangle);
+    // The barycentric coordinates are to each other as the determinants |d  b-o  c-o|, |d  c-o  a-o| and |d  a-o  b-o|.
+    // A determinant is linear in each column, so expand the differences.
+    let [alpha, beta, gamma] =
+        [[b, c], [c, a], [a, b]].map(|[q, r]| sum_of_determinants([[d, q, r], [o, d, r], [q, d, o]]));
+    let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
+    // Reject the ray if two signs differ, if it lies in the plane of the triangle, and NaN.
+    let sum = alpha + beta + gamma;
+    if (least < 0.0 && most > 0.0) || sum == 0.0 || !sum.is_finite() {
+        return None;
     }
+    // t is |a-o  b-o  c-o| divided by the sum of these determinants.
+    let volume = sum_of_determinants([[a, b, c], [b, o, c], [o, a, c], [b, a, o]]);
+    let t = (volume / sum) as f32;
+    ray.contains(t).then_some(TriangleHit { t, beta: (beta / sum) as f32, gamma: (gamma / sum) as f32 })
+}
+
+/// The exact sum of the determinants of matrices with three columns, rounded once.
+fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
+    let terms = matrices.into_iter().flat_map(|columns| {
+        let [u, v, w] = columns.map(Vec3::as_dvec3);
+        [[0, 1, 2], [1, 2, 0], [2, 0, 1]].into_iter().flat_map(move |[i, j, k]| {
+            // A product of two single precision numbers is exact in double precision. A third factor makes it the sum of
+            // two doubles: the rounded product and its rounding error, which a fused multiply-add computes exactly.
+            [u[i] * v[j], -u[j] * v[i]].into_iter().flat_map(move |product| {
+                let rounded = product * w[k];
+                [rounded, product.mul_add(w[k], -rounded)]
+            })
+        })
+    });
+    exact_sum(terms)
 }
 // </solution>
 
 /// Computes the `t` at which `ray` enters and leaves `bounds`, as in stage 3, but never returns `None` for a box that
 /// the ray meets.
 ///
-/// This holds at corners, for flat boxes, far away, along faces and for directions of -0.0, with `t_min >= 0` and with
-/// `inverse_direction` finite wherever the direction is not 0. A box with a hit at `t` is entered at `t` or before. A
-/// box that the ray passes by at more than 64 roundings gives `None`, and so does the empty box. Neither result is ever
-/// NaN.
+/// This holds for every range, also for negative `t`, and for every direction: at corners, for flat boxes, far away,
+/// along faces, for a direction of -0.0, and where `inverse_direction` is infinite because `1/d` overflows. A box with a
+/// hit at `t` is entered at `t` or before. A box that the ray passes by at more than 64 roundings gives `None`, and so
+/// does the empty box. Neither result is ever NaN. Coordinates and directions are below 1e37 in size, and a `t` that is
+/// not 0 is above 1e-30.
 ///
-/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Multiply the exit by `1 + 2 γ₃`, the
-/// bound on its own three rounding errors, and the entry by `1 - 2 γ₃`, because a search compares the entry with the
-/// `t` of hits, which are rounded differently.
+/// Pitfall: widening boxes by 1e-5 has no effect at coordinates of 1000 and more. Move the exit later by `2 γ₃ |t|`,
+/// the bound on its own three rounding errors, and the entry earlier by as much, because a search compares the entry
+/// with the `t` of hits, which are rounded differently. A factor of `1 + 2 γ₃` moves a negative exit the wrong way.
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
     // Call the slab test of stage 3, which is conservative.
     slab(ray, inverse_direction, bounds)
-    // <stub> todo!("compare so that NaN changes nothing; make the exit a little later and the entry a little earlier")
+    // <stub> todo!("compare so that NaN changes nothing; make the exit a little later and the entry a little earlier, on both sides of 0")
     // </solution>
 }
 

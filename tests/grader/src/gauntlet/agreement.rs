@@ -1,12 +1,12 @@
 //! Compares searches with brute force over exact predicates. A search is right if its hit is one of the triangles that the
 //! ray meets first by exact arithmetic.
 
-use super::scenes;
 use crate::kits::Source;
 use crate::queue;
 use crate::worker::Worker;
 use anyhow::Result;
 use oracle::exact::{Body, meet, triangle};
+use oracle::gauntlet::job::job;
 use oracle::gauntlet::scenes::{HardScene, hard_scenes};
 use oracle::splitmix::Random;
 use raykata::bvh::PrimitiveHit;
@@ -126,7 +126,7 @@ pub fn all(reference: &Source, seed: u64, rays: u64) -> Result<Vec<Agreement>> {
 fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agreement> {
     let mut random = Random::new(seed, 21);
     let rays: Vec<Ray> = (0..rays).map(|_| scene.ray(&mut random)).collect();
-    let found_by = |quality: Quality| kit.first_hits(&scenes::job(&scene.triangles, quality), &rays);
+    let found_by = |quality: Quality| kit.first_hits(&job(&scene.triangles, quality), &rays);
     let with = |accelerator: Accelerator, leaf_size: u32| Quality {
         accelerator,
         leaf_size,

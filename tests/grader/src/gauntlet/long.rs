@@ -1,7 +1,7 @@
 //! The long run: hundreds of millions of rays at edges and vertices of closed meshes, in every structure of the reference,
 //! and at corners of boxes. A file stores the progress, so that a stopped run can be continued.
 
-use super::{scenes, secondary_rays};
+use super::secondary_rays;
 use crate::kits::Source;
 use crate::queue;
 use crate::report::{Thousands, bar_of_steps, make_folder_of};
@@ -9,9 +9,11 @@ use anyhow::{Context, Result, bail};
 use judge::gauntlet::Input;
 use judge::leak_table::leaks_of;
 use oracle::exact::aabb::overlap;
-use oracle::gauntlet::boxes::at_a_corner;
+use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
+use oracle::gauntlet::families::families;
+use oracle::gauntlet::job::job;
 use oracle::gauntlet::leaks::{Aim, aimed};
-use oracle::gauntlet::meshes::{Closed, closed};
+use oracle::gauntlet::meshes::Closed;
 use oracle::splitmix::Random;
 use raykata::kit::{Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
@@ -44,47 +46,47 @@ struct Done {
     failures: u64,
 }
 
-/// The structure in which closed meshes are searched.
+/// The structure in which closed meshes are searched, with its name in the table.
 #[derive(Clone, Copy)]
-enum Structure {
-    BruteForce,
-    Bvh(Split),
+struct Structure {
+    name: &'static str,
+    accelerator: Accelerator,
+    split: Split,
 }
 
-impl Structure {
-    const ALL: [Structure; 4] = [
-        Structure::BruteForce,
-        Structure::Bvh(Split::ObjectMedian),
-        Structure::Bvh(Split::SpatialMedian),
-        Structure::Bvh(Split::SurfaceArea),
-    ];
-
-    fn name(self) -> &'static str {
-        match self {
-            Structure::BruteForce => "brute force",
-            Structure::Bvh(Split::ObjectMedian) => "bvh, object median",
-            Structure::Bvh(Split::SpatialMedian) => "bvh, spatial median",
-            Structure::Bvh(Split::SurfaceArea) => "bvh, surface area",
-        }
+/// Every structure that finds hits of single rays in another way.
+const STRUCTURES: [Structure; 9] = {
+    const fn new(name: &'static str, accelerator: Accelerator, split: Split) -> Structure {
+        Structure { name, accelerator, split }
     }
-}
+    [
+        new("brute force", Accelerator::BruteForce, Split::SurfaceArea),
+        new("bvh, object median", Accelerator::Bvh, Split::ObjectMedian),
+        new("bvh, spatial median", Accelerator::Bvh, Split::SpatialMedian),
+        new("bvh, surface area", Accelerator::Bvh, Split::SurfaceArea),
+        new("grid", Accelerator::Grid, Split::SurfaceArea),
+        new("octree", Accelerator::Octree, Split::SurfaceArea),
+        new("octree by cells", Accelerator::OctreeByCells, Split::SurfaceArea),
+        new("kd-tree", Accelerator::KdTree, Split::SurfaceArea),
+        new("bsp tree", Accelerator::Bsp, Split::SurfaceArea),
+    ]
+};
 
 /// Counts the rays that start inside a closed mesh and miss it. Each ray has the index of a vertex near its hit.
 fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]) -> u64 {
-    match structure {
-        Structure::BruteForce => leaks_of(mesh, rays, |inputs: &[Input]| {
+    // Test first the triangles around the vertex at which a ray is aimed: nearly every ray hits one of them.
+    if structure.accelerator == Accelerator::BruteForce {
+        return leaks_of(mesh, rays, |inputs: &[Input]| {
             let queries: Vec<TriangleQuery> =
                 inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
             kit.watertight(&queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
-        }),
-        Structure::Bvh(split) => {
-            let quality =
-                Quality { accelerator: Accelerator::Bvh, split, leaf_size: 4, ..Quality::default() };
-            let rays: Vec<Ray> = rays.iter().map(|(ray, _)| *ray).collect();
-            let hits = kit.first_hits(&scenes::job(&mesh.all(), quality), &rays);
-            hits.iter().filter(|hit| hit.is_none()).count() as u64
-        }
+        });
     }
+    let Structure { accelerator, split, .. } = structure;
+    let quality = Quality { accelerator, split, leaf_size: 4, ..Quality::default() };
+    let rays: Vec<Ray> = rays.iter().map(|(ray, _)| *ray).collect();
+    let hits = kit.first_hits(&job(&mesh.all(), quality), &rays);
+    hits.iter().filter(|hit| hit.is_none()).count() as u64
 }
 
 /// The kind of a piece of work.
@@ -99,14 +101,14 @@ enum Trial {
 impl Trial {
     fn all() -> Vec<Trial> {
         let meshes =
-            Structure::ALL.into_iter().flat_map(|structure| Aim::ALL.map(|aim| Trial::Mesh(structure, aim)));
+            STRUCTURES.into_iter().flat_map(|structure| Aim::ALL.map(|aim| Trial::Mesh(structure, aim)));
         meshes.chain([Trial::Slab, Trial::SelfHit, Trial::Contact]).collect()
     }
 
     fn name(self) -> String {
         match self {
-            Trial::Mesh(structure, Aim::Edge) => format!("{}, edges", structure.name()),
-            Trial::Mesh(structure, Aim::Vertex) => format!("{}, vertices", structure.name()),
+            Trial::Mesh(structure, Aim::Edge) => format!("{}, edges", structure.name),
+            Trial::Mesh(structure, Aim::Vertex) => format!("{}, vertices", structure.name),
             Trial::Slab => "boxes, at corners".into(),
             Trial::SelfHit => "own surface, hit again".into(),
             Trial::Contact => "64 floats away, missed".into(),
@@ -120,11 +122,15 @@ impl Trial {
             Trial::SelfHit => secondary_rays::self_hits(kit, &mut random),
             Trial::Contact => secondary_rays::lost_contacts(kit, &mut random),
             Trial::Slab => {
-                let queries: Vec<SlabQuery> = (0..PIECE).filter_map(|_| at_a_corner(&mut random)).collect();
+                let queries: Vec<SlabQuery> = (0..PIECE)
+                    .filter_map(
+                        |n| if n % 2 == 0 { at_a_corner(&mut random) } else { of_any_size(&mut random) },
+                    )
+                    .collect();
                 let meets = |query: &SlabQuery| {
                     overlap(&query.ray, &query.bounds).is_some_and(|overlap| overlap.verdict.is_hit())
                 };
-                let answers = kit.slab(&queries);
+                let answers = kit.conservative_slab(&queries);
                 let missed =
                     queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
                 Ok(missed.count() as u64)
@@ -163,7 +169,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
     // Run them on all cores and store the progress regularly.
-    let meshes = closed();
+    let meshes = families();
     let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
     let bar = bar_of_steps(work.len());
     let state = Mutex::new((state, Instant::now()));

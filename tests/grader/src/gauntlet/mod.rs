@@ -5,7 +5,6 @@ pub mod agreement;
 mod long;
 mod methods;
 mod printed;
-mod scenes;
 mod secondary_rays;
 
 use crate::kits::{Need, Source, Which};

@@ -24,14 +24,15 @@ pub fn aimed(mesh: &Closed, aim: Aim, random: &mut Random) -> (Ray, u32) {
     let corners = mesh.triangles[random.below(mesh.triangles.len() as u64) as usize];
     let side = random.below(3) as usize;
     let (vertex, next) = (corners[side], corners[(side + 1) % 3]);
-    let origin = mesh.inside + mesh.room * random.in_cube();
+    let origin = mesh.origin(random);
     let [from, to] = [vertex, next].map(|index| mesh.positions[index as usize]);
     let target = match aim {
         Aim::Edge => from.lerp(to, random.unit()),
         Aim::Vertex => from,
     };
     let way = target - origin;
-    let direction = if random.below(2) == 0 { way } else { way.normalize_or(way) };
+    let unit = way.as_dvec3().normalize_or_zero().as_vec3();
+    let direction = if random.below(2) == 0 { way } else { unit };
     (Ray::new(origin, direction), vertex)
 }
 
