@@ -19,6 +19,9 @@ pub struct Broken {
     pub source: &'static str,
     /// The known mistake that gives this answer, if there is one.
     pub diagnosis: Option<String>,
+    /// All known mistakes that give this answer, the most specific one first; `None` if the check does not
+    /// [list](Broken::explained_by) them.
+    pub mistakes: Option<Vec<&'static str>>,
     /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
     /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
@@ -52,6 +55,7 @@ impl Broken {
             expected: expected.into(),
             source,
             diagnosis: None,
+            mistakes: None,
             picture: None,
         }
     }
@@ -59,6 +63,25 @@ impl Broken {
     /// Adds the known mistake that the answer looks like, if there is one.
     pub fn looks_like(self, diagnosis: Option<impl Into<String>>) -> Self {
         Broken { diagnosis: diagnosis.map(Into::into), ..self }
+    }
+
+    /// Adds the known mistakes that are proven for this answer, the most specific one first. Each is its text, and
+    /// whether the mistake gives exactly this answer to exactly this input.
+    ///
+    /// One answer is weak evidence, so the message names a mistake only if it explains every failing input of the batch:
+    /// see [`first_broken`].
+    pub fn explained_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
+        let proven: Vec<_> = mistakes.into_iter().filter_map(|(gives, text)| gives.then_some(text)).collect();
+        Broken { diagnosis: proven.first().map(|text| (*text).to_owned()), mistakes: Some(proven), ..self }
+    }
+
+    /// Whether the mistake that `diagnosis` names is proven for this answer, or none is named.
+    pub(crate) fn is_explained_by(&self, diagnosis: Option<&str>) -> bool {
+        match (&self.mistakes, diagnosis) {
+            (_, None) => true,
+            (Some(mistakes), Some(diagnosis)) => mistakes.contains(&diagnosis),
+            (None, Some(_)) => false,
+        }
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
@@ -72,6 +95,26 @@ impl Broken {
         }
         message + &next_commands(rubric.stage, check)
     }
+}
+
+/// The first broken law of a batch, and its index. Of the [mistakes](Broken::explained_by) that explain it, the message
+/// names the first one that explains all other failing inputs as well, and none if there is no such mistake.
+pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
+    let mut failing =
+        outcomes.into_iter().enumerate().filter_map(|(index, outcome)| Some((index, outcome.err()?)));
+    let (index, mut first) = failing.next()?;
+    if let Some(mistakes) = &mut first.mistakes {
+        for (_, other) in failing {
+            mistakes.retain(|mistake| other.is_explained_by(Some(mistake)));
+        }
+        first.diagnosis = mistakes.first().map(|text| (*text).to_owned());
+    }
+    Some((index, first))
+}
+
+/// The result for a batch: the law that [`first_broken`] returns.
+pub fn all_hold(outcomes: Vec<CheckResult>) -> CheckResult {
+    first_broken(outcomes).map_or(Ok(()), |(_, broken)| Err(broken))
 }
 
 /// The last two lines of every failure.
@@ -100,6 +143,19 @@ fn shorten(text: &str, lines: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mistake_is_named_only_if_it_explains_every_failing_input() {
+        let fails = |mistakes: &[&'static str]| {
+            Err(Broken::default().explained_by(mistakes.iter().map(|mistake| (true, *mistake))))
+        };
+        let named = |outcomes| first_broken(outcomes).map(|(index, broken)| (index, broken.diagnosis));
+        assert_eq!(named(vec![Ok(()), Ok(())]), None);
+        assert_eq!(named(vec![Ok(()), fails(&["a", "b"])]), Some((1, Some("a".into()))));
+        assert_eq!(named(vec![fails(&["a", "b"]), Ok(()), fails(&["b", "c"])]), Some((0, Some("b".into()))));
+        assert_eq!(named(vec![fails(&["a"]), fails(&["b"])]), Some((0, None)));
+        assert_eq!(named(vec![fails(&["a"]), fails(&[])]), Some((0, None)));
+    }
 
     #[test]
     fn the_longest_message_has_twelve_lines() {
