@@ -18,14 +18,18 @@ pub struct Broken {
     /// The origin of `expected`: a closed form, double precision, brute force …
     pub source: &'static str,
     /// The known mistake that gives this answer, if there is one.
-    pub diagnosis: Option<String>,
+    pub diagnosis: Option<Box<str>>,
     /// All known mistakes that give this answer, the most specific one first; `None` if the check does not
     /// [list](Broken::explained_by) them.
-    pub mistakes: Option<Vec<&'static str>>,
+    pub mistakes: Option<Box<Mistakes>>,
     /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
     /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
 }
+
+/// The texts of the known mistakes that give an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistakes(pub Vec<&'static str>);
 
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
@@ -62,7 +66,7 @@ impl Broken {
 
     /// Adds the known mistake that the answer looks like, if there is one.
     pub fn looks_like(self, diagnosis: Option<impl Into<String>>) -> Self {
-        Broken { diagnosis: diagnosis.map(Into::into), ..self }
+        Broken { diagnosis: diagnosis.map(|text| text.into().into_boxed_str()), ..self }
     }
 
     /// Adds the known mistakes that are proven for this answer, the most specific one first. Each is its text, and
@@ -72,14 +76,21 @@ impl Broken {
     /// see [`first_broken`].
     pub fn explained_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
         let proven: Vec<_> = mistakes.into_iter().filter_map(|(gives, text)| gives.then_some(text)).collect();
-        Broken { diagnosis: proven.first().map(|text| (*text).to_owned()), mistakes: Some(proven), ..self }
+        let mistakes = Some(Box::new(Mistakes(proven)));
+        Broken { mistakes, ..self }.most_specific()
+    }
+
+    /// With the first mistake as its diagnosis.
+    fn most_specific(self) -> Self {
+        let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());
+        Broken { diagnosis: first.map(|text| (*text).into()), ..self }
     }
 
     /// Whether the mistake that `diagnosis` names is proven for this answer, or none is named.
     pub(crate) fn is_explained_by(&self, diagnosis: Option<&str>) -> bool {
         match (&self.mistakes, diagnosis) {
             (_, None) => true,
-            (Some(mistakes), Some(diagnosis)) => mistakes.contains(&diagnosis),
+            (Some(mistakes), Some(diagnosis)) => mistakes.0.contains(&diagnosis),
             (None, Some(_)) => false,
         }
     }
@@ -103,13 +114,11 @@ pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
     let mut failing =
         outcomes.into_iter().enumerate().filter_map(|(index, outcome)| Some((index, outcome.err()?)));
     let (index, mut first) = failing.next()?;
-    if let Some(mistakes) = &mut first.mistakes {
-        for (_, other) in failing {
-            mistakes.retain(|mistake| other.is_explained_by(Some(mistake)));
-        }
-        first.diagnosis = mistakes.first().map(|text| (*text).to_owned());
+    let Some(mistakes) = &mut first.mistakes else { return Some((index, first)) };
+    for (_, other) in failing {
+        mistakes.0.retain(|mistake| other.is_explained_by(Some(mistake)));
     }
-    Some((index, first))
+    Some((index, first.most_specific()))
 }
 
 /// The result for a batch: the law that [`first_broken`] returns.

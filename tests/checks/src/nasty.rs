@@ -153,7 +153,7 @@ mod tests {
         let units = draw(unit());
         assert!(units.iter().all(|v| (v.as_dvec3().length() - 1.0).abs() < 4.0 * U));
         for axis in AXES {
-            assert!(units.iter().any(|v| *v == axis) && units.iter().any(|v| *v == -axis));
+            assert!(units.contains(&axis) && units.contains(&-axis));
             let slanted = |v: &&Vec3| (1e-6..1e-4).contains(&v.cross(axis).length());
             assert!(units.iter().filter(slanted).count() > 4);
         }
