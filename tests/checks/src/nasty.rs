@@ -58,6 +58,26 @@ fn rounded(v: DVec3) -> Vec3 {
     v.normalize().as_vec3()
 }
 
+/// A fixed list of unit vectors of all kinds, for checks that go through a list: along each axis in both directions, with
+/// zeros of either sign; almost parallel to an axis; diagonal; and in between.
+pub fn directions() -> Vec<Vec3> {
+    let mut all = Vec::new();
+    for axis in AXES {
+        for sign in [1.0, -1.0] {
+            all.extend([
+                sign * axis,
+                axis * Vec3::splat(sign) + Vec3::ZERO,
+                rounded(f64::from(sign) * axis.as_dvec3() + DVec3::new(1e-4, -2e-4, 1e-4)),
+                rounded(f64::from(sign) * axis.as_dvec3() + DVec3::new(0.05, 0.04, -0.03)),
+            ]);
+        }
+    }
+    let slanted = [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1.0, 0.0, -1.0), (0.0, -1.0, -1.0)];
+    let others = [(0.3, 0.8, -0.5), (-0.7, 0.2, 0.6), (0.1, -0.9, 0.3), (0.48, 0.6, -0.64)];
+    all.extend(slanted.into_iter().chain(others).map(|(x, y, z)| rounded(DVec3::new(x, y, z))));
+    all
+}
+
 /// The coordinates of a point of a small integer lattice, in `-reach..=reach`. Sums and products of a few of them are exact,
 /// so points often lie exactly on a line, in a plane or on a bound.
 pub fn lattice(reach: i32) -> impl Strategy<Value = Vec3> + Clone {
