@@ -11,15 +11,17 @@ use raykata::kit::{LightSample, Surface};
 use raykata::material::Material;
 use raykata::ray::Ray;
 
-/// The unit normal for shading, on the viewer's side: the `interpolated` normal on a smooth surface, and the
-/// `geometric` normal otherwise.
+/// The unit normal for shading: the `interpolated` normal on a smooth surface, and the `geometric` normal otherwise, each
+/// on the side of the surface from which the ray comes.
 ///
 /// `direction` is the direction of the ray that comes from the viewer. `geometric` has unit length; it is negated if
-/// its dot product with `direction` is above 0. `interpolated` has any length and either sign; it is normalized, and
-/// negated if its dot product with the turned geometric normal is below 0. If `interpolated` is `None`, has length 0
-/// or is NaN, the turned geometric normal is returned. For a dot product of 0 either sign passes.
+/// its dot product with `direction` is above 0. `interpolated` has either sign and any length between 1e-18 and 1e18; it
+/// is normalized, and negated if its dot product with the turned geometric normal is below 0. If `interpolated` is
+/// `None`, has length 0 or is NaN, the turned geometric normal is returned. For a dot product of 0 either sign passes.
 ///
-/// Pitfall: the average of several normals may be zero or NaN, which has no direction.
+/// Pitfall: the average of several normals may be zero or NaN, which has no direction. Near the silhouette of a smooth
+/// mesh the interpolated normal may point away from the viewer, who still sees the front: the geometric normal decides
+/// which side is the front, not `direction`.
 ///
 /// Slide "Smooth Shading".
 pub fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3 {
@@ -39,12 +41,12 @@ pub fn diffuse_term(normal: Vec3, to_light: Vec3) -> f32 {
 /// The specular term of the Phong model: `cosⁿ φ`, where φ is the angle between the reflected light and the viewer,
 /// and n is `exponent`.
 ///
-/// All vectors have unit length, and `exponent` is at least 0. The result is 0 if the light is behind the surface
-/// (`cos θ < 0`, with θ as in [`diffuse_term`]) or if `cos φ < 0`. This holds for every exponent, also for 0. If one of
-/// the two cosines is 0, both 0 and the power pass.
+/// All vectors have unit length, and `exponent` is at least 0; for an exponent of 0 any result in `0..=1` passes. The
+/// result is 0 if the light is behind the surface (`cos θ < 0`, with θ as in [`diffuse_term`]) or if `cos φ < 0`. If one
+/// of the two cosines is 0, both 0 and the power pass.
 ///
-/// Pitfall: a negative cosine to an even power is positive, and to a fractional power it is NaN. `max(0, cos φ)` to the
-/// power of 0 is 1.
+/// Pitfall: a negative cosine to an even power is positive, and to a fractional power it is NaN. The reflection of a light
+/// behind the surface may still point to the viewer, with `cos φ > 0`.
 ///
 /// Slide "Local illumination".
 pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32 {
@@ -58,11 +60,14 @@ pub fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f3
 /// direction of the light. It ends just before the light, between 0.99 of `light.distance` and the distance itself (not
 /// included); an infinite distance stays infinite. It starts on the viewer's side of the surface. The distance of its
 /// start from the point along the geometric normal n is at least `error·|n|`, because the true surface may be that far
-/// from the rounded point. It is at most `4 error·|n|` plus 64 rounding steps of the largest coordinate, so that close
-/// objects are hit.
+/// from the rounded point; rounding must not make it more than 1 % smaller. The distance is at most `4 error·|n|` plus 64
+/// rounding steps of the largest coordinate, so that close objects are hit. Here `|n|` has the absolute values of the
+/// three coordinates of n.
 ///
 /// Pitfall: a ray that starts at the rounded point hits its own surface in about half of all cases (shadow acne), and a
-/// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales.
+/// ray over the whole distance hits the light itself. A fixed offset is too small or too large at other scales. The sum
+/// `point + offset n` is rounded, too: move each coordinate one float further (`next_up`, `next_down`), or move twice as
+/// far.
 ///
 /// Slides "Shadow ray" and "Cost of shadow computation".
 #[inline]
@@ -76,7 +81,7 @@ pub fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray> {
 /// `material.ambient`, `diffuse`, `specular` and `exponent`. The cosines are those of [`diffuse_term`] and
 /// [`specular_term`] with `surface.shading_normal`. V_i is 1 if `visible(i, ray)` is true for the ray of
 /// [`shadow_ray`], and 0 otherwise. Call `visible` before you add a light, at most once per light. Do not call it if
-/// `shadow_ray` returns `None` or if the light would add 0. The colour is not clamped.
+/// `shadow_ray` returns `None` or if the light would add 0 in every channel. The colour is not clamped.
 ///
 /// Pitfall: 1000 × 1000 pixels with 10 lights need at most 10,000,000 shadow rays. A light behind the surface, or one
 /// that adds 0, needs none.

@@ -188,7 +188,9 @@ pub fn scatter(
 ///
 /// It has the direction `secondary.direction` and no end: `t_max` is infinite. A reflected ray starts on the side of
 /// `surface.geometric_normal`, and a refracted ray on the other side. The distance of its start from the point along
-/// the normal n is at least `error·|n|`, and at most `4 error·|n|` plus 64 rounding steps of the largest coordinate.
+/// the geometric normal n is as for [`shadow_ray`](crate::stage4_shading::shadow_ray): at least `error·|n|`, where
+/// rounding must not make it more than 1 % smaller, and at most `4 error·|n|` plus 64 rounding steps of the largest
+/// coordinate.
 ///
 /// Pitfall: the slide starts the ray at `hit.Point()`. That point is rounded, so about half of all rays that start
 /// there hit their own surface (self-intersection). Move the point by its error, as for shadow rays.

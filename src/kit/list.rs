@@ -210,7 +210,7 @@ macro_rules! student_functions {
                 |q: TermQuery| -> f32 { F::diffuse_term(q.normal, q.to_light) }
                 /// The specular term of the Phong model: `cosⁿ φ` between the reflected light and the viewer;
                 /// 0 if that cosine is negative or the light is behind the surface. All directions have unit
-                /// length, and `exponent >= 0`.
+                /// length, and `exponent >= 0`; for 0 any result in `0..=1` passes.
                 SpecularTerm fn specular_term(normal: Vec3, to_light: Vec3, to_viewer: Vec3, exponent: f32) -> f32
                     = stage4_shading::specular_term;
                 |q: TermQuery| -> f32 { F::specular_term(q.normal, q.to_light, q.to_viewer, q.exponent) }
@@ -219,8 +219,9 @@ macro_rules! student_functions {
                 ShadowRay fn shadow_ray(surface: &Surface, light: &LightSample) -> Option<Ray>
                     = stage4_shading::shadow_ray;
                 |q: ShadowQuery| -> Option<Ray> { F::shadow_ray(&q.surface, &q.light) }
-                /// The unit normal for shading on the side from which a ray of direction `direction` comes: the
-                /// interpolated one if it has a direction, and the geometric one otherwise.
+                /// The unit normal for shading, on the side of the surface from which a ray of direction
+                /// `direction` comes: the interpolated one if it has a direction, and the geometric one
+                /// otherwise. The geometric normal decides which side that is.
                 ShadingNormal fn shading_normal(geometric: Vec3, interpolated: Option<Vec3>, direction: Vec3) -> Vec3
                     = stage4_shading::shading_normal;
                 |(geometric, smooth, direction): (Vec3, Option<Vec3>, Vec3)| -> Vec3 { F::shading_normal(*geometric, *smooth, *direction) }
@@ -232,14 +233,15 @@ macro_rules! student_functions {
                 ) -> Vec3
                     = stage4_shading::shade;
                 |q: ShadeQuery| -> ShadeAnswer {
-                    let mut traced = Vec::new();
-                    let visible = |light: usize, _: &Ray| {
+                    let (mut traced, mut rays) = (Vec::new(), Vec::new());
+                    let visible = |light: usize, ray: &Ray| {
                         traced.push(light);
+                        rays.push(*ray);
                         q.visible[light]
                     };
                     let color =
                         F::shade(&q.surface, q.to_viewer, &q.material, q.ambient, &q.lights, visible);
-                    ShadeAnswer { color, traced }
+                    ShadeAnswer { color, traced, rays }
                 }
                 /// The byte `0..=255` for a component of linear light with gamma 2, rounded to nearest. Input
                 /// is clamped to `0..=1`.

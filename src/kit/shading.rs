@@ -1,6 +1,7 @@
 //! Stage 4, shading and shadows: queries and answers.
 
 use crate::material::Material;
+use crate::ray::Ray;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -75,4 +76,6 @@ pub struct ShadeAnswer {
     pub color: Vec3,
     /// For each shadow ray that was traced, the index of its light, in order.
     pub traced: Vec<usize>,
+    /// The shadow rays that were traced, in the same order.
+    pub rays: Vec<Ray>,
 }

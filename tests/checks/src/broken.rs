@@ -18,11 +18,18 @@ pub struct Broken {
     /// The origin of `expected`: a closed form, double precision, brute force …
     pub source: &'static str,
     /// The known mistake that gives this answer, if there is one.
-    pub diagnosis: Option<String>,
+    pub diagnosis: Option<Box<str>>,
+    /// All known mistakes that give this answer, the most specific one first; `None` if the check does not
+    /// [list](Broken::explained_by) them.
+    pub mistakes: Option<Box<Mistakes>>,
     /// Reference, yours and difference side by side, as a PNG file, if pictures were compared in a process that
     /// [writes no files](crate::golden::seal).
     pub picture: Option<Box<Png>>,
 }
+
+/// The texts of the known mistakes that give an answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistakes(pub Vec<&'static str>);
 
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,13 +59,40 @@ impl Broken {
             expected: expected.into(),
             source,
             diagnosis: None,
+            mistakes: None,
             picture: None,
         }
     }
 
     /// Adds the known mistake that the answer looks like, if there is one.
     pub fn looks_like(self, diagnosis: Option<impl Into<String>>) -> Self {
-        Broken { diagnosis: diagnosis.map(Into::into), ..self }
+        Broken { diagnosis: diagnosis.map(|text| text.into().into_boxed_str()), ..self }
+    }
+
+    /// Adds the known mistakes that are proven for this answer, the most specific one first. Each is its text, and
+    /// whether the mistake gives exactly this answer to exactly this input.
+    ///
+    /// One answer is weak evidence, so the message names a mistake only if it explains every failing input of the batch:
+    /// see [`first_broken`].
+    pub fn explained_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
+        let proven: Vec<_> = mistakes.into_iter().filter_map(|(gives, text)| gives.then_some(text)).collect();
+        let mistakes = Some(Box::new(Mistakes(proven)));
+        Broken { mistakes, ..self }.most_specific()
+    }
+
+    /// With the first mistake as its diagnosis.
+    fn most_specific(self) -> Self {
+        let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());
+        Broken { diagnosis: first.map(|text| (*text).into()), ..self }
+    }
+
+    /// Whether the mistake that `diagnosis` names is proven for this answer, or none is named.
+    pub(crate) fn is_explained_by(&self, diagnosis: Option<&str>) -> bool {
+        match (&self.mistakes, diagnosis) {
+            (_, None) => true,
+            (Some(mistakes), Some(diagnosis)) => mistakes.0.contains(&diagnosis),
+            (None, Some(_)) => false,
+        }
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
@@ -72,6 +106,24 @@ impl Broken {
         }
         message + &next_commands(rubric.stage, check)
     }
+}
+
+/// The first broken law of a batch, and its index. Of the [mistakes](Broken::explained_by) that explain it, the message
+/// names the first one that explains all other failing inputs as well, and none if there is no such mistake.
+pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
+    let mut failing =
+        outcomes.into_iter().enumerate().filter_map(|(index, outcome)| Some((index, outcome.err()?)));
+    let (index, mut first) = failing.next()?;
+    let Some(mistakes) = &mut first.mistakes else { return Some((index, first)) };
+    for (_, other) in failing {
+        mistakes.0.retain(|mistake| other.is_explained_by(Some(mistake)));
+    }
+    Some((index, first.most_specific()))
+}
+
+/// The result for a batch: the law that [`first_broken`] returns.
+pub fn all_hold(outcomes: Vec<CheckResult>) -> CheckResult {
+    first_broken(outcomes).map_or(Ok(()), |(_, broken)| Err(broken))
 }
 
 /// The last two lines of every failure.
@@ -100,6 +152,19 @@ fn shorten(text: &str, lines: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mistake_is_named_only_if_it_explains_every_failing_input() {
+        let fails = |mistakes: &[&'static str]| {
+            Err(Broken::default().explained_by(mistakes.iter().map(|mistake| (true, *mistake))))
+        };
+        let named = |outcomes| first_broken(outcomes).map(|(index, broken)| (index, broken.diagnosis));
+        assert_eq!(named(vec![Ok(()), Ok(())]), None);
+        assert_eq!(named(vec![Ok(()), fails(&["a", "b"])]), Some((1, Some("a".into()))));
+        assert_eq!(named(vec![fails(&["a", "b"]), Ok(()), fails(&["b", "c"])]), Some((0, Some("b".into()))));
+        assert_eq!(named(vec![fails(&["a"]), fails(&["b"])]), Some((0, None)));
+        assert_eq!(named(vec![fails(&["a"]), fails(&[])]), Some((0, None)));
+    }
 
     #[test]
     fn the_longest_message_has_twelve_lines() {

@@ -11,6 +11,8 @@ mod drawn;
 pub mod generate;
 pub mod golden;
 pub mod judge;
+pub mod nasty;
+pub mod offset;
 pub mod paste;
 pub mod picture;
 pub mod rubric;

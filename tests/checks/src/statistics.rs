@@ -52,13 +52,16 @@ pub fn mean_score(values: &[f64], expected: f64) -> f64 {
     if standard_error > 0.0 { (mean - expected) / standard_error } else { (mean - expected) * f64::MAX }
 }
 
-/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call. `diagnosis` may name a known
-/// mistake from the counts of the cells; if it returns an empty text, the pattern of the counts is described.
+/// The known mistakes, each with whether it is proven by the answers.
+pub type Mistakes = Vec<(bool, &'static str)>;
+
+/// Checks that `places`, each in the unit square, cover it evenly. `what` is the call. `mistakes` gets the counts of the
+/// cells; if none of its mistakes is proven, the pattern of the counts is described.
 pub fn covers_evenly(
     what: &str,
     places: &[(f64, f64)],
     axes: [&str; 2],
-    diagnosis: impl Fn(&[u64]) -> &'static str,
+    mistakes: impl Fn(&[u64]) -> Mistakes,
 ) -> CheckResult {
     let mut counts = vec![0; (CELLS * CELLS) as usize];
     for &(x, y) in places {
@@ -95,11 +98,8 @@ pub fn covers_evenly(
         format!("about {expected:.0}"),
         "chi-square, 1 false alarm in 10 million",
     );
-    let diagnosis = diagnosis(&counts);
-    Err(broken.looks_like(match diagnosis.is_empty() {
-        true => pattern(&counts, axes),
-        false => Some(diagnosis.to_owned()),
-    }))
+    let proven = mistakes(&counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
+    Err(broken.looks_like(proven.or_else(|| pattern(&counts, axes))))
 }
 
 /// A description of uneven counts that does not depend on the sampler.
@@ -119,13 +119,35 @@ fn pattern(counts: &[u64], axes: [&str; 2]) -> Option<String> {
             ));
         }
     }
-    let hit = counts.iter().filter(|count| **count > 0).count();
-    (hit <= counts.len() / 2)
-        .then(|| "one random number for both: use u.x for one of them and u.y for the other".into())
+    None
 }
 
-/// Checks that the mean of `values` is `expected`.
-pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> CheckResult {
+/// Whether one of the two random numbers is not used: the answers stay the same if only this number changes. `sample` returns
+/// the answers for pairs of random numbers.
+pub fn unused_number<A: PartialEq>(sample: impl Fn(&[Vec2]) -> Vec<A>) -> Mistakes {
+    let shares = [0.1f32, 0.3, 0.45, 0.62, 0.87];
+    let row =
+        |u: Vec2| shares.map(|share| if u.x < 0.0 { Vec2::new(share, u.y) } else { Vec2::new(u.x, share) });
+    let ignores = |first: bool| {
+        shares.iter().all(|&other| {
+            let answers = sample(&row(if first { Vec2::new(-1.0, other) } else { Vec2::new(other, -1.0) }));
+            answers.iter().all(|answer| *answer == answers[0])
+        })
+    };
+    vec![
+        (ignores(true) && ignores(false), "your answer does not depend on u"),
+        (ignores(true), "one random number for both: you do not use u.x"),
+        (ignores(false), "one random number for both: you do not use u.y"),
+    ]
+}
+
+/// Checks that the mean of `values` is `expected`. `mistakes` gets the mean.
+pub fn has_mean(
+    what: &str,
+    values: &[f64],
+    expected: f64,
+    mistakes: impl Fn(f64) -> Mistakes,
+) -> CheckResult {
     if mean_score(values, expected).abs() <= TWO_SIDED {
         return Ok(());
     }
@@ -137,7 +159,7 @@ pub fn has_mean(what: &str, values: &[f64], expected: f64, diagnosis: &str) -> C
         format!("{expected:.5}"),
         "closed form; t-test, 1 false alarm in 10 million",
     );
-    Err(broken.looks_like((!diagnosis.is_empty()).then_some(diagnosis)))
+    Err(broken.explained_by(mistakes(mean)))
 }
 
 /// The number of hits per column of the cells.

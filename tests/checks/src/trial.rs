@@ -76,7 +76,26 @@ impl<'a> Trial<'a> {
     where
         S::Value: Clone + Send + Sync + 'static,
     {
-        self.hold(cases, &Judged { inputs, judge }, Location::caller())
+        self.hold(cases, &Judged { inputs, judge, chosen: Vec::new() }, Location::caller())
+    }
+
+    /// The same as [`Trial::forall`], with the inputs `chosen` before those that are drawn, in one batch.
+    ///
+    /// A chosen input is reported as it is. Choose inputs to which every known mistake gives another answer: a message
+    /// names a mistake only if it [explains](Broken::explained_by) all failing inputs.
+    #[track_caller]
+    pub fn forall_and<S: Strategy>(
+        &self,
+        chosen: &[S::Value],
+        cases: usize,
+        inputs: S,
+        judge: impl Fn(&[S::Value]) -> Vec<CheckResult>,
+    ) -> CheckResult
+    where
+        S::Value: Clone + Send + Sync + 'static,
+    {
+        let chosen = chosen.to_vec();
+        self.hold(cases, &Judged { inputs, judge, chosen }, Location::caller())
     }
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.
@@ -88,9 +107,7 @@ impl<'a> Trial<'a> {
             None => draw(),
         };
         let broken = match kit_error::catch(|| law.judge(&*values)) {
-            Ok(outcomes) => {
-                outcomes.into_iter().enumerate().find_map(|(i, outcome)| Some((i, outcome.err()?)))
-            }
+            Ok(outcomes) => broken::first_broken(outcomes),
             // The code panicked on an input of the batch: judge the inputs one by one to find it.
             Err(KitError::Panicked { .. }) => (0..law.count(&*values)).find_map(|i| {
                 let (judge, input) = (|| law.judge_one(&*values, i), || law.words(&*values, i));
@@ -144,17 +161,19 @@ trait Tree {
     fn words(&self) -> String;
 }
 
-struct Judged<S, J> {
+struct Judged<S: Strategy, J> {
     inputs: S,
     judge: J,
+    /// The inputs before those that are drawn.
+    chosen: Vec<S::Value>,
 }
 
 impl<S: Strategy, J: Fn(&[S::Value]) -> Vec<CheckResult>> Law for Judged<S, J>
 where
-    S::Value: Send + Sync + 'static,
+    S::Value: Clone + Send + Sync + 'static,
 {
     fn draw(&self, cases: usize, runner: &mut TestRunner) -> Values {
-        let mut values: Vec<S::Value> = Vec::with_capacity(cases);
+        let mut values = self.chosen.clone();
         for _ in 0..cases {
             if let Ok(tree) = self.inputs.new_tree(runner) {
                 values.push(tree.current());
@@ -183,7 +202,9 @@ where
     }
 
     fn tree<'a>(&'a self, cases: usize, runner: &mut TestRunner, index: usize) -> Option<Box<dyn Tree + 'a>> {
-        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(index)?;
+        // A chosen input is small already.
+        let drawn = index.checked_sub(self.chosen.len())?;
+        let tree = (0..cases).filter_map(|_| self.inputs.new_tree(runner).ok()).nth(drawn)?;
         Some(Box::new(JudgedTree { tree, judge: &self.judge }))
     }
 }
@@ -223,19 +244,25 @@ fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -
     }
 }
 
-/// Searches for a smaller input that breaks the law as well.
+/// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
 fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
+    // All failing inputs together prove the mistake, so a smaller input keeps its diagnosis.
+    let proven = smallest.mistakes.as_ref().map(|_| smallest.diagnosis.clone());
+    let mistake = proven.clone().flatten();
     let mut steps = 0;
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
         going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) => {
+            Some(broken) if broken.is_explained_by(mistake.as_deref()) => {
                 smallest = broken;
                 tree.simplify()
             }
-            None => tree.complicate(),
+            _ => tree.complicate(),
         };
+    }
+    if let Some(diagnosis) = proven {
+        smallest.diagnosis = diagnosis;
     }
     smallest
 }

@@ -1,95 +1,92 @@
 //! Gamma 2: bytes from linear light, and linear light from bytes.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::paste::Paste;
 
 pub(super) fn gamma_is_two(trial: &Trial<'_>) -> CheckResult {
     let bytes: Vec<u8> = (0..=255).collect();
-    let linear = trial.kit.decode_gamma(&bytes);
-    for (&byte, &yours) in bytes.iter().zip(&linear) {
-        let expected = (f64::from(byte) / 255.0).powi(2);
-        if (f64::from(yours) - expected).abs() > 1e-6 {
-            let diagnosis = match () {
-                () if (f64::from(yours) - f64::from(byte) / 255.0).abs() < 1e-6 => {
-                    "you do not square: decoding squares byte / 255"
-                }
-                () if (f64::from(yours) - expected * 255.0 * 255.0).abs() < 1e-2 => {
-                    "you square the byte itself: divide it by 255 first"
-                }
-                () if (f64::from(yours) - (f64::from(byte) / 255.0).sqrt()).abs() < 1e-6 => {
-                    "you take the root: encoding takes the root, decoding squares"
-                }
-                () if (f64::from(yours) - (f64::from(byte) / 255.0).powf(2.2)).abs() < 1e-6 => {
-                    "you use gamma 2.2: the lecture uses gamma 2, which is the square"
-                }
-                () => "",
-            };
-            return Err(Broken::new(
-                format!("decode_gamma({byte})"),
-                yours,
-                expected as f32,
-                "(byte / 255)²",
-            )
-            .looks_like(known(diagnosis)));
-        }
+    all_hold(compare(&bytes, trial.kit.decode_gamma(&bytes), |byte, yours| judge_decoded(*byte, yours)))?;
+    // The middle of each byte's interval, where rounding down gives the same byte; then numbers between.
+    let middles = bytes.iter().map(|byte| (f32::from(*byte) / 255.0).powi(2));
+    let linear: Vec<f32> = middles.chain((0..=1000).map(|i| i as f32 / 1000.0)).collect();
+    all_hold(compare(&linear, trial.kit.encode_gamma(&linear), |linear, yours| judge_encoded(*linear, yours)))
+}
+
+fn judge_decoded(byte: u8, yours: f32) -> CheckResult {
+    let share = f64::from(byte) / 255.0;
+    // The tolerance covers two roundings of a number up to 1. Mistakes that scale the number have a relative one.
+    let near = |value: f64| (f64::from(yours) - value).abs() < 1e-6 * value.max(1.0);
+    if near(share * share) {
+        return Ok(());
     }
-    // √0.16 = 0.4. An answer that is off by one may be a wrong rounding, which has its own diagnosis below.
-    let yours = trial.kit.encode_gamma(&[0.16])[0];
-    if yours.abs_diff(102) > 1 {
-        let diagnosis = match yours {
-            41 => "the square root is missing: the byte is 255 times the root",
-            160..=162 => "you take the root twice: take it once",
-            6 | 7 => "you square: encoding takes the root, decoding squares",
-            _ => "the byte is 255 times the root of the linear value",
-        };
-        let broken = Broken::new("encode_gamma(0.16)", yours, 102, "255 √linear, rounded");
-        return Err(broken.looks_like(Some(diagnosis)));
+    let broken = Broken::new(format!("decode_gamma({byte})"), yours, (share * share) as f32, "(byte / 255)²");
+    Err(broken.explained_by([
+        (near(share), "you do not square: decoding squares byte / 255"),
+        (near(f64::from(byte).powi(2)), "you square the byte itself: divide it by 255 first"),
+        (near(share.sqrt()), "you take the root: encoding takes the root, decoding squares"),
+        (near(share.powf(2.2)), "you use gamma 2.2: the lecture uses gamma 2, which is the square"),
+        (near((f64::from(byte) / 256.0).powi(2)), "you divide by 256: the largest byte is 255"),
+    ]))
+}
+
+fn judge_encoded(linear: f32, yours: u8) -> CheckResult {
+    let exact = f64::from(linear);
+    let right = 255.0 * exact.sqrt();
+    // An exact half may be rounded either way; the thousandth covers the rounding of the root.
+    if (f64::from(yours) - right).abs() <= 0.501 {
+        return Ok(());
     }
-    let round_trip = trial.kit.encode_gamma(&linear);
-    if let Some(byte) = (0..256).find(|&byte| usize::from(round_trip[byte]) != byte) {
-        let broken = Broken::new(
-            format!("encode_gamma(decode_gamma({byte}))"),
-            round_trip[byte],
-            byte as u8,
-            "decoded and encoded again",
-        );
-        return Err(broken.looks_like(Some(match round_trip[byte] as usize {
-            below if below + 1 == byte => "you round down: add 0.5 before the cast",
-            _ => "the byte is 255 times the root of the linear value",
-        })));
-    }
-    let between: Vec<f32> = (0..=1000).map(|i| i as f32 / 1000.0).collect();
-    for (linear, yours) in between.iter().zip(trial.kit.encode_gamma(&between)) {
-        let exact = 255.0 * f64::from(*linear).sqrt();
-        if (f64::from(yours) - exact).abs() > 0.501 {
-            let input = format!("encode_gamma({linear:?})");
-            // All bytes survived the round trip above, so the factor may be 256 instead of 255.
-            let down = (f64::from(yours) == exact.floor()).then_some(
-                "you round down: add 0.5 to 255 √linear before the cast (256 √linear rounded down differs)",
-            );
-            return Err(
-                Broken::new(input, yours, exact.round() as u8, "255 √linear, rounded").looks_like(down)
-            );
-        }
-    }
-    Ok(())
+    // A wrong formula is known if it gives this byte, rounded to the nearest one or down.
+    let gives = |value: f64| f64::from(yours) == value.round() || f64::from(yours) == value.floor();
+    let input = format!("encode_gamma({})", linear.paste());
+    Err(Broken::new(input, yours, right.round() as u8, "255 √linear, rounded").explained_by([
+        (f64::from(yours) == right.floor(), "you round down: add 0.5 before the cast"),
+        (
+            f64::from(yours) == (256.0 * exact.sqrt()).floor().min(255.0),
+            "you round 256 √linear down: round 255 √linear to the nearest byte",
+        ),
+        (f64::from(yours) == right.ceil(), "you round up: round to the nearest byte"),
+        (gives(255.0 * exact), "the square root is missing: the byte is 255 times the root"),
+        (gives(right.sqrt() * 255f64.sqrt()), "you take the root twice: take it once"),
+        (gives(255.0 * exact * exact), "you square: encoding takes the root, decoding squares"),
+        (
+            gives(255.0 * exact.powf(1.0 / 2.2)),
+            "you use gamma 2.2: the lecture uses gamma 2, the square root",
+        ),
+    ]))
 }
 
 pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
-    let cases =
-        [(-1e-8, 0), (-5.0, 0), (1.0000001, 255), (7.0, 255), (f32::INFINITY, 255), (f32::NEG_INFINITY, 0)];
-    for ((linear, expected), yours) in cases.iter().zip(trial.kit.encode_gamma(&cases.map(|case| case.0))) {
-        if yours != *expected {
-            return Err(Broken::new(
-                format!("encode_gamma({})", linear.paste()),
-                yours,
-                expected,
-                "clamped to 0..=1",
-            )
-            .looks_like(Some("clamp to 0..=1 before the root")));
+    let cases = [
+        (-1e-8, 0),
+        (-5.0, 0),
+        (1.0000001, 255),
+        (7.0, 255),
+        (3e38, 255),
+        (f32::INFINITY, 255),
+        (f32::NEG_INFINITY, 0),
+        (f32::NAN, 0),
+        (0.25, 128),
+    ];
+    let linear = cases.map(|case| case.0);
+    let answers = trial.kit.encode_gamma(&linear);
+    let judged = cases.iter().zip(answers).map(|((linear, expected), yours)| {
+        if yours == *expected || (*linear == 0.25 && yours == 127) {
+            return Ok(());
         }
-    }
-    Ok(())
+        // The cast of a number above 255.5 wraps around if it goes over a wider integer.
+        let wrapped = (255.0 * f64::from(*linear).sqrt() + 0.5) as i64 as u8;
+        let input = format!("encode_gamma({})", linear.paste());
+        Err(Broken::new(input, yours, expected, "clamped to 0..=1").explained_by([
+            (
+                *linear > 1.0 && yours == wrapped,
+                "you cast a number above 255, which wraps: clamp to 0..=1 first",
+            ),
+            (*linear < 0.0, "a number below 0 must give 0: clamp to 0..=1 before the root"),
+            (linear.is_nan(), "NaN must give 0"),
+        ]))
+    });
+    all_hold(judged.collect())
 }

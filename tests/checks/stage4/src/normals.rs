@@ -2,71 +2,101 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::generate::unit;
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
 
-pub(super) fn paste_normal_query(
-    (geometric, interpolated, direction): &(Vec3, Option<Vec3>, Vec3),
-) -> String {
+type Query = (Vec3, Option<Vec3>, Vec3);
+
+pub(super) fn paste_normal_query((geometric, interpolated, direction): &Query) -> String {
     let interpolated = interpolated.map_or("None".into(), |n| format!("Some({})", n.paste()));
     format!("shading_normal({}, {interpolated}, {})", geometric.paste(), direction.paste())
 }
 
-pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
-    // An interpolated normal is the geometric one plus up to 0.3 of a unit vector. It has any length and either sign.
-    let inputs = (unit(), unit(), unit(), any::<bool>(), any::<bool>(), 1..=8i32).prop_map(
-        |(geometric, lean, direction, smooth, back, length)| {
-            let bent = (geometric + 0.3 * lean) * length as f32 / 4.0;
-            (geometric, smooth.then_some(if back { -bent } else { bent }), direction)
+/// Pairs of normals at an angle below 1, seen from all directions. The interpolated normal has any length and either sign.
+fn queries() -> impl Strategy<Value = Query> + Clone {
+    let scale = prop_oneof![3 => (1..=8i32).prop_map(|n| n as f32 / 4.0), 1 => nasty::scale(-59..=59)];
+    (nasty::normals(), nasty::unit(), any::<bool>(), nasty::sign(), scale).prop_map(
+        |((geometric, shading), direction, smooth, sign, length)| {
+            (geometric, smooth.then_some(sign * length * shading), direction)
         },
-    );
-    trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.shading_normal(queries), |query, yours| {
-            let (geometric, interpolated, direction) = *query;
-            let facing = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
-            let expected = match interpolated.map(Vec3::normalize) {
-                Some(smooth) if smooth.dot(facing) < 0.0 => -smooth,
-                Some(smooth) => smooth,
-                None => facing,
-            };
-            let grazing = geometric.dot(direction).abs() < 1e-6;
-            let same = |n: Vec3| (yours - n).length() < 1e-5;
-            if same(expected) || (grazing && same(-expected)) {
-                return Ok(());
-            }
-            let diagnosis = match () {
-                () if same(-expected) => "your normal points away from the viewer: negate it",
-                () if (yours.normalize_or_zero() - expected).length() < 1e-4 => {
-                    "your normal does not have unit length: normalize the interpolated normal"
-                }
-                () if interpolated.is_some() && same(facing) => {
-                    "you return the geometric normal where there is an interpolated one"
-                }
-                () => "",
-            };
-            Err(Broken::new(paste_normal_query(query), yours, expected, "closed form")
-                .looks_like(known(diagnosis)))
-        })
-    })
+    )
+}
+
+pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(3000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
+}
+
+fn judge_normal(query: &Query, yours: Vec3) -> CheckResult {
+    let (geometric, interpolated, direction) = *query;
+    let facing = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
+    // Normalize in double precision, because the square of a length of 1e18 has few digits left in single precision.
+    let smooth = interpolated.map(|normal| normal.as_dvec3().normalize().as_vec3());
+    let turned = |normal: Vec3, against: Vec3| if normal.dot(against) > 0.0 { -normal } else { normal };
+    let expected = smooth.map_or(facing, |smooth| turned(smooth, -facing));
+    // A geometric normal at right angles to the ray may have either sign.
+    let grazing = geometric.dot(direction).abs() < 1e-6;
+    let same = |n: Vec3| (yours - n).length() < 1e-5;
+    if same(expected) || (grazing && same(-expected)) {
+        return Ok(());
+    }
+    let unnormalized = interpolated.map(|normal| turned(normal, -facing));
+    let is = |normal: Option<Vec3>| {
+        normal.is_some_and(|normal| (yours - normal).length() <= 1e-5 * normal.length())
+    };
+    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form").explained_by([
+        (
+            is(smooth.map(|smooth| turned(smooth, direction))),
+            "you turn the interpolated normal by `direction`: turn it to the side of the geometric normal",
+        ),
+        (same(-expected), "your normal points away from the viewer: negate it"),
+        (is(unnormalized), "your normal does not have unit length: normalize the interpolated normal"),
+        (
+            interpolated.is_some() && same(facing),
+            "you return the geometric normal where there is an interpolated one",
+        ),
+    ]))
 }
 
 pub(super) fn shading_normal_falls_back_to_flat(trial: &Trial<'_>) -> CheckResult {
-    let queries = [Vec3::ZERO, Vec3::NAN].map(|useless| (Vec3::Y, Some(useless), Vec3::Y));
-    for (query, yours) in queries.iter().zip(trial.kit.shading_normal(&queries)) {
-        if yours != Vec3::NEG_Y {
-            let broken = Broken::new(
-                paste_normal_query(query),
-                yours,
-                Vec3::NEG_Y,
-                "the geometric normal, turned to the viewer",
-            );
-            return Err(broken.looks_like(Some(
-                "a normal of length 0 or NaN has no direction: return the geometric normal",
-            )));
-        }
-    }
-    Ok(())
+    // Of six interpolated normals two have no direction. Two others are good, and two are missing.
+    let inputs =
+        (queries(), 0..3i32, any::<bool>()).prop_map(|((geometric, good, direction), which, zero)| {
+            let useless = if zero { Vec3::ZERO } else { Vec3::NAN };
+            (geometric, if which == 0 { Some(useless) } else { good }, direction)
+        });
+    let chosen = [Vec3::ZERO, Vec3::NAN].map(|useless| (Vec3::Y, Some(useless), Vec3::Y));
+    trial.forall_and(&chosen, 500, inputs, |queries| {
+        compare(queries, trial.kit.shading_normal(queries), |query, yours| {
+            let (geometric, interpolated, direction) = *query;
+            // Another check judges good normals. Here the answer must be one of the two normals, with either sign.
+            if let Some(normal) = interpolated.filter(|normal| normal.length_squared() > 0.0) {
+                let (n, unit) = (normal.as_dvec3().normalize(), yours.as_dvec3().normalize());
+                let parallel =
+                    n.cross(unit).length() < 1e-4 || unit.cross(geometric.as_dvec3()).length() < 1e-4;
+                let expected = n.as_vec3();
+                return if parallel {
+                    Ok(())
+                } else {
+                    Err(Broken::new(paste_normal_query(query), yours, expected, "closed form")
+                        .explained_by([]))
+                };
+            }
+            let expected = if geometric.dot(direction) > 0.0 { -geometric } else { geometric };
+            let grazing = geometric.dot(direction).abs() < 1e-6;
+            if interpolated.is_none() || yours == expected || (grazing && yours == -expected) {
+                return Ok(());
+            }
+            let source = "the geometric normal, turned to the viewer";
+            Err(Broken::new(paste_normal_query(query), yours, expected, source).explained_by([
+                (
+                    yours.is_nan() || yours == Vec3::ZERO,
+                    "a normal of length 0 or NaN has no direction: return the geometric normal",
+                ),
+                (yours == -expected, "your geometric normal points away from the viewer: negate it"),
+            ]))
+        })
+    })
 }

@@ -1,31 +1,34 @@
 //! The whole Phong model: the ambient term, and per light the diffuse and the specular term.
 
+use super::shadows::lowest;
 use super::terms::{cos_phi, specular};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::generate::{point, unit};
-use checks::judge::{compare, known};
+use checks::generate::point;
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::{LightSample, ShadeQuery, Surface, TermQuery};
+use raykata::kit::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
 use raykata::material::Material;
 
 pub(super) fn light() -> impl Strategy<Value = LightSample> + Clone {
-    (unit(), 1..=40i32, point(1)).prop_map(|(direction, distance, color)| LightSample {
+    (nasty::unit(), 1..=40i32, point(1)).prop_map(|(direction, distance, color)| LightSample {
         direction,
         distance: distance as f32 / 4.0,
         radiance: 2.0 * color.abs(),
     })
 }
 
+/// Surfaces with two normals, and up to four lights on all sides of them.
 pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
     let colors = (point(1), point(1), point(1), point(1));
     let lights = prop::collection::vec((light(), any::<bool>()), 0..5);
-    (unit(), unit(), colors, 0..=64i32, lights).prop_map(
-        |(normal, to_viewer, (ambient, a, d, s), exponent, lights)| {
-            // The viewer is on the side of the normal.
-            let to_viewer = if to_viewer.dot(normal) < 0.0 { -to_viewer } else { to_viewer };
+    (nasty::surface(), nasty::unit(), colors, 1..=64i32, lights).prop_map(
+        |(surface, to_viewer, (ambient, a, d, s), exponent, lights)| {
+            // The viewer is on the side of the geometric normal.
+            let behind = to_viewer.dot(surface.geometric_normal) < 0.0;
+            let to_viewer = if behind { -to_viewer } else { to_viewer };
             let material = Material {
                 ambient: a.abs(),
                 diffuse: d.abs(),
@@ -34,12 +37,6 @@ pub(super) fn shade_query() -> impl Strategy<Value = ShadeQuery> + Clone {
                 ..Material::default()
             };
             let (lights, visible) = lights.into_iter().unzip();
-            let surface = Surface {
-                point: Vec3::ZERO,
-                error: Vec3::splat(1e-7),
-                geometric_normal: normal,
-                shading_normal: normal,
-            };
             ShadeQuery { surface, to_viewer, material, ambient: ambient.abs(), lights, visible }
         },
     )
@@ -54,102 +51,142 @@ fn term(query: &ShadeQuery, index: usize) -> TermQuery {
     }
 }
 
-/// The diffuse and the specular contribution of light `index` in double precision, without shadows.
-fn shares(query: &ShadeQuery, index: usize) -> [DVec3; 2] {
-    let light = &query.lights[index];
-    let diffuse = query.surface.shading_normal.as_dvec3().dot(light.direction.as_dvec3()).max(0.0);
-    let radiance = light.radiance.as_dvec3();
+/// The cosine of light `index` with a normal, in double precision.
+fn cosine(query: &ShadeQuery, index: usize, normal: Vec3) -> f64 {
+    normal.as_dvec3().dot(query.lights[index].direction.as_dvec3())
+}
+
+/// Whether light `index` is in front of both normals.
+fn is_in_front(query: &ShadeQuery, index: usize) -> bool {
+    let Surface { geometric_normal, shading_normal, .. } = query.surface;
+    cosine(query, index, geometric_normal) > 0.0 && cosine(query, index, shading_normal) > 0.0
+}
+
+/// The diffuse and the specular contribution of light `index` for these two terms, without shadows.
+fn parts(query: &ShadeQuery, index: usize, diffuse: f64, specular: f64) -> [DVec3; 2] {
+    let radiance = query.lights[index].radiance.as_dvec3();
     let Material { diffuse: kd, specular: ks, .. } = &query.material;
-    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular(&term(query, index))]
+    [radiance * kd.as_dvec3() * diffuse, radiance * ks.as_dvec3() * specular]
 }
 
-/// Whether light `index` is at the horizon, or the viewer is at right angles to the reflected light. There rounding
-/// decides whether the light counts, and with exponent 0 the difference is large.
+/// The contribution of light `index` for these two terms, without shadows: 0 for a light behind the surface.
+fn share(query: &ShadeQuery, index: usize, diffuse: f64, specular: f64) -> DVec3 {
+    if is_in_front(query, index) { parts(query, index, diffuse, specular).iter().sum() } else { DVec3::ZERO }
+}
+
+/// Whether light `index` is at the horizon of a normal. There rounding decides whether it counts.
 fn is_on_edge(query: &ShadeQuery, index: usize) -> bool {
-    let term = term(query, index);
-    term.normal.dot(term.to_light).abs() < 1e-5 || cos_phi(&term).abs() < 1e-5
+    let Surface { geometric_normal, shading_normal, .. } = query.surface;
+    [geometric_normal, shading_normal].into_iter().any(|normal| cosine(query, index, normal).abs() < 1e-5)
+        || cos_phi(&term(query, index)).abs() < 1e-5
 }
 
-/// The greatest allowed difference of a channel from `right`.
+/// The greatest allowed difference of a channel from `right`: a few roundings of each factor, and of a power of 32.
 fn tolerance(right: DVec3) -> f64 {
     1e-4 * (1.0 + right.abs().max_element())
 }
 
-/// The contribution of light `index` in double precision, without shadows.
-fn share(query: &ShadeQuery, index: usize) -> DVec3 {
-    shares(query, index).into_iter().sum()
-}
+/// A point with the student's own specular terms, one per light.
+type Judged = (ShadeQuery, Vec<f32>);
 
-fn expected_color(query: &ShadeQuery, counts: impl Fn(usize) -> bool) -> DVec3 {
-    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
-    (0..query.lights.len()).filter(|&light| counts(light)).map(|light| share(query, light)).sum::<DVec3>()
-        + ambient
+/// Adds the student's own specular terms. The formula of `shade` is judged with these as well as with the right ones, because
+/// other checks judge `specular_term`.
+fn with_own_terms(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Judged> {
+    let terms: Vec<TermQuery> =
+        queries.iter().flat_map(|query| (0..query.lights.len()).map(|light| term(query, light))).collect();
+    let mut own = trial.kit.specular_term(&terms).into_iter();
+    let mut of_query = |query: &ShadeQuery| own.by_ref().take(query.lights.len()).collect();
+    queries.iter().map(|query| (query.clone(), of_query(query))).collect()
 }
 
 pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.shade(queries), |query, yours| {
-        let color = yours.color.as_dvec3();
-        let expected = expected_color(query, |light| query.visible[light]);
-        let same = |other: DVec3| (color - other).abs().max_element() < tolerance(other);
-        if (0..query.lights.len()).any(|light| is_on_edge(query, light)) || same(expected) {
-            return Ok(());
-        }
-        let diagnosis = shade_diagnosis(query, color, expected, same);
-        Err(Broken::new(
-            query.call("shade"),
-            yours.color,
-            expected.as_vec3(),
-            "the formula in double precision",
-        )
-        .looks_like(known(diagnosis)))
-    })
+    let judged = with_own_terms(trial, queries);
+    let answers = trial.kit.shade(queries);
+    judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)).collect()
 }
 
-/// The mistake that gives this colour.
-fn shade_diagnosis(
-    query: &ShadeQuery,
-    color: DVec3,
-    expected: DVec3,
-    same: impl Fn(DVec3) -> bool,
-) -> &'static str {
-    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
-    let kd = query.material.diffuse.as_dvec3();
-    let visible: Vec<usize> = (0..query.lights.len()).filter(|&light| query.visible[light]).collect();
-    let only = |part: usize| visible.iter().map(|&light| shares(query, light)[part]).sum::<DVec3>() + ambient;
-    let white = ShadeQuery {
-        lights: query.lights.iter().map(|light| LightSample { radiance: Vec3::ONE, ..*light }).collect(),
-        ..query.clone()
-    };
-    let one = |light: Option<&usize>| light.is_some_and(|&light| same(share(query, light) + ambient));
-    match () {
-        () if color.is_nan() => "your colour is NaN: is a negative cosine raised to a fractional power?",
-        () if same(expected - ambient) => "the ambient term A·ka is missing",
-        () if visible.len() < query.lights.len() && same(expected_color(query, |_| true)) => {
-            "you add lights that are occluded: multiply by V_i"
-        }
-        () if visible.len() < query.lights.len()
-            && same(expected_color(query, |light| !query.visible[light])) =>
-        {
-            "you add the occluded lights and leave out the visible ones"
-        }
-        () if same(expected.min(DVec3::ONE)) => "you clamp the colour to 1: return it without a clamp",
-        () if same(only(1)) => "the diffuse term is missing",
-        () if same(only(0)) => "the specular term is missing",
-        () if one(visible.first()) || one(visible.last()) => {
-            "you count one light, the first or the last: add up all lights"
-        }
-        () if same(expected_color(&white, |light| query.visible[light])) => {
-            "you leave out the radiance of the light"
-        }
-        () if same(ambient + (expected - ambient) * kd) => "you multiply the light by kd twice",
-        () if same(expected + (query.lights.len().max(1) - 1) as f64 * ambient) => {
-            "you add the ambient term once per light: add it once"
-        }
-        () if query.visible.contains(&true) && color.cmpge(expected - 1e-4).all() => {
-            "your colour is too bright: is the cosine missing, or do you add a light behind the surface?"
-        }
-        () => "",
+fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
+    let lights: Vec<usize> = (0..query.lights.len()).collect();
+    if lights.iter().any(|&light| is_on_edge(query, light)) {
+        return Ok(());
     }
+    let color = yours.color.as_dvec3();
+    let ambient = query.ambient.as_dvec3() * query.material.ambient.as_dvec3();
+    let seen = |light: &usize| query.visible[*light];
+    // The right terms, and the student's own specular term.
+    let diffuse = |light: usize| cosine(query, light, query.surface.shading_normal);
+    let right = |light: usize| specular(&term(query, light));
+    let yours_of = |light: usize| f64::from(own[light]);
+    let same = |other: DVec3| {
+        let near = (color - other).abs().cmplt(DVec3::splat(tolerance(other)));
+        (0..3).all(|channel| near.test(channel) || (color[channel].is_nan() && other[channel].is_nan()))
+    };
+    // The colour that the lights of a list give with the right terms and with the student's own.
+    let sum = |lights: &[usize], specular: &dyn Fn(usize) -> f64| {
+        ambient
+            + lights.iter().map(|&light| share(query, light, diffuse(light), specular(light))).sum::<DVec3>()
+    };
+    let gives = |lights: &[usize]| same(sum(lights, &right)) || same(sum(lights, &yours_of));
+    let (visible, occluded): (Vec<usize>, Vec<usize>) = lights.iter().partition(|light| seen(light));
+    if gives(&visible) {
+        return Ok(());
+    }
+
+    let expected = sum(&visible, &right);
+    let of_visible = |share: &dyn Fn(usize) -> DVec3| {
+        visible.iter().filter(|&&light| is_in_front(query, light)).map(|&light| share(light)).sum::<DVec3>()
+    };
+    let split = |light: usize| parts(query, light, diffuse(light), right(light));
+    let kd = query.material.diffuse.as_dvec3();
+    let radiance = |light: usize| query.lights[light].radiance.as_dvec3();
+    let geometric = |light: usize| {
+        let normal = query.surface.geometric_normal;
+        let term = TermQuery { normal, ..term(query, light) };
+        parts(query, light, cosine(query, light, normal), specular(&term)).iter().sum::<DVec3>()
+    };
+    let white = |light: usize| (split(light)[0] + split(light)[1]) / radiance(light);
+    let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
+    // A sum over all visible lights, also over those behind the surface.
+    let unclamped = |least: f64| {
+        let of =
+            |light: usize| parts(query, light, diffuse(light).max(least), right(light)).iter().sum::<DVec3>();
+        ambient + visible.iter().map(|&light| of(light)).sum::<DVec3>()
+    };
+    let n_lights = query.lights.len().max(1) as f64;
+    let broken =
+        Broken::new(query.call("shade"), yours.color, expected.as_vec3(), "the formula in double precision");
+    Err(broken.explained_by([
+        (same(expected - ambient), "the ambient term A·ka is missing"),
+        (!occluded.is_empty() && gives(&lights), "you add lights that are occluded: multiply by V_i"),
+        (
+            !occluded.is_empty() && gives(&occluded),
+            "you add the occluded lights and leave out the visible ones",
+        ),
+        (same(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
+        (same(ambient + of_visible(&|light| split(light)[1])), "the diffuse term is missing"),
+        (same(ambient + of_visible(&|light| split(light)[0])), "the specular term is missing"),
+        (
+            visible.first().is_some_and(|&light| gives(&[light])),
+            "you count one light, the first that is visible: add up all lights",
+        ),
+        (
+            visible.last().is_some_and(|&light| gives(&[light])),
+            "you count one light, the last that is visible: add up all lights",
+        ),
+        (
+            visible.iter().all(|&light| radiance(light).min_element() > 0.0)
+                && same(ambient + of_visible(&white)),
+            "you leave out the radiance of the light",
+        ),
+        (same(ambient + of_visible(&geometric)), "you use the geometric normal: use surface.shading_normal"),
+        (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
+        (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
+        (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
+        (
+            same(unclamped(0.0)) || same(unclamped(-1.0)),
+            "you add a light behind the surface: skip lights for which shadow_ray returns None",
+        ),
+    ]))
 }
 
 /// A surface with two lights for which every known mistake gives a different colour.
@@ -181,54 +218,105 @@ fn drawn(brightness: f32, visible: [bool; 2]) -> ShadeQuery {
 }
 
 pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> CheckResult {
-    let drawn = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
-    judge_shades(trial, &drawn).into_iter().collect::<CheckResult>()?;
+    let chosen = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
     let all_visible =
         shade_query().prop_map(|query| ShadeQuery { visible: vec![true; query.lights.len()], ..query });
-    trial.forall(2000, all_visible, |queries| judge_shades(trial, queries))
+    trial.forall_and(&chosen, 2000, all_visible, |queries| judge_shades(trial, queries))
 }
 
 pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> CheckResult {
-    judge_shades(trial, &[drawn(1.0, [true, false])]).into_iter().collect::<CheckResult>()?;
-    trial.forall(2000, shade_query(), |queries| judge_shades(trial, queries))
+    // Some lights are occluded, and those that are visible count.
+    let some_occluded =
+        shade_query().prop_filter("an occluded light", |query| query.visible.contains(&false));
+    trial
+        .forall_and(&[drawn(1.0, [true, false])], 1500, some_occluded, |queries| judge_shades(trial, queries))
 }
 
 pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> CheckResult {
     // Every fourth surface is black.
     let queries = (shade_query(), 0..4i32).prop_map(|(mut query, which)| {
-        if which == 0 {
+        if which == 3 {
             (query.material.diffuse, query.material.specular) = (Vec3::ZERO, Vec3::ZERO);
         }
         query
     });
     trial.forall(2000, queries, |queries| {
-        compare(queries, trial.kit.shade(queries), |query, yours| {
-            // A light needs a ray if its contribution is above the tolerance of colours, because a cosine to the power
-            // of 32 may be 0 in single precision.
-            let cosine = |light: usize| query.lights[light].direction.dot(query.surface.shading_normal);
-            let shows = |light: usize| share(query, light).max_element() > tolerance(DVec3::ZERO);
-            let needed: Vec<usize> =
-                (0..query.lights.len()).filter(|&light| !is_on_edge(query, light) && shows(light)).collect();
-            let needless =
-                |light: &usize| cosine(*light) < -1e-5 || query.lights[*light].radiance == Vec3::ZERO;
-            let mut traced = yours.traced.clone();
-            traced.sort_unstable();
-            let twice = traced.windows(2).any(|pair| pair[0] == pair[1]);
-            let vain = traced.iter().any(needless);
-            let missed = needed.iter().any(|light| !traced.contains(light));
-            let black = query.material.diffuse == Vec3::ZERO
-                && query.material.specular == Vec3::ZERO
-                && !traced.is_empty();
-            let diagnosis = match () {
-                () if twice => "you trace two rays to one light: trace one and keep the answer",
-                () if vain => "you trace a ray to a light that is behind the surface or switched off",
-                () if black => "you trace a ray from a black surface: every light adds 0 there",
-                () if missed => "you count a light without asking whether it is visible",
-                () => return Ok(()),
-            };
-            let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
-            Err(Broken::with_texts(query.call("shade"), describe(&traced), describe(&needed), "counted")
-                .looks_like(Some(diagnosis)))
-        })
+        // The rays that must be traced are those of the student's own `shadow_ray`, which other checks judge.
+        let of_lights = |query: &ShadeQuery| {
+            let of = |light: &LightSample| ShadowQuery { surface: query.surface, light: *light };
+            query.lights.iter().map(of).collect::<Vec<_>>()
+        };
+        let shadows: Vec<ShadowQuery> = queries.iter().flat_map(of_lights).collect();
+        let mut rays = trial.kit.shadow_ray(&shadows).into_iter();
+        let answers = trial.kit.shade(queries);
+        let judge = |(query, yours): (&ShadeQuery, ShadeAnswer)| {
+            let rays: Vec<_> = rays.by_ref().take(query.lights.len()).collect();
+            let astray = yours.traced.iter().zip(&yours.rays).find(|(light, ray)| {
+                // A student may compute the ray in `shade` again, with other roundings.
+                rays[**light].is_some_and(|own| own != **ray && !is_like(&own, ray))
+            });
+            if let Some((light, ray)) = astray {
+                let (yours, own) = (format!("visible({light}, &{ray:?})"), rays[*light]);
+                return Err(Broken::with_texts(
+                    query.call("shade"),
+                    yours,
+                    format!("the ray {own:?}"),
+                    "shadow_ray",
+                )
+                .explained_by([(true, "you ask about another ray: pass the ray of shadow_ray to visible")]));
+            }
+            judge_traced(query, &yours.traced)
+        };
+        queries.iter().zip(answers).map(judge).collect()
     })
+}
+
+/// Whether two rays differ only by roundings of the start. It is measured by the error of the point, which the offset of
+/// the start exceeds, so a ray from the point itself is not like one from a start off the surface.
+fn is_like(own: &raykata::ray::Ray, ray: &raykata::ray::Ray) -> bool {
+    let step = 1e-6 * own.origin.abs().max_element();
+    let near_range = (own.t_max - ray.t_max).abs() <= 0.01 * own.t_max || own.t_max == ray.t_max;
+    (own.origin - ray.origin).abs().max_element() <= step && own.direction == ray.direction && near_range
+}
+
+fn judge_traced(query: &ShadeQuery, traced: &[usize]) -> CheckResult {
+    let count = query.lights.len();
+    let right = |light: usize| {
+        share(query, light, cosine(query, light, query.surface.shading_normal), specular(&term(query, light)))
+    };
+    // A light needs a ray if its contribution is above the tolerance of colours, because a cosine to the power of 32 may be 0
+    // in single precision.
+    let needs =
+        |light: &usize| !is_on_edge(query, *light) && right(*light).max_element() > tolerance(DVec3::ZERO);
+    let needed: Vec<usize> = (0..count).filter(needs).collect();
+    // A light adds nothing if it is behind the surface, or if all products of its radiance with the material are 0. The
+    // highlight is also 0 for a negative cosine.
+    let behind = |light: usize| lowest(&query.surface, query.lights[light].direction) < -1e-5;
+    let dark = |light: usize| query.lights[light].radiance == Vec3::ZERO;
+    let black = |light: usize| {
+        let Material { diffuse, specular, .. } = &query.material;
+        let radiance = query.lights[light].radiance;
+        let glossy = radiance * *specular != Vec3::ZERO && cos_phi(&term(query, light)) > -1e-5;
+        radiance * *diffuse == Vec3::ZERO && !glossy
+    };
+    let mut sorted = traced.to_vec();
+    sorted.sort_unstable();
+    let twice = sorted.windows(2).any(|pair| pair[0] == pair[1]);
+    let vain = |of: &dyn Fn(usize) -> bool| traced.iter().any(|&light| of(light));
+    let missed = needed.iter().any(|light| !traced.contains(light));
+    if !(twice || missed || vain(&behind) || vain(&dark) || vain(&black)) {
+        return Ok(());
+    }
+    let describe = |lights: &[usize]| format!("shadow rays to lights {lights:?}");
+    Err(Broken::with_texts(query.call("shade"), describe(&sorted), describe(&needed), "counted").explained_by([
+        (twice, "you trace two rays to one light: trace one and keep the answer"),
+        (vain(&dark), "you trace a ray to a light that is switched off"),
+        (vain(&behind), "you trace a ray to a light that is behind the surface"),
+        (vain(&black), "you trace a ray to a light that adds 0 to the surface, for example to a black surface"),
+        (
+            vain(&behind) || vain(&dark) || vain(&black),
+            "you trace rays to lights that add nothing: behind the surface, switched off, or on a black surface",
+        ),
+        (missed, "you count a light without asking whether it is visible"),
+    ]))
 }

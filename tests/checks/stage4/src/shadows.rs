@@ -2,206 +2,223 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::generate::{magnitude, point, rough_point, unit};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
+use checks::offset::Start;
 use checks::paste::Arguments;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::{LightSample, ShadowQuery, Surface};
+use raykata::ray::Ray;
 
-/// A point of a surface, and a light in direction `direction` at distance `distance`.
-pub(super) fn shadow(point: Vec3, normal: Vec3, direction: Vec3, distance: f32, error: f32) -> ShadowQuery {
-    let surface =
-        Surface { point, error: Vec3::splat(error), geometric_normal: normal, shading_normal: normal };
-    ShadowQuery { surface, light: LightSample { direction, distance, radiance: Vec3::ONE } }
+/// Angles closer to 90° than this have a cosine whose sign rounding may change; they are not asked.
+const CLEAR: f32 = 1e-4;
+
+/// A light in direction `direction` at distance `distance`.
+pub(super) fn light(direction: Vec3, distance: f32) -> LightSample {
+    LightSample { direction, distance, radiance: Vec3::ONE }
 }
 
-/// Points with coordinates of these sizes (powers of ten), on surfaces in any orientation, with lights well above the
-/// horizon.
-pub(super) fn lit(sizes: std::ops::Range<f32>) -> impl Strategy<Value = ShadowQuery> + Clone {
-    (unit(), unit(), rough_point(1.0), magnitude(sizes.start, sizes.end), 1..=64i32).prop_map(
-        |(normal, lean, at, size, distance)| {
-            let direction = (normal + 0.8 * lean).normalize();
-            // An error bound of seven roundings per coordinate, as for a point of a triangle of this size.
-            shadow(size * at, normal, direction, size * distance as f32 / 4.0, 4e-7 * size)
+/// A surface at the origin with one normal.
+fn flat(normal: Vec3) -> Surface {
+    Surface { point: Vec3::ZERO, error: Vec3::splat(1e-7), geometric_normal: normal, shading_normal: normal }
+}
+
+/// The cosines of the angles between a direction and both normals of a surface, and the smaller one.
+pub(super) fn lowest(surface: &Surface, direction: Vec3) -> f32 {
+    surface.geometric_normal.dot(direction).min(surface.shading_normal.dot(direction))
+}
+
+/// Lights in front of surfaces: in all directions down to 0.001 above the horizon, on surfaces with two normals and another
+/// error on each axis, at all scales.
+pub(super) fn lit() -> impl Strategy<Value = ShadowQuery> + Clone {
+    (nasty::surface(), nasty::tilt(), 1..=64i32, nasty::any_scale()).prop_filter_map(
+        "a light in front",
+        |(surface, (angle, turn), quarters, scale)| {
+            let direction = nasty::tilted(surface.geometric_normal, angle, turn);
+            let light = light(direction, scale * quarters as f32 / 4.0);
+            (lowest(&surface, direction) > CLEAR).then_some(ShadowQuery { surface, light })
         },
     )
 }
 
-pub(super) fn judge_shadow_rays(
+/// What is wrong with a ray: its text, the expected text, and the known mistakes, each with whether it gives this ray.
+type Fault = (String, String, Vec<(bool, &'static str)>);
+
+/// Judges shadow rays to lights in front of a surface by `law`.
+fn judge_shadow_rays(
     trial: &Trial<'_>,
     queries: &[ShadowQuery],
-    law: impl Fn(&ShadowQuery, &raykata::ray::Ray) -> Option<(String, String, &'static str)>,
+    law: impl Fn(&ShadowQuery, &Ray) -> Option<Fault>,
 ) -> Vec<CheckResult> {
-    compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
-        None => Err(Broken::with_texts(
-            query.call("shadow_ray"),
-            "None",
-            "a ray: the light is in front of the surface",
-            "the definition",
-        )),
-        Some(ray) => match law(query, &ray) {
+    compare(queries, trial.kit.shadow_ray(queries), |query, yours| {
+        let call = || query.call("shadow_ray");
+        let Some(ray) = yours else {
+            let expected = "a ray: the light is in front of the surface";
+            return Err(Broken::with_texts(call(), "None", expected, "the definition").explained_by([]));
+        };
+        match law(query, &ray) {
             None => Ok(()),
-            Some((yours, expected, diagnosis)) => {
-                Err(Broken::with_texts(query.call("shadow_ray"), yours, expected, "closed form")
-                    .looks_like(known(diagnosis)))
+            Some((yours, expected, mistakes)) => {
+                Err(Broken::with_texts(call(), yours, expected, "closed form").explained_by(mistakes))
             }
-        },
+        }
     })
 }
 
 pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, lit(-1.0..2.0), |queries| {
-        judge_shadow_rays(trial, queries, |query, ray| {
-            let light = &query.light;
-            let length = ray.direction.length();
-            if (ray.direction / length - light.direction).length() > 1e-4 {
-                return Some((
-                    format!("direction {}", ray.direction),
-                    format!("direction {}", light.direction),
-                    if (ray.direction / length + light.direction).length() < 1e-4 {
-                        "your ray goes away from the light: use light.direction"
-                    } else {
-                        ""
-                    },
-                ));
-            }
-            let reach = ray.t_max * length;
-            let describe = || (format!("ends after {reach}"), format!("just below {}", light.distance));
-            // L2: the surface of the light itself must not occlude it. An object close to the light must.
-            match () {
-                () if (length - 1.0).abs() > 1e-3
-                    && reach > light.distance
-                    && ray.t_max <= light.distance =>
-                {
-                    Some((
-                        describe().0,
-                        describe().1,
-                        "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
-                    ))
-                }
-                () if reach == f32::INFINITY => Some((
-                    describe().0,
-                    describe().1,
-                    "your ray goes on behind the light, where no object can occlude the light: set t_max",
-                )),
-                () if !(reach < light.distance) => Some((
-                    describe().0,
-                    describe().1,
-                    "your ray reaches the light, so the light would occlude itself: end slightly before it",
-                )),
-                () if reach < 0.99 * light.distance => Some((
-                    describe().0,
-                    describe().1,
-                    "your ray ends too early: it misses objects just in front of the light",
-                )),
-                () => None,
-            }
-        })
-    })?;
-    let sun = shadow(Vec3::ZERO, Vec3::Y, vec3(0.6, 0.8, 0.0), f32::INFINITY, 1e-7);
-    judge_shadow_rays(trial, &[sun], |_, ray| {
-        (ray.t_max != f32::INFINITY).then(|| {
-            (format!("t_max = {}", ray.t_max), "t_max = inf".into(), "the sun is infinitely far away")
-        })
-    })
-    .into_iter()
-    .collect()
+    let suns = [vec3(0.6, 0.8, 0.0), Vec3::Y]
+        .map(|direction| ShadowQuery { surface: flat(Vec3::Y), light: light(direction, f32::INFINITY) });
+    trial.forall_and(&suns, 1000, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
 }
 
-/// The height of the ray's start above the point, and the bound on the point's error, both along the normal.
-pub(super) fn start_height(query: &ShadowQuery, ray: &raykata::ray::Ray) -> (f64, f64) {
-    let normal = query.surface.geometric_normal.as_dvec3();
-    let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
-    ((start - query.surface.point.as_dvec3()).dot(normal), query.surface.error.as_dvec3().dot(normal.abs()))
+/// L2: the surface of the light itself must not occlude it. An object close to the light must.
+fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
+    let light = &query.light;
+    let length = ray.direction.as_dvec3().length();
+    let unit = ray.direction.as_dvec3() / length;
+    // A direction that is computed again has a few rounding errors, of 1e-7 each.
+    if !((unit - light.direction.as_dvec3()).length() < 1e-4) {
+        let away = (unit + light.direction.as_dvec3()).length() < 1e-4;
+        return Some((
+            format!("direction {}", ray.direction),
+            format!("direction {}", light.direction),
+            vec![(away, "your ray goes away from the light: use light.direction")],
+        ));
+    }
+    if light.distance == f32::INFINITY {
+        return (ray.t_max != f32::INFINITY)
+            .then(|| (format!("t_max = {}", ray.t_max), "t_max = inf".into(), Vec::new()));
+    }
+    // Compare t_max itself if t counts world units, because the length of a unit vector is rounded as well, and likewise if
+    // t is 1 at the light.
+    let (end, distance) = (f64::from(ray.t_max), f64::from(light.distance));
+    let reach = match () {
+        () if (length - 1.0).abs() < 1e-6 => end,
+        () if (length / distance - 1.0).abs() < 1e-6 => end * distance,
+        () => end * length,
+    };
+    if reach < distance && reach >= 0.99 * distance {
+        return None;
+    }
+    let subtracted = (1..=7).any(|digits| ray.t_max == light.distance - 10f32.powi(-digits));
+    let mistakes = vec![
+        (
+            (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
+            "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
+        ),
+        (subtracted, "you subtract the same length at every scale: end at a fraction of the distance"),
+        (
+            reach == f64::INFINITY,
+            "your ray goes on behind the light, where no object can occlude the light: set t_max",
+        ),
+        (
+            reach >= distance,
+            "your ray reaches the light, so the light would occlude itself: end slightly before it",
+        ),
+        (reach < 0.99 * distance, "your ray ends too early: it misses objects just in front of the light"),
+    ];
+    Some((format!("ends after {reach:?}"), format!("just below {distance:?}"), mistakes))
 }
 
-/// Whether the origin was moved along the ray instead of along the normal.
-fn goes_along_the_light(query: &ShadowQuery, ray: &raykata::ray::Ray) -> bool {
-    let moved = (ray.origin - query.surface.point).normalize_or_zero();
-    let (normal, to_light) = (query.surface.geometric_normal, query.light.direction);
-    moved.dot(to_light) > 0.99 && moved.dot(normal) < 0.9
+/// The start of a shadow ray.
+fn start(query: &ShadowQuery, ray: &Ray) -> Start {
+    Start::new(&query.surface, query.surface.geometric_normal, query.light.direction, ray)
 }
 
 pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
-    // R6: the true surface is up to `error` above the point. Coordinates range from a thousandth to a hundred thousand.
-    trial.forall(3000, lit(-3.0..5.0), |queries| {
+    // R6: the true surface is up to `error` above the point.
+    trial.forall(3000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
-            let (height, bound) = start_height(query, ray);
-            let diagnosis = match () {
-                () if height == 0.0 => {
-                    "your ray starts on the rounded point, so it may hit its own surface (shadow acne)"
-                }
-                () if height < 0.0 => "your ray starts below the surface: move to the viewer's side",
-                () if goes_along_the_light(query, ray) => {
-                    "you move the origin along the ray: move it along the geometric normal"
-                }
-                () => "your offset is too small: move by error·|n|, then each coordinate one float outwards",
-            };
-            // One per cent of slack for the rounding of the bound itself.
-            (height < 0.99 * bound).then(|| {
-                (format!("starts {height:.3e} above the point"), format!("{bound:.3e} or more"), diagnosis)
+            let start = start(query, ray);
+            let mut mistakes = start.mistakes();
+            mistakes
+                .push((start.height() < 0.0, "your ray starts below the surface: move to the viewer's side"));
+            start.is_too_low().then(|| {
+                let yours = format!("starts {:.3e} above the point", start.height());
+                (yours, format!("{:.3e} or more", start.least()), mistakes)
             })
         })
     })
 }
 
 pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(3000, lit(-3.0..5.0), |queries| {
+    trial.forall(3000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
-            let (height, bound) = start_height(query, ray);
-            // 64 float steps of the largest coordinate: the ray must hit any object farther away than that.
-            let size = f64::from(query.surface.point.abs().max_element());
-            let most = 64.0 * 2.0 * checks::double::U * size + 4.0 * bound;
-            (height > most).then(|| {
-                (
-                    format!("starts {height:.3e} above the point"),
-                    format!("at most {most:.3e}"),
-                    "your offset is too large here: the ray misses objects that nearly touch the surface",
-                )
+            let start = start(query, ray);
+            (start.height() > start.most()).then(|| {
+                let yours = format!("starts {:.3e} above the point", start.height());
+                (yours, format!("at most {:.3e}", start.most()), start.mistakes())
             })
         })
     })
 }
 
 pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> CheckResult {
-    let behind = (unit(), unit(), point(4)).prop_filter_map("a light behind", |(normal, to_light, at)| {
-        (normal.dot(to_light) < -1e-3).then(|| shadow(at, normal, to_light, 5.0, 1e-6))
-    });
-    trial.forall(1000, behind, |queries| {
-        compare(queries, trial.kit.shadow_ray(queries), |query, yours| match yours {
-            None => Ok(()),
-            Some(ray) => Err(Broken::with_texts(
-                query.call("shadow_ray"),
-                format!("a ray along {}", ray.direction),
-                "None",
-                "the definition",
-            )
-            .looks_like(Some(
-                "you trace a ray to a light behind the surface, which adds nothing: return None",
-            ))),
-        })
-    })?;
-    // Light exactly parallel to the surface, by either normal, adds nothing either.
-    let along = shadow(Vec3::ZERO, Vec3::Y, Vec3::X, 5.0, 1e-6);
-    let lean = vec3(-0.6, 0.8, 0.0);
-    let mut along_smooth = shadow(Vec3::ZERO, Vec3::Y, vec3(0.8, 0.6, 0.0), 5.0, 1e-6);
-    along_smooth.surface.shading_normal = lean;
-    let mut along_flat = along;
-    along_flat.surface.shading_normal = vec3(0.6, 0.8, 0.0);
-    for query in [along, along_smooth, along_flat] {
-        if trial.kit.shadow_ray(&[query])[0].is_some() {
-            return Err(Broken::with_texts(query.call("shadow_ray"), "a ray", "None", "the definition")
-                .looks_like(Some(
-                    "you trace a ray to a light whose cosine with a normal is 0: return None",
-                )));
+    // Lights on all sides of both normals. Of four lights one is switched off, and one has a single colour.
+    let lights = (nasty::surface(), nasty::unit(), 0..4i32).prop_filter_map(
+        "clearly on one side of both normals",
+        |(surface, direction, kind)| {
+            let radiance = [Vec3::ZERO, Vec3::Z, Vec3::ONE, Vec3::X][kind as usize];
+            let light = LightSample { radiance, ..light(direction, 5.0) };
+            let clear = |normal: Vec3| normal.dot(direction).abs() > CLEAR;
+            (clear(surface.geometric_normal) && clear(surface.shading_normal))
+                .then_some(ShadowQuery { surface, light })
+        },
+    );
+    // Light exactly parallel to the surface, by either normal or both, adds nothing. These products are exact.
+    let lean = |normal: Vec3| Surface { shading_normal: normal, ..flat(Vec3::Y) };
+    let ties = [
+        (flat(Vec3::Y), Vec3::X),
+        (lean(vec3(-0.6, 0.8, 0.0)), vec3(0.8, 0.6, 0.0)),
+        (lean(vec3(0.6, 0.8, 0.0)), Vec3::X),
+        (flat(Vec3::NEG_Z), Vec3::NEG_Y),
+    ]
+    .map(|(surface, direction)| ShadowQuery { surface, light: light(direction, 5.0) });
+    trial.forall_and(&ties, 1500, lights, |queries| {
+        compare(queries, trial.kit.shadow_ray(queries), judge_effect)
+    })
+}
+
+fn judge_effect(query: &ShadowQuery, yours: Option<Ray>) -> CheckResult {
+    let ShadowQuery { surface, light } = query;
+    let [geometric, shading] =
+        [surface.geometric_normal, surface.shading_normal].map(|normal| normal.dot(light.direction));
+    let dark = light.radiance == Vec3::ZERO;
+    let lit = geometric > 0.0 && shading > 0.0 && !dark;
+    let Some(ray) = yours.filter(|_| !lit) else {
+        if yours.is_some() || !lit {
+            return Ok(());
         }
-    }
-    let lit = shadow(Vec3::ZERO, Vec3::Y, Vec3::Y, 5.0, 1e-6);
-    let dark = ShadowQuery { light: LightSample { radiance: Vec3::ZERO, ..lit.light }, ..lit };
-    match trial.kit.shadow_ray(&[dark])[0] {
-        None => Ok(()),
-        Some(_) => Err(Broken::with_texts(dark.call("shadow_ray"), "a ray", "None", "the definition")
-            .looks_like(Some("you trace a ray to a light of radiance 0, which adds nothing: return None"))),
-    }
+        let single = light.radiance.min_element() == 0.0;
+        let expected = "a ray: the light is in front of the surface, and not switched off";
+        return Err(Broken::with_texts(query.call("shadow_ray"), "None", expected, "the definition")
+            .explained_by([(
+                single,
+                "you return None for a light that is black in one channel: return None if all are 0",
+            )]));
+    };
+    let yours = format!("a ray along {}", ray.direction);
+    Err(Broken::with_texts(query.call("shadow_ray"), yours, "None", "the definition").explained_by([
+        (
+            dark && geometric > 0.0 && shading > 0.0,
+            "you trace a ray to a light of radiance 0, which adds nothing: return None",
+        ),
+        (
+            geometric.min(shading) == 0.0 && !dark,
+            "you trace a ray to a light whose cosine with a normal is 0: return None",
+        ),
+        (
+            geometric > 0.0 && shading <= 0.0,
+            "you trace a ray to a light behind the shading normal: test both normals",
+        ),
+        (
+            geometric <= 0.0 && shading > 0.0,
+            "you trace a ray to a light behind the geometric normal: test both normals",
+        ),
+        (
+            geometric.min(shading) <= 0.0,
+            "you trace a ray to a light behind the surface, which adds nothing: return None",
+        ),
+    ]))
 }

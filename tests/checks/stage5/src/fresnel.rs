@@ -2,16 +2,22 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::call;
 use proptest::prelude::*;
 use raykata::kit::FresnelQuery;
 
+/// Cosines from 0 to 1, some close to 1, and indices from 1/2 to 3, some equal.
 fn queries() -> impl Strategy<Value = FresnelQuery> + Clone {
-    (0..=64i32, 8..=24i32, 8..=24i32).prop_map(|(cosine, n1, n2)| FresnelQuery {
-        cos_theta: cosine as f32 / 64.0,
-        n1: n1 as f32 / 8.0,
-        n2: n2 as f32 / 8.0,
+    let cosine = prop_oneof![
+        6 => (0..=64i32).prop_map(|n| n as f32 / 64.0),
+        1 => (1..=20i32).prop_map(|halvings| 1.0 - 0.5f32.powi(halvings)),
+    ];
+    let index = || (4..=24i32).prop_map(|eighths| eighths as f32 / 8.0);
+    (cosine, index(), index(), 0..8i32).prop_map(|(cos_theta, n1, n2, equal)| FresnelQuery {
+        cos_theta,
+        n1,
+        n2: if equal == 0 { n1 } else { n2 },
     })
 }
 
@@ -42,6 +48,7 @@ pub(super) fn exact(query: &FresnelQuery) -> f64 {
     0.5 * (ratio(n1 * cosine, n2 * cos_2) + ratio(n1 * cos_2, n2 * cosine))
 }
 
+/// Judges reflectances. `mistakes` are the values that known mistakes give.
 fn judge(
     name: &str,
     queries: &[FresnelQuery],
@@ -50,34 +57,33 @@ fn judge(
     mistakes: fn(&FresnelQuery) -> Vec<(f64, &'static str)>,
 ) -> Vec<CheckResult> {
     compare(queries, answers, |query, yours| {
-        let expected = reference(query);
+        let (expected, margin) = (reference(query), behind(query).1);
         // Near the critical angle the reflectance and its rounding error change with the root of the distance to it.
-        let tolerance = 1e-5 + 4e-6 / behind(query).1.abs().sqrt().max(1e-3);
-        // Equal indices at cos θ = 0 give 0/0: any value in 0..=1 passes, and NaN fails.
-        let nothing = query.n1 == query.n2 && query.cos_theta == 0.0;
-        if (nothing && (0.0..=1.0).contains(&yours)) || (f64::from(yours) - expected).abs() <= tolerance {
+        let tolerance = 1e-5 + 4e-6 / margin.abs().sqrt().max(1e-3);
+        let near = |value: f64| (f64::from(yours) - value).abs() <= tolerance;
+        // At the critical angle rounding decides. Equal indices at cos θ = 0 are such a case: the formula is 0 / 0.
+        let critical = margin.abs() < 1e-5;
+        if near(expected) || (critical && (0.0..=1.0).contains(&yours)) {
             return Ok(());
         }
         let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
-        let diagnosis = match () {
-            () if nothing => "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1",
-            () if yours.is_nan() => "you return NaN: beyond the critical angle the reflectance is 1",
-            () if behind(query).0.is_none() => {
-                "beyond the critical angle all light is reflected: the reflectance is 1"
-            }
-            () if (f64::from(yours) - swapped).abs() <= tolerance => {
-                "n1 and n2 are exchanged, or the cosine is wrong: use that in the less dense medium"
-            }
-            () if (f64::from(1.0 - yours) - expected).abs() <= tolerance => {
-                "you return the transmitted fraction: return the reflected one"
-            }
-            () => mistakes(query)
-                .into_iter()
-                .find(|(share, _)| (f64::from(yours) - share).abs() <= tolerance)
-                .map_or("", |(_, diagnosis)| diagnosis),
-        };
+        let zero_by_zero = critical && query.n1 == query.n2 && yours.is_nan();
+        let beyond = behind(query).0.is_none();
+        let known = [
+            (zero_by_zero, "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1"),
+            (beyond && yours.is_nan(), "you return NaN: beyond the critical angle the reflectance is 1"),
+            (
+                zero_by_zero || (beyond && yours.is_nan()),
+                "you return NaN: mind 0 / 0 at equal indices, and the root of a negative number",
+            ),
+            (near(swapped), "you exchange n1 and n2"),
+            (near(1.0 - expected), "you return the transmitted fraction: return the reflected one"),
+        ];
+        let formulas = mistakes(query).into_iter().map(|(value, text)| (near(value), text));
+        let last = [(beyond, "beyond the critical angle all light is reflected: the reflectance is 1")];
         let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
-        Err(Broken::new(input, yours, expected as f32, "double precision").looks_like(known(diagnosis)))
+        Err(Broken::new(input, yours, expected as f32, "double precision")
+            .explained_by(known.into_iter().chain(formulas).chain(last)))
     })
 }
 
@@ -85,14 +91,26 @@ fn judge(
 fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let [cosine, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
     let r0 = ((n1 - n2) / (n1 + n2)).powi(2);
-    let behind = behind(query).0.unwrap_or(cosine);
+    let (beyond, behind) = (behind(query).0.is_none(), behind(query).0.unwrap_or(cosine));
     let (right, wrong) = if n1 > n2 { (behind, cosine) } else { (cosine, behind) };
     let formula = |r0: f64, cosine: f64, power: i32| r0 + (1.0 - r0) * (1.0 - cosine).powi(power);
+    // Beyond the critical angle a formula may be asked first or not at all.
+    let total = |value: f64| if beyond { 1.0 } else { value };
     vec![
-        (formula(r0, wrong, 5), "you use the cosine of the wrong side: use that in the less dense medium"),
-        (formula(r0, right, 4), "you take the fourth power: Schlick takes the fifth"),
-        (formula(r0.sqrt(), right, 5), "you do not square R0"),
-        (r0, "you return R0 for every angle: the reflectance rises to 1 at grazing angles"),
+        (
+            total(formula(r0, wrong, 5)),
+            "you use the cosine of the wrong side: use that in the less dense medium",
+        ),
+        (formula(r0, cosine, 5), "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray"),
+        (total(formula(r0, right, 4)), "you take the fourth power: Schlick takes the fifth"),
+        (total(formula(r0.sqrt(), right, 5)), "you do not square R0"),
+        (total(r0), "you return R0 for every angle: the reflectance rises to 1 at grazing angles"),
+        (
+            r0,
+            "you return R0 for every angle: the reflectance rises to 1 at grazing angles, and is 1 beyond the critical one",
+        ),
+        (total((1.0 - right).powi(5)), "you leave out R0"),
+        (total(r0 + (1.0 - right).powi(5)), "you leave out the factor 1 - R0"),
     ]
 }
 
@@ -100,13 +118,14 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
 fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let [cos_1, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
     let Some(cos_2) = behind(query).0 else { return Vec::new() };
-    let ratio = |p: f64, q: f64| (p - q) / (p + q);
+    let ratio = |p: f64, q: f64| if p + q > 0.0 { (p - q) / (p + q) } else { 1.0 };
     let (s, p) = (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
     vec![
-        (s * s, "you return one polarisation: return the mean of both"),
-        (p * p, "you return one polarisation: return the mean of both"),
+        (s * s, "you return one polarisation, the one perpendicular to the plane: return the mean of both"),
+        (p * p, "you return one polarisation, the one parallel to the plane: return the mean of both"),
         (s * s + p * p, "you return the sum of both polarisations: return their mean"),
         (0.5 * (s.abs() + p.abs()), "you do not square the ratios"),
+        (0.5 * (s + p), "you do not square the ratios"),
     ]
 }
 
@@ -120,17 +139,13 @@ fn drawn() -> [FresnelQuery; 3] {
 }
 
 pub(super) fn fresnel_schlick_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[FresnelQuery]| {
+    trial.forall_and(&drawn(), 3000, queries(), |queries| {
         judge("fresnel_schlick", queries, trial.kit.fresnel_schlick(queries), schlick, schlick_mistakes)
-    };
-    judge(&drawn()).into_iter().collect::<CheckResult>()?;
-    trial.forall(3000, queries(), judge)
+    })
 }
 
 pub(super) fn fresnel_exact_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[FresnelQuery]| {
+    trial.forall_and(&drawn(), 3000, queries(), |queries| {
         judge("fresnel_exact", queries, trial.kit.fresnel_exact(queries), exact, exact_mistakes)
-    };
-    judge(&drawn()).into_iter().collect::<CheckResult>()?;
-    trial.forall(3000, queries(), judge)
+    })
 }

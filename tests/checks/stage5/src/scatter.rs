@@ -1,11 +1,11 @@
 //! Which secondary rays leave a surface, and their weights.
 
-use super::directions::arrival;
+use super::directions::{arrival, snell};
 use super::fresnel::{exact, schlick};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::Paste;
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
@@ -44,22 +44,63 @@ pub(super) fn find(children: &[SecondaryRay], bounce: Bounce) -> Option<&Seconda
     children.iter().find(|child| child.bounce == bounce)
 }
 
-/// `(n1, n2)`, and the Fresnel reflectance in double precision.
-fn share(query: &ScatterQuery) -> (f32, f32, f64) {
+/// `(n1, n2)`: the index on the side of the ray, and the index behind the surface.
+fn indices(query: &ScatterQuery) -> (f32, f32) {
     let index = query.material.index_of_refraction;
-    let (n1, n2) = if query.entering { (1.0, index) } else { (index, 1.0) };
-    let fresnel = FresnelQuery { cos_theta: -query.direction.dot(query.normal), n1, n2 };
-    let share = match query.material.fresnel {
+    if query.entering { (1.0, index) } else { (index, 1.0) }
+}
+
+fn fresnel_query(query: &ScatterQuery) -> FresnelQuery {
+    let (n1, n2) = indices(query);
+    let cos_theta = (-query.direction.dot(query.normal)).clamp(0.0, 1.0);
+    FresnelQuery { cos_theta, n1, n2 }
+}
+
+pub(super) fn refract_query(query: &ScatterQuery) -> RefractQuery {
+    let (n1, n2) = indices(query);
+    RefractQuery { direction: query.direction, normal: query.normal, n1, n2 }
+}
+
+/// The Fresnel reflectance in double precision.
+fn reflectance(query: &ScatterQuery) -> f64 {
+    match query.material.fresnel {
         Fresnel::None => 0.0,
-        Fresnel::Schlick => schlick(&fresnel),
-        Fresnel::Exact => exact(&fresnel),
+        Fresnel::Schlick => schlick(&fresnel_query(query)),
+        Fresnel::Exact => exact(&fresnel_query(query)),
+    }
+}
+
+/// What the student's own functions return for a query. A secondary ray is judged by these as well as by the right answers,
+/// because other checks judge these functions.
+#[derive(Clone, Copy)]
+struct Own {
+    reflectance: f64,
+    refracted: Option<Vec3>,
+    reflected: Vec3,
+}
+
+fn own_functions(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<Own> {
+    let fresnel: Vec<FresnelQuery> = queries.iter().map(fresnel_query).collect();
+    let refractions: Vec<RefractQuery> = queries.iter().map(refract_query).collect();
+    let reflections: Vec<(Vec3, Vec3)> =
+        queries.iter().map(|query| (query.direction, query.normal)).collect();
+    let (schlick, exact) = (trial.kit.fresnel_schlick(&fresnel), trial.kit.fresnel_exact(&fresnel));
+    let (refracted, reflected) = (trial.kit.refract(&refractions), trial.kit.reflect(&reflections));
+    let own = |index: usize| Own {
+        reflectance: match queries[index].material.fresnel {
+            Fresnel::None => 0.0,
+            Fresnel::Schlick => f64::from(schlick[index]),
+            Fresnel::Exact => f64::from(exact[index]),
+        },
+        refracted: refracted[index],
+        reflected: reflected[index],
     };
-    (n1, n2, share)
+    (0..queries.len()).map(own).collect()
 }
 
 pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
     let fresnel = prop::sample::select(vec![Fresnel::None, Fresnel::Schlick, Fresnel::Exact]);
-    (arrival(), any::<bool>(), point(1), point(1), 8..=16i32, fresnel, point(1)).prop_map(
+    (arrival(), any::<bool>(), point(1), point(1), 4..=16i32, fresnel, point(1)).prop_map(
         |((direction, normal), entering, mirror, transmission, index, fresnel, weight)| ScatterQuery {
             direction,
             normal,
@@ -79,8 +120,15 @@ pub(super) fn queries() -> impl Strategy<Value = ScatterQuery> + Clone {
 }
 
 pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckResult {
-    judge_weights(trial, &drawn()).into_iter().collect::<CheckResult>()?;
-    trial.forall(3000, queries(), |queries| judge_weights(trial, queries))
+    // Another check judges total internal reflection and angles close to it.
+    let below =
+        queries().prop_filter("below the critical angle", |query| snell(&refract_query(query)).1 > 1e-3);
+    trial.forall_and(&drawn(), 3000, below, |queries| {
+        let own = own_functions(trial, queries);
+        let answers = trial.kit.scatter(queries);
+        let judge = |((query, own), yours)| judge_weights(query, own, yours);
+        queries.iter().zip(own).zip(answers).map(judge).collect()
+    })
 }
 
 /// A surface that reflects and transmits; glass that reflects by Fresnel alone; and one channel per secondary ray.
@@ -101,158 +149,256 @@ pub(super) fn drawn() -> [ScatterQuery; 3] {
     ]
 }
 
-fn judge_weights(trial: &Trial<'_>, queries: &[ScatterQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.scatter(queries), |query, yours| {
-        let (n1, n2, share) = share(query);
-        let [weight, mirror, transmission] =
-            [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
-        let expected = [weight * (mirror + share * transmission), weight * (1.0 - share) * transmission];
-        // Another check judges total internal reflection and angles close to it.
-        let sine = (1.0 - f64::from(query.direction.dot(query.normal)).powi(2)).max(0.0).sqrt();
-        if f64::from(n1 / n2) * sine > 0.999 {
-            return Ok(());
-        }
-        let found = [Bounce::Reflection, Bounce::Transmission]
-            .map(|bounce| find(&yours, bounce).map(|child| child.weight.as_dvec3()));
-        let weights = found.map(|weight| weight.unwrap_or_default());
-        let off = |limit: f64, other: [DVec3; 2]| {
-            (0..2).any(|i| !((weights[i] - other[i]).abs().max_element() <= limit))
-        };
-        if !off(2e-4, expected) {
-            return Ok(());
-        }
-        let same = |other: [DVec3; 2]| !off(1e-4, other);
-        let lost = (0..2).any(|i| found[i].is_none() && expected[i].max_element() > 2e-4);
-        let through = (1.0 - share) * transmission;
-        let diagnosis = match () {
-            () if same([mirror + share * transmission, through]) => {
-                "you leave out the weight of the incoming ray: multiply by `weight`"
-            }
-            () if same([weight * expected[0], weight * expected[1]])
-                || same([weight * expected[0], expected[1]])
-                || same([expected[0], weight * expected[1]]) =>
-            {
-                "you multiply by the weight of the incoming ray twice"
-            }
-            () if lost && mirror == DVec3::ZERO && found[0].is_none() && share > 0.0 => {
-                "clear glass reflects by Fresnel: test the reflected weight, not material.mirror"
-            }
-            () if same([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]) => {
-                "you exchange material.mirror and material.transmission"
-            }
-            () if share > 0.0 && same([weight * mirror, weight * transmission]) => {
-                "you leave out material.fresnel"
-            }
-            () if lost => "you leave out a ray with one channel above 0: test the largest channel",
-            () if share > 0.0 => {
-                "with Fresnel: reflection mirror + F transmission, refraction (1 - F) transmission"
-            }
-            () => "",
-        };
-        let [reflected, transmitted] = expected.map(|weight| weight.as_vec3());
-        let expected = format!("Reflection of weight {reflected}, Transmission of weight {transmitted}");
-        Err(Broken::with_texts(paste(query), describe(&yours), expected, "the formula in double precision")
-            .looks_like(known(diagnosis)))
+fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> CheckResult {
+    let [weight, mirror, transmission] =
+        [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
+    let weights = |f: f64| [weight * (mirror + f * transmission), weight * (1.0 - f) * transmission];
+    let share = reflectance(query);
+    let expected = weights(share);
+    let found = [Bounce::Reflection, Bounce::Transmission]
+        .map(|bounce| find(&yours, bounce).map(|child| child.weight.as_dvec3()));
+    let found_or_zero = found.map(Option::unwrap_or_default);
+    let same = |other: [DVec3; 2], limit: f64| {
+        (0..2).all(|i| (found_or_zero[i] - other[i]).abs().max_element() <= limit)
+    };
+    // The reflectance is off by 1e-5, and by more close to the critical angle.
+    let mine = weights(own.reflectance);
+    let lost = own.refracted.is_none() && found[1].is_none();
+    let mine_lost = [mine[0], DVec3::ZERO];
+    if same(expected, 2e-4)
+        || same(mine, 2e-4)
+        || (lost && (same(mine_lost, 2e-4) || same([expected[0], DVec3::ZERO], 2e-4)))
+    {
+        return Ok(());
+    }
+    let is = |other: [DVec3; 2]| same(other, 1e-4);
+    let (reflected, through) = (expected[0], expected[1]);
+    let other_fresnel = match query.material.fresnel {
+        Fresnel::None => 0.0,
+        Fresnel::Schlick => exact(&fresnel_query(query)),
+        Fresnel::Exact => schlick(&fresnel_query(query)),
+    };
+    let turned =
+        FresnelQuery { n1: fresnel_query(query).n2, n2: fresnel_query(query).n1, ..fresnel_query(query) };
+    let exchanged = match query.material.fresnel {
+        Fresnel::None => 0.0,
+        Fresnel::Schlick => schlick(&turned),
+        Fresnel::Exact => exact(&turned),
+    };
+    let without = |condition: &dyn Fn(DVec3) -> bool| {
+        is(expected.map(|weight| if condition(weight) { DVec3::ZERO } else { weight }))
+    };
+    let expected_text = expected.map(|weight| weight.as_vec3());
+    let expected_text =
+        format!("Reflection of weight {}, Transmission of weight {}", expected_text[0], expected_text[1]);
+    let source = "the formula in double precision";
+    Err(Broken::with_texts(paste(query), describe(&yours), expected_text, source).explained_by([
+        (
+            is([mirror + share * transmission, (1.0 - share) * transmission]),
+            "you leave out the weight of the incoming ray: multiply by `weight`",
+        ),
+        (
+            is([weight * reflected, weight * through])
+                || is([weight * reflected, through])
+                || is([reflected, weight * through]),
+            "you multiply by the weight of the incoming ray twice",
+        ),
+        (
+            mirror == DVec3::ZERO && is([DVec3::ZERO, through]),
+            "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
+        ),
+        (
+            is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror])
+                || is([weight * (transmission + share * mirror), weight * mirror * (1.0 - share)]),
+            "you exchange material.mirror and material.transmission",
+        ),
+        (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
+        (
+            is([reflected, weight * transmission]),
+            "you add F transmission to the reflected ray, but do not take it off the refracted one: (1 - F) transmission",
+        ),
+        (
+            is([weight * mirror, through]),
+            "you take F off the refracted ray, but do not add F transmission to the reflected one",
+        ),
+        (
+            is([weight * share * mirror, through]),
+            "you multiply the mirror by F: the reflected ray has mirror + F transmission",
+        ),
+        (
+            is([weight * (mirror + (1.0 - share) * transmission), weight * share * transmission]),
+            "you exchange F and 1 - F",
+        ),
+        (is(weights(other_fresnel)), "you use the other Fresnel formula: Schlick for Schlick, Exact for Exact"),
+        (is(weights(exchanged)), "you exchange n1 and n2 in the Fresnel reflectance"),
+        (
+            without(&|weight| weight.min_element() <= 0.0),
+            "you leave out a ray with one channel of 0: test the largest channel",
+        ),
+    ]))
+}
+
+/// R4: on the way out of glass the indices change places, and both rays have the directions of `reflect` and `refract`.
+pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> CheckResult {
+    let both = |query: ScatterQuery| ScatterQuery {
+        material: Material {
+            mirror: Vec3::ONE,
+            transmission: Vec3::ONE,
+            fresnel: Fresnel::None,
+            ..query.material
+        },
+        weight: Vec3::ONE,
+        ..query
+    };
+    // Rays that are refracted even if the indices are exchanged, so that a mistake shows as another direction.
+    let inputs = queries().prop_map(both).prop_filter("clear of both critical angles", |query| {
+        let (n1, n2) = indices(query);
+        let sine = query.direction.cross(query.normal).length();
+        sine * (n1 / n2).max(n2 / n1) < 0.99 && sine > 0.05 && (n1 - n2).abs() > 0.1
+    });
+    let slanted = both(drawn()[0].clone());
+    let chosen = [true, false].map(|entering| {
+        let direction = vec3(0.6, -0.8, 0.0);
+        ScatterQuery { direction, entering, ..slanted.clone() }
+    });
+    trial.forall_and(&chosen, 1000, inputs, |queries| {
+        let own = own_functions(trial, queries);
+        let answers = trial.kit.scatter(queries);
+        let judge = |((query, own), yours)| judge_directions(query, own, yours);
+        queries.iter().zip(own).zip(answers).map(judge).collect()
     })
 }
 
-const ENTERING: &str = "entering: n1 = 1 (air), n2 = index_of_refraction (glass)";
-
-/// R4: a ray through a pane of glass leaves it in the direction in which it entered.
-pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> CheckResult {
-    let glass = Material { transmission: Vec3::ONE, index_of_refraction: 1.5, ..Material::default() };
-    for direction in [vec3(0.6, -0.8, 0.0), vec3(0.0, -1.0, 0.0), vec3(-0.96, -0.28, 0.0)] {
-        let enter = ScatterQuery {
-            direction,
-            normal: Vec3::Y,
-            entering: true,
-            material: glass.clone(),
-            weight: Vec3::ONE,
-            depth: 0,
-            limits: FAR,
-        };
-        let inside = trial.kit.scatter(std::slice::from_ref(&enter)).remove(0);
-        let snell = RefractQuery { direction, normal: Vec3::Y, n1: 1.0, n2: 1.5 };
-        super::directions::judge_refractions(trial, &[snell]).into_iter().collect::<CheckResult>()?;
-        let Some(inside) = find(&inside, Bounce::Transmission).copied() else {
-            let broken =
-                Broken::with_texts(paste(&enter), describe(&inside), "a refracted ray", "into glass");
-            return Err(broken.looks_like(Some(ENTERING)));
-        };
-        let bent = super::directions::snell(&snell).0.map(|direction| direction.as_vec3());
-        if bent.is_some_and(|bent| (inside.direction - bent).length() > 1e-5) {
-            let broken =
-                Broken::new(paste(&enter), inside.direction, bent, "Snell's law in double precision");
-            return Err(broken.looks_like(Some(ENTERING)));
-        }
-        let leave = ScatterQuery { direction: inside.direction, entering: false, ..enter };
-        let outside = trial.kit.scatter(std::slice::from_ref(&leave)).remove(0);
-        let out = find(&outside, Bounce::Transmission).map(|child| child.direction);
-        if !out.is_some_and(|out| (out - direction).length() < 1e-5) {
-            let broken = Broken::new(paste(&leave), out, Some(direction), "as it entered");
-            return Err(broken.looks_like(Some(match out {
-                Some(out) if out.dot(leave.normal) > 0.0 => {
-                    "you turn the normal: it is already on the side that the ray comes from"
-                }
-                _ => "leaving: n1 = index_of_refraction (glass), n2 = 1 (air)",
-            })));
-        }
+fn judge_directions(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> CheckResult {
+    let forward = refract_query(query);
+    let right = |query: &RefractQuery| snell(query).0.map(|v| v.as_vec3());
+    // The tolerance covers a few roundings.
+    let near = |found: Option<Vec3>, v: Option<Vec3>| {
+        matches!((found, v), (Some(found), Some(v)) if (found - v).length() < 1e-5)
+            || (found.is_none() && v.is_none())
+    };
+    let found = |bounce: Bounce| find(&yours, bounce).map(|child| child.direction);
+    let refracted = found(Bounce::Transmission);
+    if !(near(refracted, right(&forward)) || near(refracted, own.refracted)) {
+        let backward = RefractQuery { n1: forward.n2, n2: forward.n1, ..forward };
+        let turned = RefractQuery { normal: -forward.normal, ..forward };
+        let expected = right(&forward);
+        let broken = Broken::new(paste(query), refracted, expected, "Snell's law in double precision");
+        let is = |v: Option<Vec3>| refracted.is_some() && near(refracted, v);
+        return Err(broken.explained_by([
+            (
+                query.entering && is(right(&backward)),
+                "entering: n1 = 1 (air), n2 = index_of_refraction (glass); you exchange them",
+            ),
+            (
+                !query.entering && is(right(&backward)),
+                "leaving: n1 = index_of_refraction (glass), n2 = 1 (air); you exchange them",
+            ),
+            (is(right(&backward)), "you exchange n1 and n2, on the way in and on the way out"),
+            (is(right(&turned)), "you turn the normal: it is already on the side that the ray comes from"),
+            (is(Some(query.direction)), "you do not refract the ray: its direction is that of refract"),
+        ]));
     }
-    Ok(())
+    let (reflected, (d, n)) =
+        (found(Bounce::Reflection), (query.direction.as_dvec3(), query.normal.as_dvec3()));
+    let expected = (d - 2.0 * d.dot(n) * n).as_vec3();
+    if near(reflected, Some(expected)) || near(reflected, Some(own.reflected)) {
+        return Ok(());
+    }
+    let is = |v: Vec3| near(reflected, Some(v));
+    Err(Broken::new(paste(query), reflected, Some(expected), "the direction of reflect").explained_by([
+        (is(query.direction), "your reflected ray goes straight on: its direction is that of reflect"),
+        (is(-query.direction), "your reflected ray goes straight back: its direction is that of reflect"),
+        (is(query.normal), "your reflected ray goes along the normal: its direction is that of reflect"),
+    ]))
 }
 
 pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) -> CheckResult {
     // R5: 60° inside glass. No ray is refracted, and 0 · NaN makes no NaN.
-    for (fresnel, mirrored) in [(Fresnel::None, 0.25), (Fresnel::Schlick, 1.0), (Fresnel::Exact, 1.0)] {
-        let query = ScatterQuery {
-            direction: vec3(0.866_025_4, -0.5, 0.0),
-            normal: Vec3::Y,
-            entering: false,
-            material: Material {
-                mirror: Vec3::splat(0.25),
-                transmission: Vec3::splat(0.75),
-                index_of_refraction: 1.5,
-                fresnel,
-                ..Material::default()
-            },
-            weight: Vec3::ONE,
-            depth: 0,
-            limits: FAR,
-        };
-        let yours = trial.kit.scatter(std::slice::from_ref(&query)).remove(0);
-        let reflected = find(&yours, Bounce::Reflection).map_or(0.0, |child| child.weight.x);
-        let refracted = find(&yours, Bounce::Transmission).is_some();
-        let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
-        if refracted || !sound || (reflected - mirrored).abs() > 1e-5 {
-            let expected = format!("Reflection of weight {mirrored}, and no Transmission");
-            let broken =
-                Broken::with_texts(paste(&query), describe(&yours), expected, "total internal reflection");
-            return Err(broken
-                .looks_like(Some("beyond the critical angle: no refracted ray, and Fresnel reflectance 1")));
-        }
+    let chosen = [Fresnel::None, Fresnel::Schlick, Fresnel::Exact].map(|fresnel| ScatterQuery {
+        direction: vec3(0.866_025_4, -0.5, 0.0),
+        normal: Vec3::Y,
+        entering: false,
+        material: Material {
+            mirror: Vec3::splat(0.25),
+            transmission: Vec3::splat(0.75),
+            index_of_refraction: 1.5,
+            fresnel,
+            ..Material::default()
+        },
+        weight: Vec3::ONE,
+        depth: 0,
+        limits: FAR,
+    });
+    let beyond =
+        queries().prop_filter("beyond the critical angle", |query| snell(&refract_query(query)).1 < -1e-3);
+    trial.forall_and(&chosen, 500, beyond, |queries| {
+        compare(queries, trial.kit.scatter(queries), judge_total_reflection)
+    })
+}
+
+fn judge_total_reflection(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResult {
+    let [weight, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
+    let share = if query.material.fresnel == Fresnel::None { 0.0 } else { 1.0 };
+    let expected = weight * (mirror + share * transmission);
+    let reflected = find(&yours, Bounce::Reflection).map_or(Vec3::ZERO, |child| child.weight);
+    let refracted = find(&yours, Bounce::Transmission);
+    let sound = yours.iter().all(|child| child.weight.is_finite() && child.direction.is_finite());
+    let is = |v: Vec3| (reflected - v).abs().max_element() <= 1e-5;
+    if refracted.is_none() && sound && is(expected) {
+        return Ok(());
     }
-    Ok(())
+    let text = format!("Reflection of weight {expected}, and no Transmission");
+    let broken = Broken::with_texts(paste(query), describe(&yours), text, "total internal reflection");
+    Err(broken.explained_by([
+        (
+            refracted.is_some(),
+            "beyond the critical angle there is no refracted ray: add it only if refract returns Some",
+        ),
+        (!sound, "a weight or direction is NaN: beyond the critical angle the Fresnel reflectance is 1"),
+        (
+            share == 1.0 && is(weight * mirror),
+            "beyond the critical angle the Fresnel reflectance is 1: the reflected ray gets mirror + transmission",
+        ),
+        (
+            share == 0.0 && is(weight * (mirror + transmission)),
+            "without Fresnel the reflected weight is weight · mirror, also beyond the critical angle",
+        ),
+    ]))
 }
 
 pub(super) fn scatter_skips_rays_without_weight(trial: &Trial<'_>) -> CheckResult {
-    // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing.
-    let dull = (queries(), 0..3i32).prop_map(|(query, which)| match which {
+    // R8: a secondary ray of weight 0 costs a whole tree of rays that add nothing. Every fourth surface does reflect.
+    let dull = (queries(), 0..4i32).prop_map(|(query, which)| match which {
         0 => ScatterQuery { material: Material::default(), ..query },
         1 => ScatterQuery { weight: Vec3::ZERO, ..query },
-        _ => {
+        2 => {
             // A red ray on a blue mirror: the product is 0.
             let material = Material { mirror: Vec3::Z, transmission: Vec3::ZERO, ..query.material };
+            ScatterQuery { weight: Vec3::X, material, ..query }
+        }
+        _ => {
+            let material = Material { mirror: Vec3::ONE, transmission: Vec3::ZERO, ..query.material };
             ScatterQuery { weight: Vec3::X, material, ..query }
         }
     });
     trial.forall(1000, dull, |queries| {
         compare(queries, trial.kit.scatter(queries), |query, yours| {
-            if yours.is_empty() {
+            let shines = query.weight * query.material.mirror != Vec3::ZERO;
+            if shines && find(&yours, Bounce::Reflection).is_some() || !shines && yours.is_empty() {
                 return Ok(());
             }
-            let broken =
-                Broken::with_texts(paste(query), describe(&yours), "no rays", "weight 0 adds nothing");
-            Err(broken.looks_like(Some("you trace a secondary ray of weight 0: test its own weight")))
+            let expected = if shines { "a reflected ray" } else { "no rays" };
+            let broken = Broken::with_texts(paste(query), describe(&yours), expected, "weight 0 adds nothing");
+            let parent = query.weight != Vec3::ZERO;
+            let material = query.material.mirror != Vec3::ZERO || query.material.transmission != Vec3::ZERO;
+            Err(broken.explained_by([
+                (
+                    !shines && parent && material,
+                    "you trace a ray of weight 0 where a ray of one colour meets a mirror of another: test the product",
+                ),
+                (!shines, "you trace a secondary ray of weight 0: test its own weight"),
+            ]))
         })
     })
 }

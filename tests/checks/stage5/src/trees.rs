@@ -1,7 +1,7 @@
 //! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
 use super::scatter::{FAR, paste};
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::{Trial, golden};
 use glam::{Vec3, vec3};
 use raykata::kit::{Bounce, Limits, ScatterQuery};
@@ -39,80 +39,114 @@ fn rays_in_a_room(trial: &Trial<'_>, material: &Material, limits: Limits) -> (us
     (rays, first)
 }
 
-fn judge(
-    trial: &Trial<'_>,
-    mirror: f32,
-    transmission: f32,
-    limits: Limits,
-    expected: usize,
-    diagnosis: &str,
-) -> CheckResult {
-    let material = Material {
-        mirror: Vec3::splat(mirror),
-        transmission: Vec3::splat(transmission),
-        ..Material::default()
-    };
-    let (rays, first) = rays_in_a_room(trial, &material, limits);
-    if rays == expected {
-        return Ok(());
+/// A closed room: its mirror and transmission, and the limits.
+type Room = (f32, f32, Limits);
+
+/// When a secondary ray is traced, by its depth and the weights of the incoming ray and of itself.
+type Rule = fn(depth: u32, parent: f32, own: f32, limits: &Limits) -> bool;
+
+/// The rule of the doc comment, then rules with a known mistake each.
+const RIGHT: Rule =
+    |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 && own >= limits.min_contribution;
+const MISTAKES: [(Rule, &str); 8] = [
+    (
+        |depth, _, own, limits| depth <= limits.max_depth + 1 && own > 0.0 && own >= limits.min_contribution,
+        "a ray of depth max_depth has no secondary rays: compare depth with limits.max_depth",
+    ),
+    (
+        |depth, _, own, limits| depth < limits.max_depth && own > 0.0 && own >= limits.min_contribution,
+        "you end the tree one ray too early: a ray of depth max_depth - 1 has secondary rays",
+    ),
+    (|_, _, own, limits| own > 0.0 && own >= limits.min_contribution, "you leave out limits.max_depth"),
+    (
+        |depth, _, own, limits| own > 0.0 && (depth <= limits.max_depth || own >= limits.min_contribution),
+        "you trace a ray if one limit allows it: both must allow it",
+    ),
+    (
+        |depth, _, own, limits| depth <= limits.max_depth && own >= limits.min_contribution,
+        "you trace rays of weight 0",
+    ),
+    (
+        |depth, parent, _, limits| {
+            depth <= limits.max_depth && parent > 0.0 && parent >= limits.min_contribution
+        },
+        "you test the weight of the incoming ray: test the secondary ray's own weight",
+    ),
+    (
+        |depth, parent, own, limits| {
+            depth <= limits.max_depth && own > 0.0 && parent >= limits.min_contribution
+        },
+        "you test the weight of the incoming ray: test the secondary ray's own weight",
+    ),
+    (
+        |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 && limits.min_contribution >= 0.0,
+        "you leave out limits.min_contribution: only the depth ends the tree",
+    ),
+];
+
+/// The number of rays in a room by a rule, up to [`TOO_MANY`].
+fn count((mirror, transmission, limits): &Room, rule: Rule) -> usize {
+    let mut level = vec![1.0f32];
+    let (mut rays, mut depth) = (0, 0);
+    while !level.is_empty() && rays < TOO_MANY {
+        rays += level.len();
+        depth += 1;
+        let children = |parent: f32| [parent * mirror, parent * transmission].map(|own| (parent, own));
+        let traced = level.iter().flat_map(|parent| children(*parent));
+        level =
+            traced.filter(|(parent, own)| rule(depth, *parent, *own, limits)).map(|(_, own)| own).collect();
     }
+    rays
+}
+
+/// Counts the rays of each room. `allows` says which other numbers pass.
+fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> bool) -> CheckResult {
     let describe =
         |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "an infinite tree".into() };
-    let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
-    Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").looks_like(Some(diagnosis)))
+    let judge = |room: &Room| {
+        let material = Material {
+            mirror: Vec3::splat(room.0),
+            transmission: Vec3::splat(room.1),
+            ..Material::default()
+        };
+        let (rays, first) = rays_in_a_room(trial, &material, room.2);
+        let expected = count(room, RIGHT);
+        if rays == expected || allows(room, rays) {
+            return Ok(());
+        }
+        let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
+        // A tree that exceeds the limit is infinite by any of the rules that exceed it.
+        let gives = |rule: Rule| count(room, rule).min(TOO_MANY) == rays.min(TOO_MANY);
+        Err(Broken::with_texts(input, describe(rays), describe(expected), "counted")
+            .explained_by(MISTAKES.map(|(rule, text)| (gives(rule), text))))
+    };
+    all_hold(rooms.iter().map(judge).collect())
 }
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
-    let depth = "a ray of depth max_depth has no secondary rays: compare depth with limits.max_depth";
-    for (max_depth, expected) in [(0, 1), (1, 3), (2, 7), (5, 63), (10, 2047)] {
-        judge(trial, 0.5, 0.5, Limits { max_depth, ..FAR }, expected, depth)?;
-    }
+    let deep = |max_depth: u32| (0.5, 0.5, Limits { max_depth, ..FAR });
     // R8: surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
-    judge(trial, 0.0, 0.0, Limits { max_depth: 10, ..FAR }, 1, "you trace rays of weight 0")
+    let dull = (0.0, 0.0, Limits { max_depth: 10, ..FAR });
+    judge(trial, &[deep(0), deep(1), deep(2), deep(5), deep(10), dull], |_, _| false)
 }
 
 pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult {
-    // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays.
-    let parent = "you test the weight of the incoming ray: test the secondary ray's own weight";
-    let limits = |min_contribution: f32| Limits { max_depth: 100, min_contribution };
-    // Without the limit on the weight there are 1 + 20 rays.
-    let left_out = "you leave out limits.min_contribution: only the depth ends the tree";
-    let halving = judge(trial, 0.5, 0.0, Limits { max_depth: 20, min_contribution: 0.01 }, 7, parent);
-    halving.map_err(|broken| match broken.yours.as_str() {
-        "21 rays" => broken.looks_like(Some(left_out)),
-        _ => broken,
-    })?;
-    judge(trial, 0.5, 0.5, limits(0.01), 127, parent)?;
-    judge(trial, 0.5, 0.0, limits(0.01), 7, parent)?;
+    // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays. No weight is
+    // equal to the limit, because another check asks about that.
+    let halving = |mirror: f32, transmission: f32, max_depth: u32| {
+        (mirror, transmission, Limits { max_depth, min_contribution: 0.01 })
+    };
     judge(
         trial,
-        0.25,
-        0.5,
-        limits(0.5),
-        2,
-        "a weight equal to min_contribution is traced, and a smaller one is not",
-    )?;
-    // Both limits hold: the tree ends at the one that is reached first.
-    judge(
-        trial,
-        0.5,
-        0.5,
-        Limits { max_depth: 3, min_contribution: 0.01 },
-        15,
-        "test both limits: depth and weight",
+        &[halving(0.5, 0.0, 20), halving(0.5, 0.5, 100), halving(0.5, 0.0, 100), halving(0.25, 0.7, 30)],
+        |_, _| false,
     )
 }
 
 pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> CheckResult {
-    // A perfect mirror keeps the whole weight, so only the depth ends the tree.
-    judge(
-        trial,
-        1.0,
-        0.0,
-        Limits { max_depth: 50, min_contribution: 0.001 },
-        51,
-        "the weight stays 1 here: max_depth must end the tree",
-    )
+    // A perfect mirror keeps the whole weight, so only the depth ends the tree. Another check counts the depth exactly.
+    let mirrors = (1.0, 0.0, Limits { max_depth: 50, min_contribution: 0.001 });
+    judge(trial, &[mirrors], |room, rays| (50..=52).contains(&rays) && room.0 == 1.0)
 }
 
 /// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution gives this tree.

@@ -35,47 +35,76 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckRe
     };
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
-    let judge = |queries: &[ScatterQuery]| compare(queries, trial.kit.scatter(queries), judge_own_weight);
-    judge(&drawn).into_iter().collect::<CheckResult>()?;
-    trial.forall(2000, queries, judge)
+    trial.forall_and(&drawn, 2000, queries, |queries| {
+        compare(queries, trial.kit.scatter(queries), judge_own_weight)
+    })
 }
 
 fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResult {
     let least = query.limits.min_contribution;
     let [parent, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
-    let weights = [mirror, transmission].map(|share| (parent * share).max_element());
-    let counts = weights.map(|weight| weight > 0.0 && weight >= least);
+    let own = [parent * mirror, parent * transmission];
+    let counts = own.map(|weight| weight.max_element() > 0.0 && weight.max_element() >= least);
     let found = [Bounce::Reflection, Bounce::Transmission].map(|bounce| find(&yours, bounce).is_some());
     if found == counts {
         return Ok(());
     }
-    let off = usize::from(found[0] == counts[0]);
-    let (weight, other) = (weights[off], weights[1 - off]);
-    let diagnosis = match (found[off], weight) {
-        (true, 0.0) => "you trace a secondary ray of weight 0, which adds nothing",
-        (true, _) if other >= least && parent.max_element() >= least => {
-            "you test the weight of the incoming ray or of the other secondary ray: test each ray's own"
-        }
-        (true, _) if parent.max_element() >= least => {
-            "you test the weight of the incoming ray: test the secondary ray's own weight"
-        }
-        (true, _) => "you leave out min_contribution",
-        (false, _) if weight == least => {
-            "you leave out a ray whose weight is equal to min_contribution: trace it"
-        }
-        (false, _) if other < least => {
-            "you test the weight of the other secondary ray: test each ray's own weight"
-        }
-        (false, _) => "you leave out a ray with one channel at the limit or above: test the largest channel",
+    // What other rules trace. Each rule gets the own weight and the weight of the other ray, and may test that the own one
+    // is above 0 as well.
+    let traces = |rule: &dyn Fn(Vec3, Vec3) -> bool| {
+        let all = [rule(own[0], own[1]), rule(own[1], own[0])];
+        let above = [0, 1].map(|i| all[i] && own[i].max_element() > 0.0);
+        found == all || found == above
     };
-    let kind = ["Reflection", "Transmission"][off];
-    let verdict =
-        |traced: bool| format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" });
-    Err(Broken::with_texts(
-        paste(query),
-        verdict(found[off]),
-        verdict(counts[off]),
-        "its own weight and the limit",
-    )
-    .looks_like(Some(diagnosis)))
+    let largest = |weight: Vec3| weight.max_element();
+    let off = usize::from(found[0] == counts[0]);
+    let verdict = |traced: bool| {
+        let (kind, weight) = (["Reflection", "Transmission"][off], own[off]);
+        format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" })
+    };
+    let (yours, expected) = (verdict(found[off]), verdict(counts[off]));
+    Err(Broken::with_texts(paste(query), yours, expected, "its own weight and the limit").explained_by([
+        (
+            traces(&|own, _| largest(own) > least),
+            "you leave out a ray whose weight is equal to min_contribution: trace it",
+        ),
+        (traces(&|own, _| largest(own) >= 0.0), "you leave out min_contribution"),
+        (
+            found == [0, 1].map(|i| largest(own[i]) >= least),
+            "you trace a secondary ray of weight 0, which adds nothing",
+        ),
+        (
+            traces(&|_, _| largest(parent) >= least) || traces(&|_, _| largest(parent) > least),
+            "you test the weight of the incoming ray: test the secondary ray's own weight",
+        ),
+        (
+            traces(&|own, other| largest(own).max(largest(other)) >= least),
+            "you trace both rays if one is large enough: test each ray's own weight",
+        ),
+        (
+            traces(&|own, other| largest(own).min(largest(other)) >= least),
+            "you trace both rays or none: test each ray's own weight",
+        ),
+        (
+            traces(&|own, other| largest(own + other) >= least),
+            "you test the sum of both weights: test each ray's own weight",
+        ),
+        (traces(&|own, _| own.min_element() >= least), "you test the smallest channel: test the largest one"),
+        (
+            traces(&|own, _| own.element_sum() / 3.0 >= least),
+            "you test the mean of the channels: test the largest one",
+        ),
+        (
+            traces(&|own, _| own.element_sum() >= least),
+            "you test the sum of the channels: test the largest one",
+        ),
+        (
+            traces(&|own, _| own.length() >= least),
+            "you test the length of the weight: test the largest channel",
+        ),
+        (
+            traces(&|own, _| largest(own) * largest(parent) >= least),
+            "you multiply by the weight of the incoming ray twice",
+        ),
+    ]))
 }

@@ -1,219 +1,353 @@
 //! Points of area lights.
 
-use super::lens::{polar, uneven_disk};
+use super::lens::{is_polar, polar, uneven_disk};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
+use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
 use glam::{DVec3, Vec2, Vec3, vec3};
 use raykata::kit::{RectangleQuery, SphereSampleQuery};
 use raykata::shape::{Disk, Sphere};
 
+/// The largest random number, just below 1.
+const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// Random numbers for a statistical test, and the four corners of the unit square, which a test of counts does not notice.
+fn numbers(seed: u64) -> Vec<Vec2> {
+    let corners = [0.0, LARGEST].map(|x| [Vec2::new(x, 0.0), Vec2::new(x, LARGEST)]);
+    corners.as_flattened().iter().copied().chain(pairs(seed, SAMPLES - 4)).collect()
+}
+
+/// Rectangles in all orientations, some not at right angles, of different sizes and at different places.
+fn rectangles() -> Vec<(Vec3, (Vec3, Vec3))> {
+    let frames = nasty::directions();
+    let rectangle = |(index, axis): (usize, &Vec3)| {
+        let (x, y) = axis.any_orthonormal_pair();
+        let size = [1.0, 0.125, 40.0][index % 3];
+        let lean = [0.0, 0.5, -0.25][index % 3];
+        let corner = [vec3(1.0, 5.0, -2.0), Vec3::ZERO, vec3(-30.0, 0.0, 7.0)][index % 3];
+        (corner, (3.0 * size * x, size * (2.0 * y + lean * x)))
+    };
+    frames.iter().enumerate().map(rectangle).collect()
+}
+
 pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
-    let (corner, edges) = (vec3(1.0, 5.0, -2.0), (vec3(3.0, 0.0, 0.0), vec3(0.5, 0.0, 2.0)));
-    let queries: Vec<RectangleQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| RectangleQuery { corner, edges, u }).collect();
+    let rectangles = rectangles();
+    let query = |(index, u): (usize, Vec2)| {
+        let (corner, edges) = rectangles[index % rectangles.len()];
+        RectangleQuery { corner, edges, u }
+    };
+    let queries: Vec<RectangleQuery> = numbers(trial.seed).into_iter().enumerate().map(query).collect();
     let answers = trial.kit.sample_rectangle(&queries);
     let mut shares = Vec::new();
-    for (query, point) in queries.iter().zip(answers) {
-        // Solve for the fractions of both edges. Only the second edge has a z component.
-        let from_corner = point.as_dvec3() - corner.as_dvec3();
-        let v = from_corner.z / 2.0;
-        let u = (from_corner.x - 0.5 * v) / 3.0;
-        let inside = |share: f64| (-1e-6..=1.0 + 1e-6).contains(&share); // roundings of coordinates up to 5
-        if !(inside(u) && inside(v) && from_corner.y.abs() < 1e-6) {
-            let broken = Broken::new(
-                format!(
-                    "sample_rectangle({}, ({}, {}), {})",
-                    corner.paste(),
-                    edges.0.paste(),
-                    edges.1.paste(),
-                    query.u.paste()
-                ),
-                point,
-                "a point of the rectangle",
-                "the definition",
-            );
-            let to_corners =
-                (1.0 - query.u.x - query.u.y) * corner + query.u.x * edges.0 + query.u.y * edges.1;
-            let diagnosis = match () {
-                () if (point - to_corners).length() < 1e-5 => {
-                    "you use the edges as positions of corners: they are vectors from the corner"
-                }
-                () if (-1.0..1.0).contains(&u) && (-1.0..1.0).contains(&v) => {
-                    "you use the corner as the centre of the rectangle"
-                }
-                () => "",
-            };
-            return Err(broken.looks_like(checks::judge::known(diagnosis)));
-        }
-        shares.push((u, v));
-    }
+    let judge = |(query, point): (&RectangleQuery, &Vec3)| judge_rectangle_point(query, *point, &mut shares);
+    all_hold(queries.iter().zip(&answers).map(judge).collect())?;
     covers_evenly("sample_rectangle(…, u)", &shares, ["the first edge", "the second edge"], |counts| {
         // 28 of the 64 cells lie beyond the diagonal.
         let hit = counts.iter().filter(|count| **count > 0).count();
-        if hit == 36 { "your points fill a triangle: half of the rectangle is missing" } else { "" }
+        let mut mistakes = unused_number(|u| {
+            let query = |u: &Vec2| RectangleQuery { u: *u, ..queries[0] };
+            trial.kit.sample_rectangle(&u.iter().map(query).collect::<Vec<_>>())
+        });
+        mistakes.push((hit == 36, "your points fill a triangle: half of the rectangle is missing"));
+        mistakes
     })
 }
 
-pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult {
-    let disk = Disk { center: vec3(1.0, 2.0, 3.0), normal: vec3(0.0, 3.0, -4.0), radius: 2.5 };
-    let u = pairs(trial.seed, SAMPLES);
-    let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disk, *u)).collect();
-    let normal = disk.normal.normalize();
-    let (x, y) = normal.any_orthonormal_pair();
-    let mut places = Vec::new();
-    for (u, point) in u.iter().zip(trial.kit.sample_light_disk(&queries)) {
-        let offset = point - disk.center;
-        // The tolerance covers a few roundings of coordinates up to 5.
-        if !(offset.dot(normal).abs() < 5e-6 && offset.length() < disk.radius + 5e-6) {
-            let input = format!(
-                "sample_light_disk(&Disk {{ center: {}, normal: {}, radius: {} }}, {})",
-                disk.center.paste(),
-                disk.normal.paste(),
-                disk.radius.paste(),
-                u.paste()
-            );
-            let beside = !(offset.dot(normal).abs() < 5e-6);
-            let diagnosis = match () {
-                () if beside && (offset.y == 0.0 || offset.z == 0.0) => {
-                    "you leave out the normal: your disk is parallel to a coordinate plane"
-                }
-                () if beside => "your point is outside the plane of the disk: normalize disk.normal first",
-                () => "your point is farther from the centre than the radius",
-            };
-            let broken = Broken::new(input, point, "a point of the disk", "the definition");
-            return Err(broken.looks_like(checks::judge::known(diagnosis)));
-        }
-        places.push(polar(Vec2::new(offset.dot(x), offset.dot(y)) / disk.radius));
+/// Whether a point belongs to its rectangle. Adds its fractions of both edges to `shares`.
+fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(f64, f64)>) -> CheckResult {
+    let [corner, first, second] = [query.corner, query.edges.0, query.edges.1].map(Vec3::as_dvec3);
+    let from_corner = point.as_dvec3() - corner;
+    // Solve for the fractions of both edges with the vectors that are perpendicular to the other edge, in the plane.
+    let normal = first.cross(second);
+    let u = from_corner.dot(second.cross(normal)) / first.dot(second.cross(normal));
+    let v = from_corner.dot(first.cross(normal)) / second.dot(first.cross(normal));
+    // A few roundings of the coordinates, as a fraction of the shorter edge.
+    let size = first.length().min(second.length());
+    let slack = 1e-6 * (corner.length() + first.length() + second.length()) / size;
+    let inside = |share: f64| (-slack..=1.0 + slack).contains(&share);
+    let height = (from_corner - u * first - v * second).length();
+    if inside(u) && inside(v) && height <= slack * size {
+        shares.push((u, v));
+        return Ok(());
     }
-    covers_evenly("sample_light_disk(…, u)", &places, ["radius²", "angle"], uneven_disk)
+    let is = |place: DVec3| (point.as_dvec3() - place).length() <= slack * size;
+    let (x, y) = (f64::from(query.u.x), f64::from(query.u.y));
+    let input = format!(
+        "sample_rectangle({}, ({}, {}), {})",
+        query.corner.paste(),
+        query.edges.0.paste(),
+        query.edges.1.paste(),
+        query.u.paste()
+    );
+    Err(Broken::new(input, point, "a point of the rectangle", "the definition").explained_by([
+        (
+            is((1.0 - x - y) * corner + x * first + y * second),
+            "you use the edges as positions of corners: they are vectors from the corner",
+        ),
+        (
+            is(corner + (x - 0.5) * first + (y - 0.5) * second)
+                || is(corner + (2.0 * x - 1.0) * first + (2.0 * y - 1.0) * second),
+            "you use the corner as the centre of the rectangle",
+        ),
+        (is(x * first + y * second), "you leave out the corner"),
+    ]))
 }
 
-/// The directions to a sphere as two fractions of its solid angle: from the axis of the cone to its rim, and around the
-/// axis.
-fn seen(trial: &Trial<'_>, sphere: Sphere, from: Vec3) -> Result<Vec<(f64, f64)>, Broken> {
-    let queries: Vec<SphereSampleQuery> =
-        pairs(trial.seed, SAMPLES).into_iter().map(|u| SphereSampleQuery { sphere, from, u }).collect();
+/// Disks in all orientations, with normals of different lengths.
+fn disks() -> Vec<Disk> {
+    let frames = nasty::directions();
+    let disk = |(index, axis): (usize, &Vec3)| Disk {
+        center: [vec3(1.0, 2.0, 3.0), Vec3::ZERO, vec3(-9.0, 0.5, 0.0)][index % 3],
+        normal: [5.0, 1.0, 0.01, 300.0][index % 4] * *axis,
+        radius: [2.5, 0.125, 30.0][index % 3],
+    };
+    frames.iter().enumerate().map(disk).collect()
+}
+
+pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult {
+    let disks = disks();
+    let u = numbers(trial.seed);
+    let queries: Vec<(Disk, Vec2)> =
+        u.iter().enumerate().map(|(index, u)| (disks[index % disks.len()], *u)).collect();
+    let answers = trial.kit.sample_light_disk(&queries);
+    let mut places = Vec::new();
+    let judge = |(query, point): (&(Disk, Vec2), &Vec3)| judge_disk_point(query, *point, &mut places);
+    all_hold(queries.iter().zip(&answers).map(judge).collect())?;
+    let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
+    covers_evenly("sample_light_disk(…, u)", &shares, ["radius²", "angle"], |counts| {
+        let mut mistakes = unused_number(|u| {
+            let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disks[0], *u)).collect();
+            trial.kit.sample_light_disk(&queries)
+        });
+        mistakes.extend(uneven_disk(counts, is_polar(&u, &places)));
+        mistakes
+    })
+}
+
+/// Whether a point belongs to its disk. Adds its place on the disk of radius 1 to `places`.
+fn judge_disk_point((disk, u): &(Disk, Vec2), point: Vec3, places: &mut Vec<Vec2>) -> CheckResult {
+    let offset = point.as_dvec3() - disk.center.as_dvec3();
+    let normal = disk.normal.as_dvec3().normalize();
+    let radius = f64::from(disk.radius);
+    // A few roundings of the coordinates.
+    let slack = 1e-6 * (disk.center.as_dvec3().length() + radius);
+    let height = offset.dot(normal);
+    if height.abs() <= slack && offset.length() <= radius + slack {
+        let (x, y) = normal.any_orthonormal_pair();
+        places.push(Vec2::new((offset.dot(x) / radius) as f32, (offset.dot(y) / radius) as f32));
+        return Ok(());
+    }
+    let flat = [DVec3::X, DVec3::Y, DVec3::Z].iter().any(|axis| offset.dot(*axis) == 0.0);
+    let beside = !(height.abs() <= slack);
+    let input = format!("sample_light_disk({}, {})", disk.paste(), u.paste());
+    Err(Broken::new(input, point, "a point of the disk", "the definition").explained_by([
+        (point.is_nan(), "you return NaN: your two axes do not exist for this normal"),
+        (beside && flat, "you leave out the normal: your disk is parallel to a coordinate plane"),
+        (
+            beside && (disk.normal.length() - 1.0).abs() > 1e-3,
+            "your point is outside the plane of the disk where disk.normal is not a unit vector: normalize it",
+        ),
+        (beside, "your point is outside the plane of the disk"),
+        (!beside, "your point is farther from the centre than the radius"),
+    ]))
+}
+
+/// Spheres seen from outside or inside: `distance` away, in units of the radius, in all directions, with different radii and
+/// from different points.
+fn spheres(distance: f32, from: &[Vec3]) -> Vec<(Sphere, Vec3)> {
+    let frames = nasty::directions();
+    let sphere = |(index, axis): (usize, &Vec3)| {
+        let (radius, from) = ([2.4, 0.01, 100.0][index % 3], from[index % from.len()]);
+        (Sphere { center: from + distance * radius * *axis, radius }, from)
+    };
+    frames.iter().enumerate().map(sphere).collect()
+}
+
+/// The directions to spheres that are seen at the same distance in radii.
+struct Seen {
+    u: Vec<Vec2>,
+    /// Two fractions of the solid angle of the sphere: from the axis of the cone to its rim, and around the axis.
+    shares: Vec<(f64, f64)>,
+    /// 1 - cos θ of the rim, and of each direction.
+    rims: Vec<f64>,
+    /// Each direction in the frame of its cone: along the axis, and along two vectors at right angles to it.
+    local: Vec<DVec3>,
+}
+
+impl Seen {
+    /// How many different angles to the axis there are, of those of the first sphere, up to a thousandth.
+    fn n_angles(&self) -> usize {
+        let mut angles: Vec<u64> = self.shares.iter().map(|(share, _)| (share * 1e3) as u64).collect();
+        angles.sort_unstable();
+        angles.dedup();
+        angles.len()
+    }
+
+    /// What a wrong formula for 1 - cos θ gives: `share` computes it from a random number and that of the rim.
+    fn is(&self, below_one: fn(u: f64, rim: f64) -> f64) -> bool {
+        let number = |u: &Vec2, which: usize| match which {
+            0 => f64::from(u.x),
+            1 => f64::from(u.y),
+            2 => 1.0 - f64::from(u.x),
+            _ => 1.0 - f64::from(u.y),
+        };
+        (0..4).any(|which| {
+            let all = self.u.iter().zip(&self.shares).zip(&self.rims);
+            all.clone()
+                .all(|((u, (share, _)), rim)| (share - below_one(number(u, which), *rim) / rim).abs() < 1e-2)
+        })
+    }
+}
+
+fn sphere_call(query: &SphereSampleQuery) -> String {
+    format!("sample_sphere({}, {}, {})", query.sphere.paste(), query.from.paste(), query.u.paste())
+}
+
+/// Samples spheres in turn. Every direction must have unit length and lead to its sphere.
+fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)]) -> Result<Seen, Broken> {
+    let u = numbers(trial.seed);
+    let query = |(index, u): (usize, &Vec2)| {
+        let (sphere, from) = spheres[index % spheres.len()];
+        SphereSampleQuery { sphere, from, u: *u }
+    };
+    let queries: Vec<SphereSampleQuery> = u.iter().enumerate().map(query).collect();
+    let mut seen = Seen { u, shares: Vec::new(), rims: Vec::new(), local: Vec::new() };
+    let answers = trial.kit.sample_sphere(&queries);
+    let judge = |(query, direction)| judge_direction(query, direction, &mut seen);
+    all_hold(queries.iter().zip(answers).map(judge).collect())?;
+    Ok(seen)
+}
+
+fn judge_direction(query: &SphereSampleQuery, direction: Vec3, seen: &mut Seen) -> CheckResult {
+    let SphereSampleQuery { sphere, from, .. } = query;
     let to_center = sphere.center.as_dvec3() - from.as_dvec3();
     let sin_squared = f64::from(sphere.radius).powi(2) / to_center.length_squared();
-    let widest = if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 };
+    let inside = sin_squared >= 1.0;
+    let widest = if inside { 2.0 } else { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) };
     let axis = to_center.normalize();
     let (x, y) = axis.any_orthonormal_pair();
-    let mut shares = Vec::new();
-    for (query, direction) in queries.iter().zip(trial.kit.sample_sphere(&queries)) {
-        let toward = direction.as_dvec3();
-        // Compute 1 - cos θ from the sine, which is precise for small angles.
-        let sine_squared = toward.cross(axis).length_squared();
-        let cosine = toward.dot(axis);
-        let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
-        let share = below_one / widest;
-        // The tolerance covers the rounding of the direction: 1e-7 of an angle of √(2 · widest).
-        let slack = 4e-7 / widest.sqrt();
-        let unit = (toward.length() - 1.0).abs() < 1e-5;
-        if !(unit && share <= 1.0 + slack) {
-            let input = format!(
-                "sample_sphere(&Sphere {{ center: {}, radius: {} }}, {}, {})",
-                sphere.center.paste(),
-                sphere.radius.paste(),
-                from.paste(),
-                query.u.paste()
-            );
-            let broken = Broken::new(input, direction, "a unit direction to the sphere", "the definition");
-            let diagnosis = match () {
-                () if direction.is_nan() => "you return NaN: from inside the sphere 1 - sin² is negative",
-                () if !unit => "your direction does not have unit length",
-                () => "your direction misses the sphere",
-            };
-            return Err(broken.looks_like(Some(diagnosis)));
-        }
-        shares.push((share, toward.dot(y).atan2(toward.dot(x)) / std::f64::consts::TAU + 0.5));
+    let toward = direction.as_dvec3();
+    // Compute 1 - cos θ from the sine, which is precise for small angles.
+    let sine_squared = toward.cross(axis).length_squared();
+    let cosine = toward.dot(axis);
+    let below_one = if cosine > 0.0 { sine_squared / (1.0 + cosine) } else { 1.0 - cosine };
+    let share = below_one / widest;
+    // The tolerance covers the rounding of the direction, a few times 1e-7 of an angle of √(2 · widest).
+    let slack = 8e-7 / widest.sqrt();
+    let unit = (toward.length() - 1.0).abs() < 1e-5;
+    if unit && share <= 1.0 + slack {
+        seen.shares.push((share, toward.dot(y).atan2(toward.dot(x)) / std::f64::consts::TAU + 0.5));
+        seen.rims.push(widest);
+        seen.local.push(DVec3::new(cosine, toward.dot(x), toward.dot(y)));
+        return Ok(());
     }
-    Ok(shares)
+    let broken =
+        Broken::new(sphere_call(query), direction, "a unit direction to the sphere", "the definition");
+    Err(broken.explained_by([
+        (inside && direction.is_nan(), "you return NaN: from inside the sphere 1 - sin² is negative"),
+        (direction.is_nan(), "you return NaN"),
+        (!unit, "your direction does not have unit length"),
+        (cosine < 0.0, "your direction misses the sphere: it goes away from it"),
+        (unit, "your direction misses the sphere"),
+    ]))
 }
 
 const AXES: [&str; 2] = ["1 - cos θ, as a fraction of the rim's", "the angle around the axis"];
 
+/// Whether a random number is not used for a sphere.
+fn unused(trial: &Trial<'_>, (sphere, from): (Sphere, Vec3)) -> Mistakes {
+    unused_number(|u| {
+        let query = |u: &Vec2| SphereSampleQuery { sphere, from, u: *u };
+        trial.kit.sample_sphere(&u.iter().map(query).collect::<Vec<_>>())
+    })
+}
+
+/// Points of view for which `center - from` is exact or nearly so.
+const HERE: [Vec3; 2] = [Vec3::ZERO, vec3(1.0, -1.0, 2.0)];
+
 pub(super) fn directions_to_a_sphere_are_even(trial: &Trial<'_>) -> CheckResult {
-    let sphere = Sphere { center: vec3(1.0, 4.0, 2.0), radius: 2.4 };
-    let from = vec3(1.0, 1.0, 2.0);
-    let shares = seen(trial, sphere, from)?;
-    covers_evenly("sample_sphere from 1.25 radii away", &shares, AXES, |counts| {
+    let spheres = spheres(1.25, &HERE);
+    let seen = seen(trial, &spheres)?;
+    covers_evenly("sample_sphere from 1.25 radii away", &seen.shares, AXES, |counts| {
         let rings = columns(counts);
-        if rings[7] == 0 {
-            "you never sample the rim of the sphere, where sin θ = radius / distance"
-        } else if 2 * rings[0] > 3 * rings[7] {
-            "too many directions near the centre: make cos θ uniform"
-        } else if 2 * rings[7] > 3 * rings[0] {
-            "too many directions near the rim"
-        } else {
-            ""
-        }
+        let mut mistakes = unused(trial, spheres[0]);
+        mistakes.extend([
+            (
+                seen.is(|u, rim| 1.0 - (u * (1.0 - rim).acos()).cos()),
+                "too many directions near the centre: your θ is uniform; make cos θ uniform",
+            ),
+            (
+                seen.is(|u, rim| 1.0 - (1.0 - u * (1.0 - (1.0 - rim).powi(2))).sqrt()),
+                "too many directions near the centre: your sin² θ is uniform; make cos θ uniform",
+            ),
+            (rings[7] == 0, "you never sample the rim of the sphere, where sin θ = radius / distance"),
+            (2 * rings[0] > 3 * rings[7], "too many directions near the centre"),
+            (2 * rings[7] > 3 * rings[0], "too many directions near the rim"),
+        ]);
+        mistakes
     })?;
     // The irradiance of a surface that faces the sphere: the mean of cos θ over the cone is (1 + cos of its rim) / 2.
-    let cos_rim = 0.6; // its sine is 2.4 / 3
-    let cosines: Vec<f64> = shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
-    has_mean(
-        "the cosine of sample_sphere with the direction to the centre",
-        &cosines,
-        0.5 * (1.0 + cos_rim),
-        "",
-    )
+    let cos_rim = 0.6; // its sine is 1 / 1.25
+    let cosines: Vec<f64> = seen.shares.iter().map(|(share, _)| 1.0 - share * (1.0 - cos_rim)).collect();
+    let what = "the cosine of sample_sphere with the direction to the centre";
+    has_mean(what, &cosines, 0.5 * (1.0 + cos_rim), |_| Vec::new())
 }
 
 pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
-    // Ten thousand radii away 1 - cos θ of the rim is 5e-9, so cos θ is rounded to 1 in f32.
-    let sphere = Sphere { center: vec3(0.0, 100.0, 0.0), radius: 0.01 };
-    let rounded = "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)";
-    let shares = seen(trial, sphere, Vec3::ZERO)?;
-    covers_evenly("sample_sphere from 10,000 radii away", &shares, AXES, |counts| {
-        // Directions are rounded to a thousandth of the rim's angle, which moves no direction by more than a cell.
-        if counts.iter().max() > Some(&(SAMPLES as u64 / 8)) { rounded } else { "" }
+    // Ten thousand radii away 1 - cos θ of the rim is 5e-9, so cos θ is rounded to 1 in f32. The point of view is the origin,
+    // so that no rounding of the difference adds to this.
+    let far = seen(trial, &spheres(1e4, &HERE[..1]))?;
+    covers_evenly("sample_sphere from 10,000 radii away", &far.shares, AXES, |_| {
+        // The formula is right for a near sphere, and gives few angles for a far one.
+        let near = seen(trial, &spheres(1.25, &HERE[..1]));
+        let rounded = far.n_angles() <= 8 && near.is_ok_and(|near| near.n_angles() > 500);
+        vec![(rounded, "your 1 - cos θ is rounded: compute it as sin²θ / (1 + cos θ)")]
     })
 }
 
 pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckResult {
-    let sphere = Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 };
-    let shares = seen(trial, sphere, vec3(0.5, 0.0, 0.5))?;
-    covers_evenly("sample_sphere from inside", &shares, AXES, |counts| {
+    let spheres = spheres(0.4, &HERE);
+    let seen = seen(trial, &spheres)?;
+    covers_evenly("sample_sphere from inside", &seen.shares, AXES, |counts| {
         let rings = columns(counts);
-        if rings[4..].iter().sum::<u64>() == 0 {
-            "your directions fill one hemisphere: from inside use all directions"
-        } else {
-            ""
-        }
+        let mut mistakes = unused(trial, spheres[0]);
+        mistakes.push((
+            rings[4..].iter().sum::<u64>() == 0,
+            "your directions fill one hemisphere: from inside use all directions",
+        ));
+        mistakes
     })?;
     // From the centre any unit direction passes, and NaN fails.
-    let query = SphereSampleQuery { sphere, from: sphere.center, u: Vec2::splat(0.25) };
-    let direction = trial.kit.sample_sphere(&[query])[0];
-    if (direction.length() - 1.0).abs() < 1e-5 {
-        return Ok(());
-    }
-    let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
-    Err(Broken::new(input, direction, "any unit direction", "the definition").looks_like(
-        direction.is_nan().then_some("from the centre the vector to the centre is 0: use any axis"),
-    ))
+    let query = |u: Vec2| SphereSampleQuery {
+        sphere: Sphere { center: vec3(0.0, 1.0, 0.0), radius: 3.0 },
+        from: vec3(0.0, 1.0, 0.0),
+        u,
+    };
+    let queries = [Vec2::splat(0.25), Vec2::ZERO, Vec2::splat(LARGEST)].map(query);
+    let judge = |(query, direction): (&SphereSampleQuery, Vec3)| {
+        if (direction.length() - 1.0).abs() < 1e-5 {
+            return Ok(());
+        }
+        let input = format!("sample_sphere from the centre of the sphere, {}", call("u =", &[&query.u]));
+        Err(Broken::new(input, direction, "any unit direction", "the definition").explained_by([(
+            direction.is_nan(),
+            "from the centre the vector to the centre is 0: use any axis",
+        )]))
+    };
+    all_hold(queries.iter().zip(trial.kit.sample_sphere(&queries)).map(judge).collect())
 }
 
 /// The fraction of a sphere that is visible past the straight edge of a wall.
 pub(super) fn half_a_sphere_makes_half_a_shadow(trial: &Trial<'_>) -> CheckResult {
-    let sphere = Sphere { center: vec3(0.0, 3.0, 0.0), radius: 1.0 };
-    let queries: Vec<SphereSampleQuery> = pairs(trial.seed, SAMPLES)
-        .into_iter()
-        .map(|u| SphereSampleQuery { sphere, from: Vec3::ZERO, u })
-        .collect();
-    let directions = trial.kit.sample_sphere(&queries);
-    for normal in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
-        let seen: Vec<f64> = directions
-            .iter()
-            .map(|direction| f64::from(u8::from(direction.as_dvec3().dot(normal) > 0.0)))
-            .collect();
-        has_mean(
-            "sample_sphere past a wall that hides exactly half of the sphere",
-            &seen,
-            0.5,
-            "you sample one side of the sphere more often than the other",
-        )?;
+    let seen = seen(trial, &spheres(3.0, &HERE))?;
+    for normal in [DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.0, 0.6, -0.8)] {
+        let visible: Vec<f64> =
+            seen.local.iter().map(|direction| f64::from(u8::from(direction.dot(normal) > 0.0))).collect();
+        has_mean("sample_sphere past a wall that hides exactly half of the sphere", &visible, 0.5, |_| {
+            vec![(true, "you sample one side of the sphere more often than the other")]
+        })?;
     }
     Ok(())
 }

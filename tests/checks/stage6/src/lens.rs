@@ -2,10 +2,11 @@
 
 use super::pixels::unit_number;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Paste, call};
-use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
+use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 use proptest::prelude::*;
 use raykata::camera::{Camera, Lens};
@@ -18,87 +19,136 @@ pub(super) fn polar(place: Vec2) -> (f64, f64) {
     (x * x + y * y, y.atan2(x) / std::f64::consts::TAU + 0.5)
 }
 
-/// What is wrong with a distribution on a disk, by the counts in rings of equal area from the centre outwards.
-pub(super) fn uneven_disk(counts: &[u64]) -> &'static str {
+/// Wrong polar coordinates that reproduce all points of the unit disk: which radius and angle they have.
+pub(super) fn is_polar(u: &[Vec2], places: &[Vec2]) -> Mistakes {
+    let number = |u: &Vec2, which: usize| [u.x, u.y, 1.0 - u.x, 1.0 - u.y][which];
+    let radius_is = |radius: fn(f32) -> f32| {
+        (0..4).any(|which| {
+            u.iter().zip(places).all(|(u, place)| (place.length() - radius(number(u, which))).abs() < 1e-3)
+        })
+    };
+    vec![
+        (
+            radius_is(|u| u),
+            "too many points near the centre: your radius is u; use √u, because area grows with its square",
+        ),
+        (radius_is(|u| u * u), "too many points near the centre: your radius is u²; use √u"),
+        (radius_is(f32::cbrt), "too many points near the rim: your radius is ∛u, as in a sphere; use √u"),
+        (radius_is(|_| 1.0), "too many points near the rim: all of your points are on it"),
+    ]
+}
+
+/// What is wrong with a distribution on a disk: the mistakes that reproduce the points, then what the counts show in rings of
+/// equal area from the centre outwards.
+pub(super) fn uneven_disk(counts: &[u64], reproduced: Mistakes) -> Mistakes {
     let rings = columns(counts);
-    if rings[7] == 0 {
-        "you fill only the inner part of the disk: points must reach up to its radius"
-    } else if rings[0] > 2 * rings[7] {
-        "too many points near the centre: use √u as the radius, because area grows with its square"
-    } else if rings[7] > 2 * rings[0] {
-        "too many points near the rim"
-    } else {
-        ""
-    }
+    let shown = [
+        (rings[7] == 0, "you fill only the inner part of the disk: points must reach up to its radius"),
+        (rings[0] > 2 * rings[7], "too many points near the centre"),
+        (rings[7] > 2 * rings[0], "too many points near the rim"),
+    ];
+    reproduced.into_iter().chain(shown).collect()
 }
 
 pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
     let u = pairs(trial.seed, SAMPLES);
     let places = trial.kit.sample_disk(&u);
-    for (u, place) in u.iter().zip(&places) {
-        // The tolerance covers a few roundings of a radius of 1.
-        if !(place.length() <= 1.0 + 1e-6) {
-            let broken =
-                Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
-            return Err(broken.looks_like(Some(
-                "your point is outside the disk: the corners of the square are outside it",
-            )));
+    let judge = |(u, place): (&Vec2, &Vec2)| {
+        // The tolerance covers a few roundings.
+        if place.length() <= 1.0 + 1e-6 {
+            return Ok(());
         }
-    }
-    let polar: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
-    covers_evenly("sample_disk(u)", &polar, ["radius²", "angle"], uneven_disk)?;
-    let radii: Vec<f64> = polar.iter().map(|(squared, _)| squared.sqrt()).collect();
-    has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, "")
+        let square = (*place - (2.0 * *u - 1.0)).length() < 1e-5 || (*place - *u).length() < 1e-5;
+        let broken = Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
+        Err(broken.explained_by([
+            (square, "your point is in the square around the disk: the corners of the square are outside it"),
+            (place.is_nan(), "you return NaN"),
+            (!place.is_nan(), "your point is outside the disk"),
+        ]))
+    };
+    all_hold(u.iter().zip(&places).map(judge).collect())?;
+    let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
+    covers_evenly("sample_disk(u)", &shares, ["radius²", "angle"], |counts| {
+        let mut mistakes = unused_number(|u| trial.kit.sample_disk(u));
+        mistakes.extend(uneven_disk(counts, is_polar(&u, &places)));
+        mistakes
+    })?;
+    let radii: Vec<f64> = shares.iter().map(|(squared, _)| squared.sqrt()).collect();
+    has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, |_| Vec::new())
 }
 
 pub(super) fn places_on_the_disk_are_places(trial: &Trial<'_>) -> CheckResult {
     let numbers = (unit_number(), unit_number()).prop_map(|(x, y)| vec2(x, y));
     // Formulas divide by 0 at the middle of the square and on its diagonals.
-    let corners = [0.0, 0.25, 0.5, 0.75].map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)]);
-    let judge = |queries: &[Vec2]| {
+    let chosen: Vec<Vec2> = [0.0, 0.25, 0.5, 0.75]
+        .into_iter()
+        .flat_map(|x| [vec2(x, x), vec2(x, 1.0 - x), vec2(0.5, x), vec2(x, 0.5)])
+        .filter(|u| u.max_element() < 1.0)
+        .collect();
+    trial.forall_and(&chosen, 1000, numbers, |queries| {
         compare(queries, trial.kit.sample_disk(queries), |u, yours| {
+            // The tolerance covers a few roundings.
             if yours.length() <= 1.0 + 1e-6 {
                 return Ok(());
             }
-            let nan = yours
-                .is_nan()
-                .then_some("you divide 0 by 0 for the middle of the square: return (0, 0) there");
+            let middle = *u == Vec2::splat(0.5);
             Err(Broken::new(call("sample_disk", &[u]), yours, "a length of 1 at most", "the definition")
-                .looks_like(nan))
+                .explained_by([
+                    (
+                        middle && yours.is_nan(),
+                        "you divide 0 by 0 for the middle of the square: return (0, 0) there",
+                    ),
+                    (yours.is_nan(), "you return NaN"),
+                    (!yours.is_nan(), "your point is outside the disk"),
+                ]))
         })
-    };
-    judge(corners.as_flattened()).into_iter().collect::<CheckResult>()?;
-    trial.forall(1000, numbers, judge)
+    })?;
+    // Another check judges the distribution. Here points must only reach all four quarters of the disk.
+    let places = trial.kit.sample_disk(&pairs(trial.seed, 256));
+    for signs in [vec2(1.0, 1.0), vec2(-1.0, 1.0), vec2(-1.0, -1.0), vec2(1.0, -1.0)] {
+        if !places.iter().any(|place| (*place * signs).min_element() > 0.0) {
+            let expected = "points in all four quarters of the disk";
+            let yours = format!("no point with signs {signs}");
+            return Err(Broken::with_texts("sample_disk for 256 pairs u", yours, expected, "the definition"));
+        }
+    }
+    Ok(())
 }
 
-fn camera(position: Vec3) -> Camera {
-    let camera = Camera::new(position, vec3(0.6, -0.48, -0.64), Vec3::Y, 60.0, 1.5);
-    camera.expect("the view direction is not parallel to up")
+/// Cameras at `position` in all orientations, with different angles of view.
+fn camera(position: Vec3) -> impl Strategy<Value = Camera> + Clone {
+    (nasty::unit(), nasty::unit(), 2..=9i32).prop_filter_map(
+        "a view that is not along up",
+        move |(view, up, tens)| {
+            // Close to parallel vectors give a camera whose axes are imprecise.
+            let clear = view.cross(up).length() > 1e-3;
+            Camera::new(position, view, up, 10.0 * tens as f32, 1.5).ok().filter(|_| clear)
+        },
+    )
 }
 
 /// Lens rays for any point of the film of a camera at `position`.
 fn lens_query(position: Vec3) -> impl Strategy<Value = LensQuery> + Clone {
     let place = || (-8..=8i32).prop_map(|eighths| eighths as f32 / 8.0);
     let on_lens = (place(), place()).prop_map(|(x, y)| vec2(x, y).clamp_length_max(1.0));
-    ((0..=16i32, 0..=16i32), on_lens, (0..=8i32), (1..=40i32)).prop_map(
-        move |((x, y), on_lens, aperture, distance)| {
-            let camera = camera(position);
-            LensQuery {
-                camera,
-                pinhole: camera.ray(x as f32 / 16.0, y as f32 / 16.0),
-                lens: Lens { aperture: aperture as f32 / 8.0, focal_distance: distance as f32 / 2.0 },
-                on_lens,
-            }
+    (camera(position), (0..=16i32, 0..=16i32), on_lens, (0..=8i32), (1..=40i32)).prop_map(
+        |(camera, (x, y), on_lens, aperture, distance)| LensQuery {
+            camera,
+            pinhole: camera.ray(x as f32 / 16.0, y as f32 / 16.0),
+            lens: Lens { aperture: aperture as f32 / 8.0, focal_distance: distance as f32 / 2.0 },
+            on_lens,
         },
     )
 }
 
 fn paste(query: &LensQuery) -> String {
-    let Camera { position, towards, .. } = &query.camera;
+    let Camera { position, towards, up, half_height, aspect, .. } = &query.camera;
     let camera = format!(
-        "let camera = Camera::new({}, {}, Vec3::Y, 60.0, 1.5).unwrap();",
+        "let camera = Camera::new({}, {}, {}, {:?}, {aspect:?}).unwrap();",
         position.paste(),
-        towards.paste()
+        towards.paste(),
+        up.paste(),
+        2.0 * half_height.atan().to_degrees()
     );
     let lens = format!(
         "Lens {{ aperture: {}, focal_distance: {} }}",
@@ -108,25 +158,43 @@ fn paste(query: &LensQuery) -> String {
     format!("{camera}\nlens_ray(&camera, {}, &{lens}, {})", query.pinhole.paste(), query.on_lens.paste())
 }
 
+/// The start of the ray relative to the camera, in double precision.
+fn offset(query: &LensQuery) -> DVec3 {
+    let place = 0.5 * f64::from(query.lens.aperture) * query.on_lens.as_dvec2();
+    place.x * query.camera.right.as_dvec3() + place.y * query.camera.up.as_dvec3()
+}
+
 pub(super) fn lens_without_width_is_a_pinhole(trial: &Trial<'_>) -> CheckResult {
-    let queries = lens_query(vec3(1.0, 2.0, 3.0)).prop_map(|query| match query.on_lens.x > 0.0 {
-        true => LensQuery { lens: Lens { aperture: 0.0, ..query.lens }, ..query },
-        false => LensQuery { on_lens: Vec2::ZERO, ..query },
+    // A quarter of the lenses have a width, and give another ray.
+    let queries = (lens_query(vec3(1.0, 2.0, 3.0)), 0..4i32).prop_map(|(query, which)| match which {
+        0 | 1 => LensQuery { lens: Lens { aperture: 0.0, ..query.lens }, ..query },
+        2 => LensQuery { on_lens: Vec2::ZERO, ..query },
+        _ => LensQuery { lens: Lens { aperture: 0.5, ..query.lens }, on_lens: vec2(0.5, -0.5), ..query },
     });
     trial.forall(500, queries, |queries| {
         compare(queries, trial.kit.lens_ray(queries), |query, yours| {
-            if yours == query.pinhole {
+            let wide = offset(query) != DVec3::ZERO;
+            if (yours == query.pinhole) != wide {
                 return Ok(());
+            }
+            if wide {
+                let expected = "a ray that starts on the lens";
+                return Err(Broken::new(paste(query), yours, expected, "the definition")
+                    .explained_by([(true, "you return the pinhole ray for a lens that has a width")]));
             }
             let near = (yours.direction - query.pinhole.direction).length() < 1e-5
                 && yours.origin == query.pinhole.origin;
-            let diagnosis = match () {
-                () if near => "you recompute the direction, which adds a rounding error: return *pinhole",
-                () if yours.direction.is_nan() => "you return NaN",
-                () => "",
-            };
-            Err(Broken::new(paste(query), yours, query.pinhole, "the pinhole ray, bit for bit")
-                .looks_like(known(diagnosis)))
+            let range = (yours.t_min, yours.t_max, yours.time);
+            let kept = range == (query.pinhole.t_min, query.pinhole.t_max, query.pinhole.time);
+            Err(Broken::new(paste(query), yours, query.pinhole, "the pinhole ray, bit for bit").explained_by(
+                [
+                    (
+                        near && kept,
+                        "you recompute the direction, which adds a rounding error: return *pinhole",
+                    ),
+                    (yours.direction.is_nan(), "you return NaN"),
+                ],
+            ))
         })
     })
 }
@@ -140,54 +208,54 @@ fn in_focus(query: &LensQuery, ray: &Ray) -> DVec3 {
 }
 
 pub(super) fn focal_plane_is_sharp(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[LensQuery]| {
-        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
-            let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
-            // The tolerance covers a few roundings of the direction, relative to the distance. A wide lens enlarges
-            // them.
-            let off = (found - expected).length() / expected.length();
-            if off < 1e-5 {
-                return Ok(());
-            }
-            let distance = f64::from(query.lens.focal_distance);
-            let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
-            let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
-            let aims =
-                |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
-            let diagnosis = match () {
-                () if yours.is_nan_anywhere() => "you return NaN",
-                () if aims(distance * direction - start) => {
-                    "you go focal_distance along the ray: divide it by the cosine with camera.towards"
-                }
-                () if aims(distance * direction.dot(towards) * direction - start) => {
-                    "you multiply focal_distance by the cosine with camera.towards: divide by it"
-                }
-                () if aims(distance * towards - start) => {
-                    "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it"
-                }
-                () if aims(expected + start) => "you add the offset to the focus: subtract it",
-                () if aims(direction) => {
-                    "your ray is parallel to the pinhole ray: aim where that meets the focal plane"
-                }
-                () => "",
-            };
-            Err(Broken::with_texts(
-                paste(query),
-                format!("a ray that misses by {:.2e}", (found - expected).length()),
-                format!("a ray through camera.position + {:?}", expected.as_vec3()),
-                "the focal plane",
-            )
-            .looks_like(known(diagnosis)))
-        })
-    };
-    judge(&[drawn()]).into_iter().collect::<CheckResult>()?;
-    trial.forall(2000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
+    trial.forall_and(&[drawn()], 2000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
+        compare(queries, trial.kit.lens_ray(queries), judge_focus)
+    })
+}
+
+fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
+    let (expected, found) = (in_focus(query, &query.pinhole), in_focus(query, &yours));
+    // The tolerance covers a few roundings of the direction, relative to the distance, and of the origin, whose coordinates
+    // are up to 4. A wide lens enlarges them.
+    let off = (found - expected).length() / expected.length();
+    if off < 2e-5 {
+        return Ok(());
+    }
+    let distance = f64::from(query.lens.focal_distance);
+    let [direction, towards] = [query.pinhole.direction, query.camera.towards].map(Vec3::as_dvec3);
+    let start = yours.origin.as_dvec3() - query.camera.position.as_dvec3();
+    let aims = |way: DVec3| (yours.direction.as_dvec3().normalize() - way.normalize()).length() < 1e-5;
+    let broken = Broken::with_texts(
+        paste(query),
+        format!("a ray that misses by {:.2e}", (found - expected).length()),
+        format!("a ray through camera.position + {:?}", expected.as_vec3()),
+        "the focal plane",
+    );
+    Err(broken.explained_by([
+        (yours.origin.is_nan() || yours.direction.is_nan(), "you return NaN"),
+        (
+            aims(distance * direction - start),
+            "you go focal_distance along the ray: divide it by the cosine with camera.towards",
+        ),
+        (
+            aims(distance * direction.dot(towards) * direction - start),
+            "you multiply focal_distance by the cosine with camera.towards: divide by it",
+        ),
+        (
+            aims(distance * towards - start),
+            "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it",
+        ),
+        (aims(expected + start), "you add the offset to the focus: subtract it"),
+        (aims(expected), "you leave out the offset: the ray goes from its start to the focus"),
+        (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
+    ]))
 }
 
 /// A ray far from the axis, from a point far from the centre of a wide lens, where all known mistakes give different
 /// rays.
 fn drawn() -> LensQuery {
-    let camera = camera(vec3(1.0, 2.0, 3.0));
+    let camera = Camera::new(vec3(1.0, 2.0, 3.0), vec3(0.6, -0.48, -0.64), Vec3::Y, 60.0, 1.5);
+    let camera = camera.expect("the view direction is not parallel to up");
     LensQuery {
         camera,
         pinhole: camera.ray(0.25, 0.125),
@@ -196,72 +264,76 @@ fn drawn() -> LensQuery {
     }
 }
 
-trait NanAnywhere {
-    fn is_nan_anywhere(&self) -> bool;
-}
-
-impl NanAnywhere for Ray {
-    fn is_nan_anywhere(&self) -> bool {
-        self.origin.is_nan() || self.direction.is_nan()
-    }
-}
-
 pub(super) fn lens_rays_start_on_the_lens(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[LensQuery]| {
-        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
-            let camera = &query.camera;
-            let place = 0.5 * query.lens.aperture * query.on_lens;
-            let expected = camera.position + place.x * camera.right + place.y * camera.up;
-            // The tolerance covers two roundings of coordinates up to 4.
-            let near = |v: Vec3| (yours.origin - v).length() < 2e-6;
-            let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
-            if near(expected) && unit {
-                return Ok(());
-            }
-            let double = camera.position + 2.0 * (expected - camera.position);
-            let diagnosis = match () {
-                () if !unit => "your direction does not have unit length",
-                () if near(double) => "you use aperture as the radius of the lens: it is the diameter",
-                () if near(camera.position) => "you start every ray at the centre of the lens: use on_lens",
-                () if near(camera.position + place.x * camera.right)
-                    || near(camera.position + place.y * camera.up) =>
-                {
-                    "your lens is a line: it extends along camera.right and along camera.up"
-                }
-                () if near(camera.position + place.extend(0.0)) => {
-                    "you use the world's x and y axes: use camera.right and camera.up"
-                }
-                () => "",
-            };
-            Err(Broken::new(
-                paste(query),
-                yours,
-                expected,
-                "position + aperture / 2 · on_lens, along right and up",
-            )
-            .looks_like(known(diagnosis)))
-        })
-    };
-    judge(&[drawn()]).into_iter().collect::<CheckResult>()?;
-    trial.forall(1000, lens_query(vec3(1.0, 2.0, 3.0)), judge)
+    trial.forall_and(&[drawn()], 1000, lens_query(vec3(1.0, 2.0, 3.0)), |queries| {
+        compare(queries, trial.kit.lens_ray(queries), judge_start)
+    })
+}
+
+fn judge_start(query: &LensQuery, yours: Ray) -> CheckResult {
+    let camera = &query.camera;
+    let position = camera.position.as_dvec3();
+    let expected = position + offset(query);
+    // The tolerance covers a few roundings of coordinates up to 4.
+    let near = |v: DVec3| (yours.origin.as_dvec3() - v).length() < 2e-6;
+    let unit = (yours.direction.length() - 1.0).abs() < 1e-5;
+    if near(expected) && unit {
+        return Ok(());
+    }
+    let place = 0.5 * f64::from(query.lens.aperture) * query.on_lens.as_dvec2();
+    let (right, up) = (camera.right.as_dvec3(), camera.up.as_dvec3());
+    let source = "position + aperture / 2 · on_lens, along right and up";
+    Err(Broken::new(paste(query), yours, expected.as_vec3(), source).explained_by([
+        (near(expected) && !unit, "your direction does not have unit length"),
+        (
+            near(position + 2.0 * offset(query)),
+            "you use aperture as the radius of the lens: it is the diameter",
+        ),
+        (near(position), "you start every ray at the centre of the lens: use on_lens"),
+        (
+            near(position + place.x * right),
+            "your lens is a line: it extends along camera.right and along camera.up",
+        ),
+        (
+            near(position + place.y * up),
+            "your lens is a line: it extends along camera.right and along camera.up",
+        ),
+        (
+            near(position + place.extend(0.0)),
+            "you use the world's x and y axes: use camera.right and camera.up",
+        ),
+        (
+            near(position + place.y * right + place.x * up),
+            "you exchange x and y of on_lens: x is along camera.right",
+        ),
+        (near(offset(query)), "you leave out camera.position"),
+    ]))
 }
 
 pub(super) fn lens_is_as_sharp_a_million_units_away(trial: &Trial<'_>) -> CheckResult {
     // Near a million f32 numbers are 1/16 apart: the origin is rounded, but the direction can be precise.
     trial.forall(1000, lens_query(vec3(1e6, -1e6, 1e6)), |queries| {
-        compare(queries, trial.kit.lens_ray(queries), |query, yours| {
-            let camera = &query.camera;
-            let place = 0.5 * query.lens.aperture * query.on_lens;
-            let offset = (place.x * camera.right + place.y * camera.up).as_dvec3();
-            let focus = in_focus(query, &query.pinhole);
-            let expected = (focus - offset).normalize();
+        // The same lenses at the origin show whether the position is the cause.
+        let at_origin = |query: &LensQuery| LensQuery {
+            camera: Camera { position: Vec3::ZERO, ..query.camera },
+            pinhole: Ray { origin: Vec3::ZERO, ..query.pinhole },
+            ..*query
+        };
+        let near = trial.kit.lens_ray(&queries.iter().map(at_origin).collect::<Vec<_>>());
+        let pairs: Vec<(LensQuery, Vec3)> =
+            queries.iter().copied().zip(near.iter().map(|ray| ray.direction)).collect();
+        compare(&pairs, trial.kit.lens_ray(queries), |(query, near), yours| {
+            let expected = (in_focus(query, &query.pinhole) - offset(query)).normalize();
             // The tolerance covers a few roundings of the direction.
-            if (yours.direction.as_dvec3() - expected).length() < 2e-6 {
+            let is_right = |direction: Vec3| (direction.as_dvec3() - expected).length() < 2e-6;
+            if is_right(yours.direction) {
                 return Ok(());
             }
             let broken = Broken::new(paste(query), yours.direction, expected.as_vec3(), "double precision");
-            Err(broken
-                .looks_like(Some("your direction is imprecise: compute it relative to camera.position")))
+            Err(broken.explained_by([(
+                is_right(*near),
+                "your direction is imprecise: compute it relative to camera.position",
+            )]))
         })
     })
 }

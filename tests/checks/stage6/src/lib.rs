@@ -15,7 +15,7 @@ use area_lights::{
     a_far_sphere_is_still_a_sphere, directions_to_a_sphere_are_even, from_inside_a_sphere_it_is_everywhere,
     half_a_sphere_makes_half_a_shadow, places_on_a_rectangle_are_even, places_on_a_round_light_are_even,
 };
-use checks::generate::unit;
+use checks::nasty::unit;
 use glam::Vec3;
 use lens::{
     focal_plane_is_sharp, lens_is_as_sharp_a_million_units_away, lens_rays_start_on_the_lens,

@@ -1,11 +1,11 @@
 //! The positions of a pixel's samples, their weights, and the colour of the pixel.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::paste::{Paste, call};
-use checks::statistics::{SAMPLES, covers_evenly, pairs};
-use glam::{DVec2, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
+use checks::statistics::{SAMPLES, covers_evenly, pairs, unused_number};
+use glam::{DVec2, DVec3, Vec2, Vec2Swizzles, Vec3, uvec2, vec2, vec3};
 use proptest::prelude::*;
 use raykata::kit::{FILTER_RADIUS, WeightedColor};
 use raykata::random::Stratum;
@@ -33,7 +33,7 @@ fn stratum() -> impl Strategy<Value = Stratum> + Clone {
 const DRAWN: Stratum = Stratum { cell: uvec2(2, 1), grid: uvec2(4, 3), u: vec2(0.25, 0.625) };
 
 pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckResult {
-    let judge = |queries: &[Stratum]| {
+    trial.forall_and(&[DRAWN], 2000, stratum(), |queries| {
         compare(queries, trial.kit.jittered(queries), |query, yours| {
             let [cell, grid, u] = [query.cell.as_dvec2(), query.grid.as_dvec2(), query.u.as_dvec2()];
             let expected = (cell + u) / grid;
@@ -42,33 +42,25 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
             if near(expected) && yours.max_element() < 1.0 {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if near(expected) => {
-                    "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1"
-                }
-                () if near(u) => "you return u: add the cell and divide by the grid",
-                () if near(u / grid) => "you leave out the cell: all samples are in the first cell",
-                () if near((cell + 0.5) / grid) || near(cell / grid) => {
-                    "you do not use u: the sample is not jittered"
-                }
-                () if near((cell + u) / grid.yx())
-                    || near((cell + u) / grid.x)
-                    || near((cell + u) / grid.y) =>
-                {
-                    "divide x by the columns of the grid and y by its rows"
-                }
-                () if near((cell + u.xx()) / grid) || near((cell + u.yy()) / grid) => {
-                    "you use one random number for both axes: use u.x and u.y"
-                }
-                () => "",
-            };
             let input = call("jittered", &[query]);
-            Err(Broken::new(input, yours, expected.as_vec2(), "(cell + u) / grid, below 1")
-                .looks_like(known(diagnosis)))
+            Err(Broken::new(input, yours, expected.as_vec2(), "(cell + u) / grid, below 1").explained_by([
+                (
+                    near(expected),
+                    "you return 1, which is in the next pixel (3 + 0.99999994 is rounded to 4): stay below 1",
+                ),
+                (near(u), "you return u: add the cell and divide by the grid"),
+                (near(u / grid), "you leave out the cell: all samples are in the first cell"),
+                (near((cell + 0.5) / grid), "you do not use u: the sample is not jittered"),
+                (near(cell / grid), "you do not use u: the sample is not jittered"),
+                (near((cell + u) / grid.yx()), "divide x by the columns of the grid and y by its rows"),
+                (near((cell + u) / grid.x), "divide x by the columns of the grid and y by its rows"),
+                (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
+                (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
+                (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
+                (near((cell.yx() + u) / grid), "you exchange column and row of the cell"),
+            ]))
         })
-    };
-    judge(&[DRAWN]).into_iter().collect::<CheckResult>()?;
-    trial.forall(2000, stratum(), judge)
+    })
 }
 
 pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
@@ -79,46 +71,58 @@ pub(super) fn each_sampler_has_its_places(trial: &Trial<'_>) -> CheckResult {
         Just(Sampler::Gaussian),
         Just(Sampler::LowDiscrepancy)
     ];
-    let judge = |queries: &[(Sampler, Stratum)]| {
-        compare(queries, trial.kit.pixel_position(queries), |(sampler, stratum), yours| {
-            let (u, radius) = (stratum.u.as_dvec2(), f64::from(FILTER_RADIUS));
-            let jittered = (stratum.cell.as_dvec2() + u) / stratum.grid.as_dvec2();
-            let expected = match sampler {
-                Sampler::Center => DVec2::splat(0.5),
-                Sampler::Random | Sampler::LowDiscrepancy => u,
-                Sampler::Jittered => jittered,
-                Sampler::Gaussian => 0.5 + radius * (2.0 * jittered - 1.0),
-            };
-            // The tolerance covers a few roundings of numbers up to 3.
-            let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 1e-6;
-            if near(expected) {
-                return Ok(());
-            }
-            let diagnosis = match sampler {
-                _ if near(expected - 0.5) => "your position is relative to the centre of the pixel: add 0.5",
-                Sampler::Gaussian if near(jittered) => {
-                    "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides"
-                }
-                Sampler::Gaussian if near(0.5 + radius * (jittered - 0.5)) => {
-                    "half as wide: the square is 2 * FILTER_RADIUS wide"
-                }
-                Sampler::Gaussian if near(0.5 + radius * jittered) => {
-                    "you cover only the right and lower part: cover FILTER_RADIUS on all sides"
-                }
-                Sampler::Jittered | Sampler::Gaussian if near(u) => "you return u: use jittered(stratum)",
-                Sampler::Random | Sampler::LowDiscrepancy if near(jittered) => {
-                    "this sampler must return `u` unchanged; your result is jittered"
-                }
-                _ => "",
-            };
-            let input = format!("pixel_position(Sampler::{sampler:?}, {})", stratum.paste());
-            Err(Broken::new(input, yours, expected.as_vec2(), "the definition").looks_like(known(diagnosis)))
-        })
-    };
     let drawn =
         [Sampler::Center, Sampler::Random, Sampler::LowDiscrepancy, Sampler::Jittered, Sampler::Gaussian];
-    judge(&drawn.map(|sampler| (sampler, DRAWN))).into_iter().collect::<CheckResult>()?;
-    trial.forall(2000, (samplers, stratum()), judge)
+    trial.forall_and(&drawn.map(|sampler| (sampler, DRAWN)), 2000, (samplers, stratum()), |queries| {
+        // Positions are judged by the student's own `jittered` as well, because another check judges that.
+        let strata: Vec<Stratum> = queries.iter().map(|(_, stratum)| *stratum).collect();
+        let own = trial.kit.jittered(&strata);
+        let answers = trial.kit.pixel_position(queries);
+        let judge = |((query, own), yours)| judge_position(query, own, yours);
+        queries.iter().zip(own).zip(answers).map(judge).collect()
+    })
+}
+
+fn judge_position((sampler, stratum): &(Sampler, Stratum), own: Vec2, yours: Vec2) -> CheckResult {
+    let (u, radius) = (stratum.u.as_dvec2(), f64::from(FILTER_RADIUS));
+    let jittered = (stratum.cell.as_dvec2() + u) / stratum.grid.as_dvec2();
+    let position = |jittered: DVec2| match sampler {
+        Sampler::Center => DVec2::splat(0.5),
+        Sampler::Random | Sampler::LowDiscrepancy => u,
+        Sampler::Jittered => jittered,
+        Sampler::Gaussian => 0.5 + radius * (2.0 * jittered - 1.0),
+    };
+    let expected = position(jittered);
+    // The tolerance covers a few roundings of numbers up to 3.
+    let near = |place: DVec2| (yours.as_dvec2() - place).abs().max_element() < 1e-6;
+    if near(expected) || near(position(own.as_dvec2())) {
+        return Ok(());
+    }
+    let gaussian = *sampler == Sampler::Gaussian;
+    let in_cells = gaussian || *sampler == Sampler::Jittered;
+    let input = format!("pixel_position(Sampler::{sampler:?}, {})", stratum.paste());
+    Err(Broken::new(input, yours, expected.as_vec2(), "the definition").explained_by([
+        (near(expected - 0.5), "your position is relative to the centre of the pixel: add 0.5"),
+        (
+            gaussian && near(jittered),
+            "you cover only the pixel: cover FILTER_RADIUS from the centre on all sides",
+        ),
+        (
+            gaussian && near(0.5 + radius * (jittered - 0.5)),
+            "half as wide: the square is 2 * FILTER_RADIUS wide",
+        ),
+        (
+            gaussian && near(0.5 + radius * jittered),
+            "you cover only the right and lower part: cover FILTER_RADIUS on all sides",
+        ),
+        (
+            gaussian && near(0.5 + radius * (2.0 * u - 1.0)),
+            "you scale u to the square of the filter: scale the result of jittered",
+        ),
+        (in_cells && near(u), "you return u: use jittered(stratum)"),
+        (!in_cells && near(jittered), "this sampler must return `u` unchanged; your result is jittered"),
+        (near(DVec2::splat(0.5)), "you return the centre of the pixel for every sampler"),
+    ]))
 }
 
 /// The filter's weight along one axis, in double precision.
@@ -128,55 +132,68 @@ fn bell(x: f64) -> f64 {
 }
 
 pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckResult {
-    let coordinate = (-16..=16i32).prop_map(|eighths| eighths as f32 / 8.0);
+    // Offsets on a grid, on the border of the filter and one float to either side, and far away.
+    let coordinate = prop_oneof![
+        6 => (-16..=16i32).prop_map(|eighths| eighths as f32 / 8.0),
+        1 => prop::sample::select(vec![
+            FILTER_RADIUS,
+            FILTER_RADIUS.next_up(),
+            FILTER_RADIUS.next_down(),
+            -FILTER_RADIUS.next_down(),
+            -0.0,
+            -30.0,
+        ]),
+    ];
     let offsets = (coordinate.clone(), coordinate).prop_map(|(x, y)| vec2(x, y));
-    let judge = |queries: &[Vec2]| {
-        compare(queries, trial.kit.gaussian_weight(queries), |offset, yours| {
-            let (x, y) = (f64::from(offset.x), f64::from(offset.y));
-            let expected = bell(x) * bell(y);
-            // The tolerance covers the rounding of two powers: a few units in the last place of 1.
-            let near = |weight: f64| (f64::from(yours) - weight).abs() < 1e-6;
-            if near(expected) {
-                return Ok(());
-            }
-            let outside = offset.abs().max_element() >= FILTER_RADIUS;
-            let other = |power: fn(f64) -> f64| {
-                let factor = |x: f64| (power(x).exp() - power(f64::from(FILTER_RADIUS)).exp()).max(0.0);
-                factor(x) * factor(y)
-            };
-            let diagnosis = match () {
-                () if near((-2.0 * (x * x + y * y)).exp()) => {
-                    "your weight ends in a step at R: subtract e^(-2R²) along each axis"
-                }
-                () if near(bell(x.hypot(y))) => {
-                    "your filter is round: multiply a weight along x by a weight along y"
-                }
-                () if near(other(|x| -x * x)) => "your bell is too wide: it is e^(-2x²), not e^(-x²)",
-                () if near(other(|x| -2.0 * x.abs())) => "you do not square x: e^(-2x²)",
-                () if near(bell(x) + bell(y)) => "you add the two weights: multiply them",
-                () if near(bell(x)) => "you do not use y: multiply the weight along x by that along y",
-                () if near(bell(y)) => "you do not use x: multiply the weight along x by that along y",
-                // The area of e^(-2x²) is √(π / 2).
-                () if near(expected * std::f64::consts::FRAC_2_PI)
-                    || near(expected * std::f64::consts::FRAC_2_PI.sqrt()) =>
-                {
-                    "you normalize the weight: leave it, because filter_pixel divides by the sum"
-                }
-                () if outside && yours > 0.0 => {
-                    "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS"
-                }
-                () if outside && yours < 0.0 => {
-                    "your weight is negative: each factor is 0 beyond FILTER_RADIUS"
-                }
-                () => "",
-            };
-            let input = call("gaussian_weight", &[offset]);
-            Err(Broken::new(input, yours, expected, "double precision").looks_like(known(diagnosis)))
-        })
-    };
     // Begin with an offset off the axes: on the axes several mistakes give the same answer.
-    judge(&[vec2(0.5, -0.25)]).into_iter().collect::<CheckResult>()?;
-    trial.forall(1000, offsets, judge)
+    trial.forall_and(&[vec2(0.5, -0.25)], 1000, offsets, |queries| {
+        compare(queries, trial.kit.gaussian_weight(queries), |offset, yours| judge_weight(*offset, yours))
+    })
+}
+
+fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
+    let (x, y) = (f64::from(offset.x), f64::from(offset.y));
+    let expected = bell(x) * bell(y);
+    // The tolerance covers the rounding of two powers: a few units in the last place of 1.
+    let near = |weight: f64| (f64::from(yours) - weight).abs() < 1e-6;
+    let outside = offset.abs().max_element() >= FILTER_RADIUS;
+    if near(expected) && yours >= 0.0 && !(outside && yours != 0.0) {
+        return Ok(());
+    }
+    let radius = f64::from(FILTER_RADIUS);
+    let with = |power: fn(f64) -> f64| {
+        let factor = |x: f64| (power(x).exp() - power(radius).exp()).max(0.0);
+        factor(x) * factor(y)
+    };
+    // The difference of the two powers without a clamp.
+    let raw = |x: f64| (-2.0 * x * x).exp() - (-2.0 * radius * radius).exp();
+    Err(Broken::new(call("gaussian_weight", &[&offset]), yours, expected, "double precision").explained_by([
+        (
+            near((-2.0 * (x * x + y * y)).exp()),
+            "your weight ends in a step at R: subtract e^(-2R²) along each axis",
+        ),
+        (
+            near(if outside { 0.0 } else { (-2.0 * (x * x + y * y)).exp() }),
+            "your weight ends in a step at R: subtract e^(-2R²) along each axis",
+        ),
+        (near(bell(x.hypot(y))), "your filter is round: multiply a weight along x by a weight along y"),
+        (near(with(|x| -x * x)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
+        (near(with(|x| -2.0 * x.abs())), "you do not square x: e^(-2x²)"),
+        (near(bell(x) + bell(y)), "you add the two weights: multiply them"),
+        (near(bell(x)), "you do not use y: multiply the weight along x by that along y"),
+        (near(bell(y)), "you do not use x: multiply the weight along x by that along y"),
+        // The area of e^(-2x²) is √(π / 2).
+        (
+            near(expected * std::f64::consts::FRAC_2_PI)
+                || near(expected * std::f64::consts::FRAC_2_PI.sqrt()),
+            "you normalize the weight: leave it, because filter_pixel divides by the sum",
+        ),
+        (
+            near((raw(x) * raw(y)).max(0.0)) && outside,
+            "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS",
+        ),
+        (near(raw(x) * raw(y)), "your weight is negative: each factor is 0 beyond FILTER_RADIUS"),
+    ]))
 }
 
 fn paste_samples(samples: &[WeightedColor]) -> String {
@@ -191,58 +208,59 @@ pub(super) fn filter_pixel_is_the_weighted_mean(trial: &Trial<'_>) -> CheckResul
     let color = (share(), share(), share()).prop_map(|(r, g, b)| vec3(r, g, b));
     let sample = (color, share()).prop_map(|(color, weight)| WeightedColor { color, weight });
     let samples = prop::collection::vec(sample, 1..8);
-    let judge = |queries: &[Vec<WeightedColor>]| {
-        compare(queries, trial.kit.filter_pixel(queries), |samples, yours| {
-            let weight: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
-            let sum: glam::DVec3 =
-                samples.iter().map(|sample| f64::from(sample.weight) * sample.color.as_dvec3()).sum();
-            let expected = if weight > 0.0 { sum / weight } else { glam::DVec3::ZERO };
-            // The tolerance covers eight additions and a division of numbers up to 16.
-            if (yours.as_dvec3() - expected).abs().max_element() < 1e-5 {
-                return Ok(());
-            }
-            let n = samples.len() as f64;
-            let plain: glam::DVec3 =
-                samples.iter().map(|sample| sample.color.as_dvec3()).sum::<glam::DVec3>() / n;
-            let near = |v: glam::DVec3| (yours.as_dvec3() - v).length() < 1e-5;
-            let diagnosis = match () {
-                () if yours.is_nan() => "you divide 0 by 0: if the weights sum to 0, return black",
-                () if near(plain) => "you do not use the weights",
-                () if near(sum / n) => {
-                    "you divide by the number of samples: divide by the sum of their weights"
-                }
-                () if near(sum) => "you return the sum: divide it by the sum of the weights",
-                () if near(plain * n / weight) => {
-                    "you do not weight the colours: multiply each colour by its weight"
-                }
-                () if near(expected.min(glam::DVec3::ONE)) => {
-                    "you clamp the colour to 1: return it without a clamp"
-                }
-                () => "",
-            };
-            Err(Broken::new(paste_samples(samples), yours, expected.as_vec3(), "double precision")
-                .looks_like(known(diagnosis)))
-        })
-    };
+    // Another check asks for weights that sum to 0.
+    let samples =
+        samples.prop_filter("a weight above 0", |samples| samples.iter().any(|one| one.weight > 0.0));
     // Begin with two different samples: for one sample, or for equal ones, several mistakes give the same colour.
     let drawn = [(vec3(0.25, 0.5, 2.5), 0.5), (vec3(1.0, 0.0, 2.25), 1.75)];
-    judge(&[drawn.map(|(color, weight)| WeightedColor { color, weight }).to_vec()])
-        .into_iter()
-        .collect::<CheckResult>()?;
-    trial.forall(1000, samples, judge)
+    let drawn = drawn.map(|(color, weight)| WeightedColor { color, weight }).to_vec();
+    trial.forall_and(&[drawn], 1000, samples, |queries| {
+        compare(queries, trial.kit.filter_pixel(queries), |samples, yours| judge_pixel(samples, yours))
+    })
+}
+
+fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> CheckResult {
+    let weight: f64 = samples.iter().map(|sample| f64::from(sample.weight)).sum();
+    let sum: DVec3 = samples.iter().map(|sample| f64::from(sample.weight) * sample.color.as_dvec3()).sum();
+    let expected = sum / weight;
+    // The tolerance covers eight additions and a division, relative to the largest sum. Weights may be tiny or huge.
+    let near = |v: DVec3| (yours.as_dvec3() - v).abs().max_element() <= 1e-5 * v.abs().max_element().max(1.0);
+    if near(expected) {
+        return Ok(());
+    }
+    let n = samples.len() as f64;
+    let plain = samples.iter().map(|sample| sample.color.as_dvec3()).sum::<DVec3>();
+    Err(Broken::new(paste_samples(samples), yours, expected.as_vec3(), "double precision").explained_by([
+        (near(plain / n), "you do not use the weights"),
+        (near(sum / n), "you divide by the number of samples: divide by the sum of their weights"),
+        (near(sum), "you return the sum: divide it by the sum of the weights"),
+        (near(plain / weight), "you do not weight the colours: multiply each colour by its weight"),
+        (near(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
+        (near(sum / weight.max(1.0)), "you divide by 1 if the weights sum to less: divide by their sum"),
+    ]))
 }
 
 pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> CheckResult {
-    let nothing = [vec![], vec![WeightedColor { color: Vec3::ONE, weight: 0.0 }; 3]];
-    for (samples, yours) in nothing.iter().zip(trial.kit.filter_pixel(&nothing)) {
-        if yours != Vec3::ZERO {
-            let broken = Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition");
-            return Err(
-                broken.looks_like(yours.is_nan().then_some("you divide 0 by 0: the weights sum to 0 here"))
-            );
+    let sample = |color: Vec3, weight: f32| WeightedColor { color, weight };
+    // The last two are not black: their weights sum to little, or to 1.
+    let queries = [
+        vec![],
+        vec![sample(Vec3::ONE, 0.0); 3],
+        vec![sample(vec3(0.5, 0.25, 2.0), 1e-6)],
+        vec![sample(Vec3::ONE, 0.5); 2],
+    ];
+    let judge = |(samples, yours): (&Vec<WeightedColor>, Vec3)| {
+        let weight: f32 = samples.iter().map(|sample| sample.weight).sum();
+        if weight > 0.0 {
+            return judge_pixel(samples, yours);
         }
-    }
-    Ok(())
+        if yours == Vec3::ZERO {
+            return Ok(());
+        }
+        Err(Broken::new(paste_samples(samples), yours, Vec3::ZERO, "the definition")
+            .explained_by([(yours.is_nan(), "you divide 0 by 0: the weights sum to 0 here")]))
+    };
+    all_hold(queries.iter().zip(trial.kit.filter_pixel(&queries)).map(judge).collect())
 }
 
 pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> CheckResult {
@@ -259,8 +277,13 @@ pub(super) fn jittered_samples_cover_the_pixel_evenly(trial: &Trial<'_>) -> Chec
         trial.kit.jittered(&strata).iter().map(|p| (f64::from(p.x), f64::from(p.y))).collect();
     let in_cells: Vec<(f64, f64)> =
         places.iter().map(|(x, y)| ((4.0 * x).fract(), (4.0 * y).fract())).collect();
-    covers_evenly("jittered in 4 × 4 cells", &in_cells, ["x in its cell", "y in its cell"], |_| "")?;
-    covers_evenly("jittered in 4 × 4 cells", &places, ["x", "y"], |_| "")?;
+    covers_evenly("jittered in 4 × 4 cells", &in_cells, ["x in its cell", "y in its cell"], |_| {
+        unused_number(|u| {
+            let stratum = |u: &Vec2| Stratum { u: *u, ..strata[5] };
+            trial.kit.jittered(&u.iter().map(stratum).collect::<Vec<_>>())
+        })
+    })?;
+    covers_evenly("jittered in 4 × 4 cells", &places, ["x", "y"], |_| Vec::new())?;
     // Each sample must lie in its own cell, whatever the random numbers. Two roundings of a number below 1 may move it
     // onto the border with the next cell.
     for (stratum, &(x, y)) in strata.iter().zip(&places) {

@@ -3,11 +3,12 @@
 use super::pixels::unit_number;
 use crate::unit_arrival;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::call;
-use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs};
-use glam::{Vec3, vec2, vec3};
+use checks::statistics::{Mistakes, SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use glam::{Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::PhongLobeQuery;
 
@@ -16,99 +17,178 @@ fn paste(query: &PhongLobeQuery) -> String {
 }
 
 pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
-    let queries = (unit_arrival(), unit_number(), unit_number())
-        .prop_map(|((ideal, normal), u, v)| PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) });
+    // Every fourth surface is rough, and gives another direction than `ideal`.
+    let queries =
+        (unit_arrival(), unit_number(), unit_number(), 0..4i32).prop_map(|((ideal, normal), u, v, which)| {
+            match which {
+                3 => PhongLobeQuery { ideal, normal, roughness: 0.5, u: vec2(0.25, v) },
+                _ => PhongLobeQuery { ideal, normal, roughness: 0.0, u: vec2(u, v) },
+            }
+        });
     trial.forall(500, queries, |queries| {
         compare(queries, trial.kit.sample_phong_lobe(queries), |query, yours| {
-            if yours == query.ideal {
+            let rough = query.roughness > 0.0;
+            if (yours == query.ideal) != rough {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if yours.is_nan() => "you return NaN: 2 / 0² is infinite",
-                () if (yours - query.ideal).length() < 1e-3 => {
-                    "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself"
-                }
-                () => "you change the direction: with roughness 0 return ideal itself",
-            };
-            Err(Broken::new(paste(query), yours, query.ideal, "roughness 0").looks_like(known(diagnosis)))
+            if rough {
+                let expected = "a direction at an angle to ideal";
+                return Err(Broken::new(paste(query), yours, expected, "roughness above 0")
+                    .explained_by([(true, "you return ideal for a rough surface")]));
+            }
+            Err(Broken::new(paste(query), yours, query.ideal, "roughness 0").explained_by([
+                (yours.is_nan(), "you return NaN: 2 / 0² is infinite"),
+                (
+                    (yours - query.ideal).length() < 1e-5,
+                    "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
+                ),
+                (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
+            ]))
         })
     })
 }
 
-/// Samples of a lobe around the normal, so that none is reflected back, as two fractions that must be uniform:
-/// `cosⁿ⁺¹ θ`, and the angle around `ideal`.
-fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Vec<(f64, f64)>, Broken> {
-    let axis = vec3(0.48, 0.6, -0.64);
-    let queries: Vec<PhongLobeQuery> = pairs(trial.seed, SAMPLES)
-        .into_iter()
-        .map(|u| PhongLobeQuery { ideal: axis, normal: axis, roughness, u })
-        .collect();
+/// Samples of a lobe around the normal, so that none is reflected back.
+struct Lobe {
+    u: Vec<Vec2>,
+    /// Two fractions that must be uniform: `cosⁿ⁺¹ θ`, and the angle around `ideal` as a fraction of a full turn.
+    shares: Vec<(f64, f64)>,
+    /// The cosines of the angles to `ideal`.
+    cosines: Vec<f64>,
+}
+
+impl Lobe {
+    /// Whether all cosines are those of a wrong formula.
+    fn is(&self, cosine: impl Fn(f64) -> f64) -> bool {
+        let number = |u: &Vec2, which: usize| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
+        (0..4).any(|which| {
+            self.u.iter().zip(&self.cosines).all(|(u, found)| (found - cosine(number(u, which))).abs() < 1e-4)
+        })
+    }
+
+    /// How many different angles to `ideal` there are, up to a thousandth of the distribution.
+    fn n_angles(&self) -> usize {
+        let mut angles: Vec<u64> = self.shares.iter().map(|(share, _)| (share * 1e3) as u64).collect();
+        angles.sort_unstable();
+        angles.dedup();
+        angles.len()
+    }
+}
+
+/// Samples lobes in all directions in turn.
+fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
+    let axes = nasty::directions();
+    let u = pairs(trial.seed, SAMPLES);
+    let query = |(index, u): (usize, &Vec2)| {
+        let axis = axes[index % axes.len()];
+        PhongLobeQuery { ideal: axis, normal: axis, roughness, u: *u }
+    };
+    let queries: Vec<PhongLobeQuery> = u.iter().enumerate().map(query).collect();
     let exponent = 2.0 / f64::from(roughness).powi(2) - 2.0;
-    let ideal = axis.as_dvec3().normalize();
-    let (x, y) = ideal.any_orthonormal_pair();
-    let mut shares = Vec::new();
-    for (query, direction) in queries.iter().zip(trial.kit.sample_phong_lobe(&queries)) {
-        let around = direction.as_dvec3();
+    let mut lobe = Lobe { u, shares: Vec::new(), cosines: Vec::new() };
+    let judge = |(query, direction): (&PhongLobeQuery, Vec3)| {
+        let (around, ideal) = (direction.as_dvec3(), query.ideal.as_dvec3().normalize());
         if !((around.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
-            return Err(broken.looks_like(
-                direction.is_nan().then_some("you return NaN: do you take the root of a negative number?"),
-            ));
+            return Err(broken.explained_by([
+                (direction.is_nan(), "you return NaN: do you take the root of a negative number?"),
+                (!direction.is_nan(), "your direction does not have unit length"),
+            ]));
         }
+        let (x, y) = ideal.any_orthonormal_pair();
         // cosⁿ⁺¹ θ is uniform in 0..1. Compute ln cos θ from the sine, which is precise for small angles.
         let sine_squared = around.cross(ideal).length_squared().min(1.0);
         let share = (0.5 * (exponent + 1.0) * (-sine_squared).ln_1p()).exp();
-        shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
-    }
-    Ok(shares)
+        lobe.shares.push((share, around.dot(y).atan2(around.dot(x)) / std::f64::consts::TAU + 0.5));
+        lobe.cosines.push(around.dot(ideal));
+        Ok(())
+    };
+    all_hold(queries.iter().zip(trial.kit.sample_phong_lobe(&queries)).map(judge).collect())?;
+    Ok(lobe)
 }
 
 const AXES: [&str; 2] = ["cosⁿ⁺¹ θ", "the angle around ideal"];
 
-const TOO_BLURRED: &str = "your lobe is too wide: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
-const TOO_SHARP: &str = "your lobe is too narrow: is it u^(1 / (n + 1)), with n = 2 / roughness² - 2?";
+/// The known mistakes in the distribution of a lobe.
+fn mistakes(trial: &Trial<'_>, lobe: &Lobe, roughness: f32) -> Mistakes {
+    let axis = nasty::directions()[0];
+    let r = f64::from(roughness);
+    let n = 2.0 / (r * r) - 2.0;
+    let mut mistakes = unused_number(|u| {
+        let query = |u: &Vec2| PhongLobeQuery { ideal: axis, normal: axis, roughness, u: *u };
+        trial.kit.sample_phong_lobe(&u.iter().map(query).collect::<Vec<_>>())
+    });
+    let power = |exponent: f64| lobe.is(|u| u.powf(exponent));
+    // For roughness 1 the exponent is 0, where some mistakes are the same.
+    mistakes.extend([
+        (n > 0.0 && power(1.0 / n), "your lobe is too wide: you use u^(1 / n); it is u^(1 / (n + 1))"),
+        (power(1.0 / (n + 2.0)), "your lobe is too narrow: you use u^(1 / (n + 2)); it is u^(1 / (n + 1))"),
+        (
+            power(1.0 / (n + 3.0)),
+            "your lobe is too narrow: you use n = 2 / roughness²; it is n = 2 / roughness² - 2",
+        ),
+        (
+            r < 1.0 && power(1.0 / (2.0 / r - 1.0)),
+            "your lobe is too wide: you do not square roughness; n = 2 / roughness² - 2",
+        ),
+        (power(1.0 / (r + 1.0)), "you use roughness as n: n = 2 / roughness² - 2"),
+    ]);
+    mistakes
+}
 
 pub(super) fn phong_lobe_falls_with_the_power_of_the_cosine(trial: &Trial<'_>) -> CheckResult {
     for roughness in [0.2, 0.5, 1.0] {
-        let shares = lobe(trial, roughness)?;
-        covers_evenly(&format!("sample_phong_lobe with roughness {roughness}"), &shares, AXES, |counts| {
+        let lobe = lobe(trial, roughness)?;
+        let what = format!("sample_phong_lobe with roughness {roughness}");
+        covers_evenly(&what, &lobe.shares, AXES, |counts| {
             let rings = columns(counts);
-            match () {
-                // With the exponent 1 / n instead of 1 / (n + 1) the lobe is too wide: small cosines are too frequent.
-                () if 4 * rings[0] > 5 * rings[7] => TOO_BLURRED,
-                () if 4 * rings[7] > 5 * rings[0] => TOO_SHARP,
-                () => "",
-            }
+            let mut mistakes = mistakes(trial, &lobe, roughness);
+            mistakes.push((4 * rings[0] > 5 * rings[7], "your lobe is too wide"));
+            mistakes.push((4 * rings[7] > 5 * rings[0], "your lobe is too narrow"));
+            mistakes
         })?;
         // The mean of cos θ of a lobe with power n is (n + 1) / (n + 2).
         let n = 2.0 / f64::from(roughness).powi(2) - 2.0;
-        let cosines: Vec<f64> = shares.iter().map(|(share, _)| share.powf(1.0 / (n + 1.0))).collect();
-        let (mean, expected) = (cosines.iter().sum::<f64>() / cosines.len() as f64, (n + 1.0) / (n + 2.0));
-        has_mean(
-            &format!("the cosine of sample_phong_lobe with ideal, roughness {roughness}"),
-            &cosines,
-            expected,
-            if mean < expected { TOO_BLURRED } else { TOO_SHARP },
-        )?;
+        let cosines: Vec<f64> = lobe.shares.iter().map(|(share, _)| share.powf(1.0 / (n + 1.0))).collect();
+        let expected = (n + 1.0) / (n + 2.0);
+        let what = format!("the cosine of sample_phong_lobe with ideal, roughness {roughness}");
+        has_mean(&what, &cosines, expected, |mean| {
+            let mut mistakes = mistakes(trial, &lobe, roughness);
+            mistakes.push((mean < expected, "your lobe is too wide"));
+            mistakes.push((mean > expected, "your lobe is too narrow"));
+            mistakes
+        })?;
     }
     Ok(())
 }
 
 pub(super) fn slightly_rough_is_not_a_few_angles(trial: &Trial<'_>) -> CheckResult {
     // n is 2,000,000, so cosines differ from 1 in their last four bits only.
-    let shares = lobe(trial, 0.001)?;
-    covers_evenly("sample_phong_lobe with roughness 0.001", &shares, AXES, |counts| {
-        let rings = columns(counts);
-        let uneven = rings.iter().max() > Some(&(SAMPLES as u64 / 7)); // a ring has an eighth ± 2 %
-        if uneven {
-            "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1"
-        } else {
-            ""
-        }
+    let slight = lobe(trial, 0.001)?;
+    covers_evenly("sample_phong_lobe with roughness 0.001", &slight.shares, AXES, |_| {
+        // The formula gives many angles for a rough surface, and few for a slightly rough one.
+        let few = slight.n_angles() < 64 && lobe(trial, 0.5).is_ok_and(|rough| rough.n_angles() > 500);
+        vec![(few, "your angles take few values: √(1 - cos²) is imprecise; compute 1 - cos θ with exp_m1")]
     })
 }
 
 pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
+    // Begin with rays along the surface, of which about half go through it before they are reflected back.
+    let grazing = |u: Vec2| PhongLobeQuery { ideal: Vec3::X, normal: Vec3::Y, roughness: 1.0, u };
+    let chosen: Vec<PhongLobeQuery> = pairs(trial.seed, 64).into_iter().map(grazing).collect();
+    let free = |queries: &[PhongLobeQuery]| -> Vec<PhongLobeQuery> {
+        queries.iter().map(|query| PhongLobeQuery { normal: query.ideal, ..*query }).collect()
+    };
+    let through = trial.kit.sample_phong_lobe(&free(&chosen));
+    if !through.iter().any(|direction| direction.y < -0.1) {
+        let input = "sample_phong_lobe with roughness 1 and normal = ideal = Vec3::X, for 64 pairs u";
+        return Err(Broken::with_texts(
+            input,
+            "no direction with y < -0.1",
+            "about a half",
+            "the definition",
+        ));
+    }
     let queries = (unit_arrival(), 1..=16i32, unit_number(), unit_number()).prop_map(
         |((ideal, normal), sixteenths, u, v)| PhongLobeQuery {
             ideal,
@@ -117,37 +197,44 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             u: vec2(u, v),
         },
     );
-    trial.forall(3000, queries, |queries| {
+    trial.forall_and(&chosen, 3000, queries, |queries| {
         // The same samples with the normal `ideal` give the directions before they are reflected back.
-        let free: Vec<PhongLobeQuery> =
-            queries.iter().map(|query| PhongLobeQuery { normal: query.ideal, ..*query }).collect();
-        let drawn = trial.kit.sample_phong_lobe(&free);
+        let drawn = trial.kit.sample_phong_lobe(&free(queries));
         let pairs: Vec<(PhongLobeQuery, Vec3)> = queries.iter().copied().zip(drawn).collect();
         compare(&pairs, trial.kit.sample_phong_lobe(queries), |(query, drawn), yours| {
             let above = drawn.dot(query.normal);
             let expected = if above < 0.0 { *drawn - 2.0 * above * query.normal } else { *drawn };
+            let near = |v: Vec3| (yours - v).length() < 1e-5;
             // The tolerance covers a few roundings. A ray parallel to the surface may be one rounding below it.
-            if (yours - expected).length() < 1e-5 && yours.dot(query.normal) > -1e-5 {
+            if near(expected) && yours.dot(query.normal) > -1e-5 {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if yours.is_nan() => "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN",
-                () if (yours + *drawn).length() < 1e-4 => {
-                    "you reverse the whole direction: reverse only its part along the normal"
-                }
-                () if above < -1e-3 && yours.dot(query.normal).abs() < 1e-5 => {
-                    "you subtract the part along the normal once: subtract it twice"
-                }
-                () if yours.dot(query.normal) < 0.0 => {
-                    "your ray goes through the surface: reflect it back by the normal"
-                }
-                () if above < 0.0 && yours == query.ideal => {
-                    "you return ideal, which changes the distribution: reflect the ray back by the normal"
-                }
-                () => "",
-            };
-            Err(Broken::new(paste(query), yours, expected, "reflected back to the side of the normal")
-                .looks_like(known(diagnosis)))
+            let source = "reflected back to the side of the normal";
+            let through = above < 0.0;
+            Err(Broken::new(paste(query), yours, expected, source).explained_by([
+                (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
+                (
+                    through && near(-*drawn),
+                    "you reverse the whole direction: reverse only its part along the normal",
+                ),
+                (
+                    through && near((*drawn - above * query.normal).normalize_or_zero()),
+                    "you subtract the part along the normal once: subtract it twice",
+                ),
+                (
+                    through && near(query.ideal),
+                    "you return ideal, which changes the distribution: reflect the ray back by the normal",
+                ),
+                (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),
+                (
+                    !through && near(*drawn - 2.0 * above * query.normal),
+                    "you reflect rays that are on the right side: reflect only those below the surface",
+                ),
+                (
+                    yours.dot(query.normal) < 0.0,
+                    "your ray goes through the surface: reflect it back by the normal",
+                ),
+            ]))
         })
     })
 }

@@ -15,6 +15,8 @@ pub enum Claim {
         caught_by: String,
         /// Words that must appear in the message of that check.
         says: Vec<String>,
+        /// Whether the message must name no mistake, because the checks do not know this one (`diagnosis: none`).
+        is_unknown: bool,
     },
     /// Another right solution, which every check must accept.
     Right,
@@ -49,6 +51,11 @@ impl Entry {
         if self.claim == Claim::Right { "right" } else { "wrong" }
     }
 
+    /// Returns whether it is a mistake that the checks must name.
+    pub fn has_a_known_mistake(&self) -> bool {
+        matches!(self.claim, Claim::Wrong { is_unknown: false, .. })
+    }
+
     /// Reads the text of `tests/corpus/KIND/stageN/NAME.patch`.
     pub fn parse(kind: &str, stage: u8, name: &str, text: &str) -> Result<Entry> {
         let start = if text.starts_with("--- ") { Some(0) } else { text.find("\n--- ").map(|at| at + 1) };
@@ -59,15 +66,16 @@ impl Entry {
         let mut header = Header::parse(header)?;
         let (title, claim) = match kind {
             "wrong" => {
-                let claim = Claim::Wrong {
-                    trap: header.take("trap").pop(),
-                    caught_by: header.one("caught_by")?,
-                    says: header.take("says"),
-                };
-                if matches!(&claim, Claim::Wrong { says, .. } if says.is_empty()) {
-                    bail!("the header lacks `says: words of the message`");
+                let (trap, caught_by) = (header.take("trap").pop(), header.one("caught_by")?);
+                let (says, diagnosis) = (header.take("says"), header.take("diagnosis").pop());
+                let is_unknown = diagnosis.is_some();
+                if diagnosis.is_some_and(|word| word != "none") {
+                    bail!("`diagnosis:` must be `none`; for words of a diagnosis write `says:`");
                 }
-                (header.one("mistake")?, claim)
+                if says.is_empty() && !is_unknown {
+                    bail!("the header lacks `says: words of the message` or `diagnosis: none`");
+                }
+                (header.one("mistake")?, Claim::Wrong { trap, caught_by, says, is_unknown })
             }
             _ => (header.one("method")?, Claim::Right),
         };
@@ -139,7 +147,7 @@ impl Header {
         match self.0.first() {
             None => Ok(()),
             Some((key, _)) => bail!(
-                "the header has `{key}`, which is not one of mistake, trap, caught_by, says (wrong) or method (right)"
+                "the header has `{key}`, which is not one of mistake, trap, caught_by, says, diagnosis (wrong) or method (right)"
             ),
         }
     }
@@ -200,10 +208,17 @@ mod tests {
         let entry =
             wrong("mistake: it counts\ntrap: S3\ncaught_by: a_check\nsays: too\nsays: many\n").unwrap();
         assert_eq!(entry.to_string(), "wrong/stage1/counts");
-        let Claim::Wrong { trap, caught_by, says } = &entry.claim else { panic!("{entry:?}") };
+        let Claim::Wrong { trap, caught_by, says, .. } = &entry.claim else { panic!("{entry:?}") };
         assert_eq!((trap.as_deref(), caught_by.as_str(), says.len()), (Some("S3"), "a_check", 2));
         assert_eq!(entry.apply("one\ntwo\n").unwrap(), "eins\ntwo\n");
         assert!(entry.apply("three\nfour\n").unwrap_err().to_string().contains("does not fit"));
+    }
+
+    #[test]
+    fn an_entry_may_forbid_a_diagnosis() {
+        let entry = wrong("mistake: it counts\ncaught_by: a_check\ndiagnosis: none\n").unwrap();
+        assert!(matches!(&entry.claim, Claim::Wrong { says, is_unknown: true, .. } if says.is_empty()));
+        assert!(wrong("mistake: m\ncaught_by: c\ndiagnosis: some").is_err());
     }
 
     #[test]

@@ -168,7 +168,7 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     let fate = match Fate::of(entry, &failures) {
-        Fate::Unnamed(_) if seed.is_some() => Fate::Killed,
+        Fate::Unnamed(_) | Fate::Misnamed if seed.is_some() => Fate::Killed,
         fate => fate,
     };
     tried(fate, failures)
@@ -202,7 +202,8 @@ fn report(tried: &[Tried], differences: &[String]) {
             of_stage.filter(|one| which(one)).count()
         };
         let fated = |fate: Fate| count(&|one| one.fate == fate);
-        let otherwise = |one: &Tried| matches!(one.fate, Fate::Unnamed(_) | Fate::KilledByAnother);
+        let otherwise =
+            |one: &Tried| matches!(one.fate, Fate::Unnamed(_) | Fate::Misnamed | Fate::KilledByAnother);
         let broken = |one: &Tried| matches!(one.fate, Fate::DoesNotApply(_) | Fate::DoesNotCompile(_));
         let right = |one: &Tried| one.entry.claim == Claim::Right;
         println!(
@@ -218,7 +219,9 @@ fn report(tried: &[Tried], differences: &[String]) {
             count(&broken),
         );
     }
-    let undiagnosed = tried.iter().filter(|one| one.message().is_some() && !one.is_diagnosed());
+    let undiagnosed = tried
+        .iter()
+        .filter(|one| one.message().is_some() && !one.is_diagnosed() && one.entry.has_a_known_mistake());
     let undiagnosed: Vec<String> = undiagnosed.map(|one| one.entry.to_string()).collect();
     if !undiagnosed.is_empty() {
         println!("\ncaught without a diagnosis: {}", undiagnosed.join(", "));

@@ -9,6 +9,9 @@ use std::fmt;
 /// The checks that an entry failed, with their messages.
 pub type Failures = BTreeMap<&'static str, String>;
 
+/// The words before a diagnosis.
+const DIAGNOSIS: &str = "looks like:";
+
 /// How an entry ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fate {
@@ -16,6 +19,8 @@ pub enum Fate {
     Killed,
     /// A mistake: the named check caught it, and its message lacks these words.
     Unnamed(Vec<String>),
+    /// A mistake that the checks do not know: the named check caught it, and its message names some other mistake.
+    Misnamed,
     /// A mistake: other checks caught it.
     KilledByAnother,
     /// A mistake that no check caught.
@@ -37,8 +42,9 @@ impl Fate {
             Claim::Right if failures.is_empty() => Fate::Accepted,
             Claim::Right => Fate::Rejected,
             Claim::Wrong { .. } if failures.is_empty() => Fate::Survived,
-            Claim::Wrong { caught_by, says, .. } => match failures.get(caught_by.as_str()) {
+            Claim::Wrong { caught_by, says, is_unknown, .. } => match failures.get(caught_by.as_str()) {
                 None => Fate::KilledByAnother,
+                Some(message) if *is_unknown && message.contains(DIAGNOSIS) => Fate::Misnamed,
                 Some(message) => {
                     let message = one_line(message);
                     let missing: Vec<String> =
@@ -81,7 +87,7 @@ impl Tried {
 
     /// Returns whether the message of the named check contains a diagnosis.
     pub fn is_diagnosed(&self) -> bool {
-        self.message().is_some_and(|message| message.contains("looks like:"))
+        self.message().is_some_and(|message| message.contains(DIAGNOSIS))
     }
 }
 
@@ -100,6 +106,10 @@ impl fmt::Display for Tried {
             Fate::Accepted => write!(f, "accepted"),
             Fate::Unnamed(words) => {
                 write!(f, "killed by {named}, whose message does not say {}", quoted(words))?;
+                write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
+            }
+            Fate::Misnamed => {
+                write!(f, "killed by {named}, whose message must name no mistake")?;
                 write!(f, ":\n{}", failures.get(named).map_or("", String::as_str))
             }
             Fate::KilledByAnother => write!(f, "killed, but not by {named}: by {}", checks()),
@@ -164,7 +174,12 @@ mod tests {
 
     #[test]
     fn fates_follow_from_claims_and_failures() {
-        let claim = Claim::Wrong { trap: None, caught_by: "b".into(), says: vec!["far root".into()] };
+        let claim = Claim::Wrong {
+            trap: None,
+            caught_by: "b".into(),
+            says: vec!["far root".into()],
+            is_unknown: false,
+        };
         let entry = |claim: &Claim| Entry {
             stage: 1,
             name: "n".into(),
@@ -181,6 +196,9 @@ mod tests {
         assert_eq!(fate(&claim, &[("a", "")]), Fate::KilledByAnother);
         assert_eq!(fate(&claim, &[("b", "the near root")]), Fate::Unnamed(vec!["far root".into()]));
         assert_eq!(fate(&claim, &[("b", "the far\n   root")]), Fate::Killed);
+        let unknown = Claim::Wrong { trap: None, caught_by: "b".into(), says: vec![], is_unknown: true };
+        assert_eq!(fate(&unknown, &[("b", "  yours 3\n")]), Fate::Killed);
+        assert_eq!(fate(&unknown, &[("b", "  yours 3\n  looks like: the far root\n")]), Fate::Misnamed);
         assert_eq!(fate(&Claim::Right, &[]), Fate::Accepted);
         assert_eq!(fate(&Claim::Right, &[("a", "")]), Fate::Rejected);
     }

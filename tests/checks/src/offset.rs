@@ -1,0 +1,108 @@
+//! The start of a ray that leaves a surface: how far it must be from the surface, and which known mistake moved it.
+
+use crate::double::U;
+use glam::{DVec3, Vec3};
+use raykata::kit::Surface;
+use raykata::ray::Ray;
+
+/// The start of a ray that leaves a surface on one side.
+pub struct Start {
+    /// The start relative to the point of the surface.
+    moved: DVec3,
+    surface: Surface,
+    /// The geometric normal on the side on which the ray must start.
+    side: DVec3,
+    /// The unit direction that the ray must have.
+    direction: DVec3,
+}
+
+impl Start {
+    /// The start of `ray`, which must leave `surface` on the side of the unit normal `side`, along the unit vector
+    /// `direction`.
+    pub fn new(surface: &Surface, side: Vec3, direction: Vec3, ray: &Ray) -> Self {
+        let start = ray.origin.as_dvec3() + f64::from(ray.t_min) * ray.direction.as_dvec3();
+        let moved = start - surface.point.as_dvec3();
+        Start { moved, surface: *surface, side: side.as_dvec3(), direction: direction.as_dvec3() }
+    }
+
+    /// The distance from the point along the normal of the side.
+    pub fn height(&self) -> f64 {
+        self.moved.dot(self.side)
+    }
+
+    /// The least height: the bound on the error of the point along the normal, `error·|n|`.
+    pub fn least(&self) -> f64 {
+        self.surface.error.as_dvec3().dot(self.side.abs())
+    }
+
+    /// The greatest height: four times the bound, plus 64 float steps of the largest coordinate.
+    pub fn most(&self) -> f64 {
+        64.0 * 2.0 * U * f64::from(self.surface.point.abs().max_element()) + 4.0 * self.least()
+    }
+
+    /// Whether the height is less than allowed, or NaN. One per cent is left for the rounding of the bound itself.
+    pub fn is_too_low(&self) -> bool {
+        !(self.height() >= 0.99 * self.least())
+    }
+
+    /// The rounding of a start that is `moved` away from the point, per axis: one and a half float steps of the sum, and the
+    /// rounding of the way.
+    fn slack(&self, moved: DVec3) -> DVec3 {
+        let point = self.surface.point.as_dvec3();
+        3.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * moved.abs().max_element()
+    }
+
+    /// Whether the start is where a student's formula puts it.
+    fn is(&self, moved: DVec3) -> bool {
+        (self.moved - moved).abs().cmple(self.slack(moved)).all()
+    }
+
+    /// Whether the start is somewhere along `way`, or at the point.
+    fn is_along(&self, way: DVec3) -> bool {
+        let along = self.moved.dot(way);
+        along >= 0.0 && self.is(along * way)
+    }
+
+    /// The known mistakes, each with whether it gives this start.
+    pub fn mistakes(&self) -> Vec<(bool, &'static str)> {
+        let error = self.surface.error.as_dvec3();
+        // The shading normal on the same side.
+        let shading = self.surface.shading_normal.as_dvec3();
+        let shading = shading * self.side.dot(shading).signum();
+        let smooth = self.surface.shading_normal != self.surface.geometric_normal;
+        let fixed = |way: DVec3| (2..=7).any(|digits| self.is(10f64.powi(-digits) * way));
+        let along_the_side = |distance: f64| self.is(distance * self.side);
+        vec![
+            (
+                self.moved == DVec3::ZERO,
+                "your ray starts on the rounded point, so it may hit its own surface (shadow acne)",
+            ),
+            (
+                along_the_side(self.least()),
+                "you move by error·|n|, but rounding makes the sum smaller: move each coordinate one float further",
+            ),
+            (along_the_side(error.dot(self.side)), "you leave out the absolute values in error·|n|"),
+            (
+                along_the_side(error.max_element()),
+                "you move by the largest error: along the normal the error is error·|n|",
+            ),
+            (
+                along_the_side(error.length()),
+                "you move by the length of error: along the normal the error is error·|n|",
+            ),
+            (
+                along_the_side(error.element_sum()),
+                "you add up the errors of all axes: along the normal it is error·|n|",
+            ),
+            (
+                smooth && self.is_along(shading),
+                "you move along the shading normal: move along the geometric normal",
+            ),
+            (fixed(self.side), "your offset has the same length at every scale: move by error·|n|"),
+            (
+                self.is_along(self.direction),
+                "you move the origin along the ray: move it along the geometric normal",
+            ),
+        ]
+    }
+}
