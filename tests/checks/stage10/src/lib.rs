@@ -14,8 +14,8 @@ mod roots;
 mod triangles;
 
 use boxes::{
-    slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_that_is_met,
-    slab_of_special_numbers_is_finite,
+    slab_is_entered_before_what_it_holds, slab_meets_no_box_that_is_passed, slab_misses_no_box_in_any_range,
+    slab_misses_no_box_that_is_met, slab_of_special_numbers_is_finite,
 };
 use checks::Trial;
 use doubles::{
@@ -35,6 +35,7 @@ use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that
 use triangles::{
     watertight_errs_only_where_roundings_decide, watertight_has_a_good_t, watertight_meshes_do_not_leak,
     watertight_of_special_numbers_is_finite, watertight_sees_size_alike,
+    watertight_walls_seen_edge_on_do_not_leak,
 };
 
 /// Numbers for which formulas often fail.
@@ -76,10 +77,12 @@ checks::stage! { ($ crate) 10 [
     roots_of_special_numbers_are_finite
     watertight_errs_only_where_roundings_decide
     watertight_meshes_do_not_leak
+    watertight_walls_seen_edge_on_do_not_leak
     watertight_has_a_good_t
     watertight_sees_size_alike
     watertight_of_special_numbers_is_finite
     slab_misses_no_box_that_is_met
+    slab_misses_no_box_in_any_range
     slab_meets_no_box_that_is_passed
     slab_is_entered_before_what_it_holds
     slab_of_special_numbers_is_finite

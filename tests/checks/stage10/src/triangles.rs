@@ -2,15 +2,16 @@
 
 use super::Odd;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::paste::Arguments;
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use oracle::STABLE;
-use oracle::exact::{Body, meet, t_in_double, triangle};
+use oracle::exact::{Body, meet, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::families::families;
 use oracle::gauntlet::leaks::{Aim, aimed};
-use oracle::gauntlet::meshes::closed;
+use oracle::gauntlet::meshes::{Closed, closed};
 use oracle::splitmix::Random;
 use raykata::kit::{TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
@@ -50,6 +51,13 @@ pub(super) fn aim_again(trial: &Trial<'_>, queries: &[TriangleQuery]) -> Vec<Tri
     queries.iter().map(again).collect()
 }
 
+/// Whether the determinant is below 1e-6, the usual epsilon in the method of Möller and Trumbore.
+fn small(query: &TriangleQuery) -> bool {
+    let Triangle { a, b, c } = query.triangle;
+    let determinant = (b - a).as_dvec3().cross((c - a).as_dvec3()).dot(query.ray.direction.as_dvec3());
+    determinant.abs() < 1e-6
+}
+
 // The margin is that of the nearest edge. Rays that are turned round or have another range miss by half their range or
 // more, which is far above all rounding errors.
 pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> CheckResult {
@@ -66,93 +74,148 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
             }
             let infinite = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
             let on_the_line = meet(&infinite, body).is_some_and(|exact| exact.verdict.is_hit());
-            let diagnosis = match (distribution.name, yours) {
-                (_, Some(_)) if on_the_line => {
-                    "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
-                }
-                (_, Some(_)) => "you return a hit where there is none, and rounding errors do not explain it",
-                ("1e14", None) => "products of three lengths overflow: the normal alone has length 1e28",
-                ("1e-14", None) => "a determinant that is small is not 0: only the triangle is small",
-                ("needle", None) => "t has lost all digits on a needle: compute it from the plane",
-                _ => "you return a miss where there is a hit, and rounding errors do not explain it",
-            };
+            let Triangle { a, b, c } = query.triangle;
+            let normal = (b - a).cross(c - a);
+            let underflows = normal == Vec3::ZERO || !normal.is_finite();
             Err(Broken::with_texts(
                 query.call("watertight"),
                 format!("{:?}", yours.map(|hit| hit.t)),
                 format!("{:?}, {margin:.0} roundings from the opposite answer", exact.t),
                 "exactly",
             )
-            .looks_like(known(diagnosis)))
+            .explained_by([
+                (
+                    yours.is_some() && on_the_line,
+                    "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
+                ),
+                (
+                    yours.is_none() && underflows,
+                    "the normal over- or underflows in single precision, because it grows with the square of the size",
+                ),
+                (
+                    yours.is_none() && small(query),
+                    "a determinant that is small is not 0: only the triangle is small",
+                ),
+            ]))
         };
-        compare(&queries, answers, judge).into_iter().collect::<CheckResult>()?;
+        all_hold(compare(&queries, answers, judge))?;
     }
     Ok(())
 }
 
-pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {
-    for mesh in closed() {
-        let mut random = Random::new(trial.seed, 3);
-        let rays: Vec<(Aim, Ray, u32)> = (0..600)
-            .map(|n| {
-                let aim = Aim::ALL[n % 2];
-                let (ray, vertex) = aimed(&mesh, aim, &mut random);
-                (aim, ray, vertex)
-            })
-            .collect();
-        // Test the triangles around the vertex first, because nearly every ray hits one of them.
-        let fan = |vertex: u32| mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index));
-        let near: Vec<TriangleQuery> = rays
-            .iter()
-            .flat_map(|&(_, ray, vertex)| fan(vertex).map(move |triangle| TriangleQuery { ray, triangle }))
-            .collect();
-        let mut answers = trial.kit.watertight(&near).into_iter();
-        for (aim, ray, vertex) in &rays {
-            let count = mesh.fans[*vertex as usize].len();
-            if answers.by_ref().take(count).filter(Option::is_some).count() > 0 {
-                continue;
-            }
-            let all: Vec<TriangleQuery> =
-                mesh.all().into_iter().map(|triangle| TriangleQuery { ray: *ray, triangle }).collect();
-            if trial.kit.watertight(&all).iter().any(Option::is_some) {
-                continue;
-            }
-            let aimed_at = match aim {
-                Aim::Edge => "an edge",
-                Aim::Vertex => "a vertex",
-            };
-            let input = format!(
-                "watertight of {:?}\nagainst each of the {} triangles of a closed mesh ({}), from inside, aimed at {aimed_at}",
-                ray,
-                mesh.triangles.len(),
-                mesh.name
-            );
-            let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-            let hits = |ray: Ray| {
-                let near: Vec<TriangleQuery> =
-                    fan(*vertex).map(|triangle| TriangleQuery { ray, triangle }).collect();
-                trial.kit.watertight(&near).iter().any(Option::is_some)
-            };
-            let middle = fan(*vertex).next().map_or(Vec3::ZERO, |Triangle { a, b, c }| (a + b + c) / 3.0);
-            let diagnosis = match () {
-                () if !hits(Ray::new(ray.origin, middle - ray.origin)) && mesh.name.contains("1e14") => {
-                    "products of three lengths overflow: your code misses even the middle of a triangle"
-                }
-                () if !hits(Ray::new(ray.origin, middle - ray.origin)) => {
-                    "your code misses even the middle of a triangle: a determinant that is small is not 0"
-                }
-                () if mesh.name.contains("needle") && hits(infinite) => {
-                    "t has lost all digits and its sign: compute it from the plane"
-                }
-                () => {
-                    "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same \
-                     way for both, and count 0 as inside"
-                }
-            };
-            return Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
-                .looks_like(Some(diagnosis)));
+/// The known mistakes that let `ray` leak out of `mesh`: what exact arithmetic and the student's code say about the
+/// triangles that the ray hits.
+fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, mesh: &Closed) -> [(bool, &'static str); 4] {
+    let is_hit = |triangle: &Triangle| verdict(ray, Body::Triangle(*triangle)).is_some_and(|v| v.is_hit());
+    let hits: Vec<Triangle> = mesh.all().into_iter().filter(is_hit).collect();
+    let ask = |ray: &dyn Fn(&Triangle) -> Ray| {
+        let query = |triangle: &Triangle| TriangleQuery { ray: ray(triangle), triangle: *triangle };
+        trial.kit.watertight(&hits.iter().map(query).collect::<Vec<_>>())
+    };
+    // Ask for the whole line, and for the middle of each triangle.
+    let line = ask(&|_| ray.with_range(f32::NEG_INFINITY, f32::INFINITY));
+    let middle = |&Triangle { a, b, c }: &Triangle| (a / 3.0 + b / 3.0 + c / 3.0) - ray.origin;
+    let middles_are_hit = ask(&|triangle| Ray::new(ray.origin, middle(triangle))).iter().all(Option::is_some);
+    let normal = |Triangle { a, b, c }: &Triangle| (b - a).as_dvec3().cross((c - a).as_dvec3());
+    let edge_on = |triangle: &Triangle| {
+        let normal = normal(triangle);
+        let slope = normal.dot(ray.direction.as_dvec3()).abs();
+        slope <= 1e-6 * normal.length() * ray.direction.as_dvec3().length()
+    };
+    let by_rounding =
+        |triangle: &Triangle| triangle::margin(ray, triangle).is_some_and(|margin| margin <= STABLE);
+    let overflows = |triangle: &Triangle| {
+        let volume = normal(triangle).length() * (triangle.a - ray.origin).as_dvec3().length();
+        !(volume as f32).is_normal()
+    };
+    [
+        (
+            line.iter().flatten().any(|hit| hit.t <= 0.0),
+            "t has the wrong sign: it is a quotient of two numbers whose digits cancel, on a needle or edge-on",
+        ),
+        (
+            hits.iter().all(edge_on),
+            "each triangle that the ray hits is seen edge-on: there t is a quotient of two rounding errors",
+        ),
+        (
+            middles_are_hit && hits.iter().all(|triangle| by_rounding(triangle) && !edge_on(triangle)),
+            "the ray misses both neighbours of an edge: decide an edge by its two ends only, in the same way for both, \
+             and count 0 as inside",
+        ),
+        (
+            !middles_are_hit && hits.iter().all(overflows),
+            "products of three lengths over- or underflow in single precision here",
+        ),
+    ]
+}
+
+fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
+    let mut random = Random::new(trial.seed, 3);
+    let rays: Vec<(Aim, Ray, u32)> = (0..600)
+        .map(|n| {
+            let aim = Aim::ALL[n % 2];
+            let (ray, vertex) = aimed(mesh, aim, &mut random);
+            (aim, ray, vertex)
+        })
+        .collect();
+    // Test the triangles around the vertex first, because nearly every ray hits one of them.
+    let fan = |vertex: u32| mesh.fans[vertex as usize].iter().map(|&index| mesh.triangle(index));
+    let near: Vec<TriangleQuery> = rays
+        .iter()
+        .flat_map(|&(_, ray, vertex)| fan(vertex).map(move |triangle| TriangleQuery { ray, triangle }))
+        .collect();
+    let mut answers = trial.kit.watertight(&near).into_iter();
+    let judge = |(aim, ray, vertex): &(Aim, Ray, u32)| {
+        let count = mesh.fans[*vertex as usize].len();
+        if answers.by_ref().take(count).filter(Option::is_some).count() > 0 {
+            return Ok(());
         }
-    }
-    Ok(())
+        let all: Vec<TriangleQuery> =
+            mesh.all().into_iter().map(|triangle| TriangleQuery { ray: *ray, triangle }).collect();
+        if trial.kit.watertight(&all).iter().any(Option::is_some) {
+            return Ok(());
+        }
+        let aimed_at = match aim {
+            Aim::Edge => "an edge",
+            Aim::Vertex => "a vertex",
+        };
+        let input = format!(
+            "watertight of {:?}\nagainst each of the {} triangles of a closed mesh ({}), from inside, aimed at {aimed_at}",
+            ray,
+            mesh.triangles.len(),
+            mesh.name
+        );
+        Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
+            .explained_by(reasons_of_leak(trial, ray, mesh)))
+    };
+    all_hold(rays.iter().map(judge).collect())
+}
+
+pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {
+    closed().iter().try_for_each(|mesh| mesh_does_not_leak(trial, mesh))
+}
+
+pub(super) fn watertight_walls_seen_edge_on_do_not_leak(trial: &Trial<'_>) -> CheckResult {
+    let seen_edge_on = ["star prism", "star prism, tilted", "urchin", "cave", "scan"];
+    let meshes = families().into_iter().filter(|mesh| seen_edge_on.contains(&mesh.name));
+    meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))
+}
+
+/// The `t` of the paper in single precision: the depths of the corners, weighted with the edge functions, and divided by
+/// that of the ray before or after.
+fn from_depths(TriangleQuery { ray, triangle: Triangle { a, b, c } }: &TriangleQuery) -> [f32; 2] {
+    let z = ray.direction.abs().max_position();
+    let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+    let shear = ray.direction / ray.direction[z];
+    let [p, q, r] = [*a, *b, *c].map(|corner| {
+        let corner = corner - ray.origin;
+        vec3(corner[x] - shear[x] * corner[z], corner[y] - shear[y] * corner[z], corner[z])
+    });
+    let edge = |p: Vec3, q: Vec3| p.x * q.y - p.y * q.x;
+    let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
+    let sum = alpha + beta + gamma;
+    let depth = |scale: f32| alpha * (p.z / scale) + beta * (q.z / scale) + gamma * (r.z / scale);
+    [depth(ray.direction[z]) / sum, depth(1.0) / (sum * ray.direction[z])]
 }
 
 pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
@@ -174,16 +237,15 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
             if (f64::from(yours.t) - exact).abs() <= tolerance {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if name == "needle" => {
-                    "t has lost its digits on a needle: compute it from the plane of the triangle"
-                }
-                () if yours.t < 0.0 => "t has the wrong sign",
-                () => "",
-            };
-            Err(Broken::new(query.call("watertight"), yours.t, exact, "exactly").looks_like(known(diagnosis)))
+            Err(Broken::new(query.call("watertight"), yours.t, exact, "exactly").explained_by([
+                (
+                    from_depths(query).contains(&yours.t),
+                    "t has lost its digits: the weighted depths of the corners cancel on a needle. Compute t from the plane",
+                ),
+                (f64::from(yours.t) * exact < 0.0, "t has the wrong sign"),
+            ]))
         };
-        compare(&queries, answers, judge).into_iter().collect::<CheckResult>()?;
+        all_hold(compare(&queries, answers, judge))?;
     }
     Ok(())
 }
@@ -204,33 +266,50 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
                 }
             })
             .collect();
-        for ((query, yours), plain) in scaled.iter().zip(trial.kit.watertight(&scaled)).zip(&plain) {
-            if yours != *plain {
-                let broken = Broken::with_texts(
-                    query.call("watertight"),
-                    format!("{yours:?}"),
-                    format!("{plain:?}, as without the factor 2^{exponent}"),
-                    "a power of two changes no rounding",
-                );
-                return Err(broken.looks_like(Some(
-                    "a fixed epsilon decides: scaling by a power of two must change no answer",
-                )));
+        let pairs: Vec<_> = scaled.iter().zip(queries.iter().zip(&plain)).collect();
+        let judge = |(query, (unscaled, plain)): &(
+            &TriangleQuery,
+            (&TriangleQuery, &Option<TriangleHit>),
+        ),
+                     yours: Option<TriangleHit>| {
+            if yours == **plain {
+                return Ok(());
             }
-        }
+            Err(Broken::with_texts(
+                query.call("watertight"),
+                format!("{yours:?}"),
+                format!("{plain:?}, as without the factor 2^{exponent}"),
+                "a power of two changes no rounding",
+            )
+            .explained_by([(
+                yours.is_none() && plain.is_some() && small(query) && !small(unscaled),
+                "a determinant below a fixed epsilon counts as 0: scaling by a power of two must change no answer",
+            )]))
+        };
+        all_hold(compare(&pairs, trial.kit.watertight(&scaled), judge))?;
     }
     Ok(())
 }
 
 pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
-    let queries = Odd::new(trial, 6).triangles();
+    let mut queries = Odd::new(trial, 6).triangles();
+    // One ordinary hit.
+    let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
+    let ordinary = TriangleQuery { ray: Ray::new(vec3(0.25, 0.25, 1.0), Vec3::NEG_Z), triangle };
+    queries.push(ordinary);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
+        None if *query == ordinary => {
+            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly"))
+        }
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken =
                 Broken::new(query.call("watertight"), hit, "finite numbers, or None", "the definition");
-            Err(broken
-                .looks_like(Some("NaN is no hit: test the conditions of a hit, which are false for NaN")))
+            Err(broken.explained_by([(
+                hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan(),
+                "NaN is no hit: test the conditions of a hit, which are false for NaN",
+            )]))
         }
         _ => Ok(()),
     };
-    compare(&queries, trial.kit.watertight(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.watertight(&queries), judge))
 }
