@@ -3,6 +3,7 @@
 mod adversarial;
 mod bounds;
 mod calibration;
+mod coarse_structures;
 mod distribution;
 mod frames;
 mod instances;

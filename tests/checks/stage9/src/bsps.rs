@@ -138,12 +138,12 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         let n = hulls.len();
         let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
         let input = format!("build of {name}, leaf_size 1, max_depth 12");
-        let says = "stop at max_depth, and where no plane divides the primitives";
+        let too_deep = "stop at max_depth, and where no plane divides the primitives";
+        let too_many = "you divide primitives that are on both sides of each plane: make a leaf of them";
         let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
-        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
+        let yours = ended(&input, WHAT_MAKES_IT, [too_deep, too_many], build)?;
         judge_tree(&query, &yours)?;
-        let says = "you divide primitives that are on both sides of each plane: make a leaf of them";
-        judge_references(&input, &yours.items, 1024 + 64 * n, says)?;
+        judge_references(&input, &yours.items, n, too_many)?;
     }
     Ok(())
 }
