@@ -7,7 +7,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::kit_error::{self, KitError};
-use raykata::partition::{Cell, MOST_REFERENCES};
+use raykata::partition::Cell;
 
 /// Boxes on a coarse grid, so that many touch. Some are flat, and some have NaN coordinates.
 pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
@@ -78,10 +78,8 @@ pub(super) fn ended<T>(
     })
 }
 
-/// Whether the leaves over `n` primitives hold at most [`MOST_REFERENCES`] references per primitive. A primitive counts
-/// once per leaf that lists it.
-pub(super) fn judge_references(input: &str, yours: &[u32], n: usize, says: &'static str) -> CheckResult {
-    let most = MOST_REFERENCES * n;
+/// Whether the leaves hold at most `most` references. A primitive counts once per leaf that lists it.
+pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'static str) -> CheckResult {
     let describe = |n: usize| format!("{n} references");
     if yours.len() <= most {
         return Ok(());

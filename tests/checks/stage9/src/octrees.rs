@@ -12,7 +12,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::Strategy;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
-use raykata::partition::{Octree, OctreeNode};
+use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -113,7 +113,7 @@ pub(super) fn octree_build_ends(trial: &Trial<'_>) -> CheckResult {
         let build = || trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
         let yours = ended(&input, WHAT_MAKES_IT, [too_deep, too_many], build)?;
         judge_octree(&query, &yours)?;
-        judge_references(&input, &yours.items, n, too_many)?;
+        judge_references(&input, &yours.items, MOST_REFERENCES * n, too_many)?;
     }
     Ok(())
 }
