@@ -7,10 +7,9 @@ use crate::partition::{BspNode, KdNode, OctreeNode};
 /// the vertices of ordinary meshes, where up to 64 triangles meet.
 const LARGE: usize = 16;
 
-/// A sentence that says that dividing a tree over `n_primitives` stopped early; `None` unless more than half of
-/// the references are in large leaves, or a large leaf lists a quarter of all primitives. A hierarchy has no
-/// large leaves, because it lists each primitive once.
-pub fn large_leaves(structure: &Structure, n_primitives: usize, leaf_size: usize) -> Option<String> {
+/// A sentence that says that dividing stopped early; `None` unless more than half of the references of a
+/// partition of space are in large leaves. A hierarchy has no large leaves, because it lists each primitive once.
+pub fn large_leaves(structure: &Structure, leaf_size: usize) -> Option<String> {
     let (name, counts): (&str, Vec<usize>) = match structure {
         Structure::Octree { tree, .. } => {
             let counts = tree.nodes.iter().map(|node| match node {
@@ -36,9 +35,8 @@ pub fn large_leaves(structure: &Structure, n_primitives: usize, leaf_size: usize
         _ => return None,
     };
     let in_large: usize = counts.iter().filter(|&&count| count > LARGE * leaf_size).sum();
-    let largest = *counts.iter().max()?;
-    let is_coarse = 2 * in_large > counts.iter().sum() || in_large > 0 && 4 * largest >= n_primitives;
-    is_coarse.then(|| {
+    let largest = counts.iter().max()?;
+    (2 * in_large > counts.iter().sum()).then(|| {
         format!(
             "the {name} has up to {largest} primitives per leaf (`leaf_size = {leaf_size}`), because primitives overlap \
              or are too close to each other: dividing stopped where it would mostly list the same ones again; \

@@ -137,7 +137,7 @@ impl Structure {
                 _,
             ) => Structure::Hierarchy(F::build(bounds, quality.split, leaf_size)),
         };
-        notes.extend(large_leaves(&structure, n, leaf_size));
+        notes.extend(large_leaves(&structure, leaf_size));
         structure
     }
 

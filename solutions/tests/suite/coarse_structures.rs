@@ -78,7 +78,7 @@ fn structures_over_hard_triangles_are_small_and_right() {
 
 #[test]
 fn a_note_says_which_structure_is_coarse() {
-    let scene = picture_of("short needles", 12_000);
+    let scene = picture_of("needles", 12_000);
     for (accelerator, says) in [
         (Accelerator::Grid, Some("the grid has ")),
         (Accelerator::Octree, Some("the octree has up to ")),
