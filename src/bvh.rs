@@ -213,6 +213,13 @@ pub struct PrimitiveHit {
     pub primitive: u32,
 }
 
+/// The depth from which on every split of a hierarchy is an object median; the root has depth 0.
+///
+/// A balanced tree over 2⁶⁴ primitives is as deep, so useful trees end before it. But a spatial median may
+/// split off one primitive per level. Such a tree over a million primitives would have a million levels, and a
+/// recursion over it would overflow the stack.
+pub const DEEPEST_SPLIT: usize = 64;
+
 /// The cost of visiting an inner node, which takes two box tests, in the surface area heuristic. Its unit is
 /// the cost of one primitive test, [`INTERSECTION_COST`].
 pub const TRAVERSAL_COST: f32 = 1.0;

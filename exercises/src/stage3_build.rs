@@ -3,11 +3,12 @@
 //! Slides: "Bounding Volume Hierarchy", "Object Median", "Spatial Median", "Surface Area Heuristic".
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`PrimitiveRef`] with the number, the box and the
-//! centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`]; your own functions for boxes.
+//! centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`]; [`DEEPEST_SPLIT`]; your own functions
+//! for boxes.
 
 use crate::stage3_boxes::{centroid, surface_area, union};
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
+use raykata::bvh::{Bvh, DEEPEST_SPLIT, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 
 /// Object median split: order the primitives by centroid along the longest axis of the box around all of them, and
@@ -57,7 +58,11 @@ pub fn split_surface_area(primitives: &mut [PrimitiveRef]) -> Option<usize> {
 /// no node. The build ends for any boxes, also if all centroids are equal. A box of NaN goes into some leaf and does
 /// not change the boxes of other primitives.
 ///
-/// Pitfall: the slide stops at `e - s < N_leaf`. With `N_leaf = 1` it splits a single primitive forever.
+/// A node at depth [`DEEPEST_SPLIT`] or more is split by the object median, with any [`Split`]; the root has depth 0.
+/// So the hierarchy has at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels.
+///
+/// Pitfall: the slide stops at `e - s < N_leaf`. With `N_leaf = 1` it splits a single primitive forever. And if each
+/// box is a little larger than the one before, with a common corner, a spatial median splits off one box per level.
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     todo!("make a leaf if the primitives are few enough; otherwise split them and build both halves")
 }

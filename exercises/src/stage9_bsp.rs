@@ -2,12 +2,13 @@
 //!
 //! Slides: "Binary Space Partition (BSP) Tree" (recursively partition space by planes; traverse nodes front-to-back).
 //!
-//! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`.
+//! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`;
+//! [`Growth`].
 
 use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Bsp, BspNode, Cells, CutPlane};
+use raykata::partition::{Bsp, BspNode, Cells, CutPlane, Growth};
 use raykata::ray::Ray;
 
 /// Builds a BSP tree over hulls. A hull is the list of corners of a polygon, or the eight corners of a box.
@@ -16,15 +17,19 @@ use raykata::ray::Ray;
 /// centre, because the planes of a convex body do not divide it. Choose a plane that leaves few primitives on its
 /// fuller side, and few on both sides. Make a leaf if a node has at most `leaf_size` primitives, if it is at
 /// `max_depth` (the root is at depth 0), or if no plane leaves fewer primitives on each side and less than 60 % of them
-/// on both.
+/// on both. Make a leaf also if [`Growth::divide`] returns `None`: all leaves together list at most
+/// [`MOST_REFERENCES`] references per primitive.
 ///
 /// List a primitive once in every leaf that it overlaps; a primitive that touches a plane is on both sides. Leave out
 /// hulls that have no corner, or a corner with NaN or infinity. Without a usable hull the tree has no nodes.
 ///
 /// Pitfall: many polygons in one plane, or around one line, are on both sides of each of their planes. The recursion
-/// must end there.
+/// must end there. If polygons cross each other, every plane has some of them on both sides, and the number of
+/// references grows at every level.
 ///
 /// Slide: "Binary Space Partition (BSP) Tree".
+///
+/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
     todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
 }

@@ -2,18 +2,19 @@
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
-//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`.
+//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`Growth`].
 
 use crate::stage9_cells::{ROUNDING, look_into, part_above, settled, span, widened};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Cell, Cells, Growth, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 
 /// Builds a kd-tree from the root down.
 ///
 /// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
-/// depth 0) or all primitives would be on both sides. A plane lies within its cell. List a primitive once in every leaf
+/// depth 0), all primitives would be on both sides, or [`Growth::divide`] returns `None`: all leaves together list at
+/// most [`MOST_REFERENCES`] references per primitive. A plane lies within its cell. List a primitive once in every leaf
 /// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
 /// Without a usable box the tree has no nodes.
 ///
@@ -27,9 +28,12 @@ use raykata::ray::Ray;
 /// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides.
 ///
 /// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
-/// there.
+/// there. Without heuristics, long thin boxes are on both sides of most planes, and each level of the tree doubles the
+/// number of references.
 ///
 /// Slides: "Kd-Trees", "Heuristics" 1 to 5.
+///
+/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
 }

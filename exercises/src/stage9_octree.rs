@@ -3,24 +3,28 @@
 //! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
 //! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
-//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`.
+//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`Growth`].
 
 use crate::stage9_cells::{look_into, settled, span, widened};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Octree, OctreeNode};
+use raykata::partition::{Cell, Cells, Growth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 /// Builds an octree: makes a cube of the box around all primitives, and divides every cell that holds more than
 /// `leaf_size` primitives into octants.
 ///
 /// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
-/// its octants together would hold more than three times as many primitives. List a primitive once in every leaf that
-/// its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.
+/// its octants together would hold more than three times as many primitives. Make a leaf also if [`Growth::divide`]
+/// returns `None`: all leaves together list at most [`MOST_REFERENCES`] references per primitive. List a primitive once
+/// in every leaf that its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no
+/// nodes.
 ///
-/// Pitfall: a thousand copies of one box are in the same octants at every level. Without the limit on the growth the
-/// build does not end in reasonable time.
+/// Pitfall: a thousand copies of one box are in the same octants at every level, and the number of references to long
+/// thin boxes doubles at every level. Without the two limits the build does not end in reasonable time.
+///
+/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 ///
 /// Slide: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {

@@ -3,11 +3,12 @@
 //! Slides: "Bounding Volume Hierarchy", "Object Median", "Spatial Median", "Surface Area Heuristic".
 //!
 //! Given: [`Bvh`] with `add_node`, `set_leaf` and `set_children`; [`PrimitiveRef`] with the number, the box and the
-//! centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`]; your own functions for boxes.
+//! centroid of a primitive; the costs [`TRAVERSAL_COST`] and [`INTERSECTION_COST`]; [`DEEPEST_SPLIT`]; your own functions
+//! for boxes.
 
 use crate::stage3_boxes::{centroid, surface_area, union};
 use raykata::aabb::Aabb;
-use raykata::bvh::{Bvh, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
+use raykata::bvh::{Bvh, DEEPEST_SPLIT, INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 
 // <solution>
@@ -149,7 +150,11 @@ fn sort_along(primitives: &mut [PrimitiveRef], axis: usize) {
 /// no node. The build ends for any boxes, also if all centroids are equal. A box of NaN goes into some leaf and does
 /// not change the boxes of other primitives.
 ///
-/// Pitfall: the slide stops at `e - s < N_leaf`. With `N_leaf = 1` it splits a single primitive forever.
+/// A node at depth [`DEEPEST_SPLIT`] or more is split by the object median, with any [`Split`]; the root has depth 0.
+/// So the hierarchy has at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels.
+///
+/// Pitfall: the slide stops at `e - s < N_leaf`. With `N_leaf = 1` it splits a single primitive forever. And if each
+/// box is a little larger than the one before, with a common corner, a spatial median splits off one box per level.
 pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     // <solution>
     // Collect number, box and centroid of each primitive.
@@ -161,7 +166,7 @@ pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
     // Build the tree below the root, unless there is nothing to build.
     let mut bvh = Bvh::for_primitives(primitives.len());
     if !primitives.is_empty() {
-        subdivide(&mut bvh, &mut primitives, split, leaf_size.max(1));
+        subdivide(&mut bvh, &mut primitives, split, leaf_size.max(1), 0);
     }
     bvh
     // <stub> todo!("make a leaf if the primitives are few enough; otherwise split them and build both halves")
@@ -170,15 +175,22 @@ pub fn build(bounds: &[Aabb], split: Split, leaf_size: usize) -> Bvh {
 
 // <solution>
 /// Builds the tree below a new node over these primitives, at least one, and returns the number of the node.
-fn subdivide(bvh: &mut Bvh, primitives: &mut [PrimitiveRef], split: Split, leaf_size: usize) -> u32 {
+fn subdivide(
+    bvh: &mut Bvh,
+    primitives: &mut [PrimitiveRef],
+    split: Split,
+    leaf_size: usize,
+    depth: usize,
+) -> u32 {
     // Add the node before its children. Then make it a leaf, or split the primitives and build both sides.
     let node = bvh.add_node(bounds_of(primitives));
+    let split = if depth < DEEPEST_SPLIT { split } else { Split::ObjectMedian };
     match choose_split(primitives, split, leaf_size) {
         None => bvh.set_leaf(node, primitives),
         Some(middle) => {
             let (below, above) = primitives.split_at_mut(middle);
-            let left = subdivide(bvh, below, split, leaf_size);
-            let right = subdivide(bvh, above, split, leaf_size);
+            let left = subdivide(bvh, below, split, leaf_size, depth + 1);
+            let right = subdivide(bvh, above, split, leaf_size, depth + 1);
             bvh.set_children(node, left, right);
         }
     }

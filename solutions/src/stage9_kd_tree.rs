@@ -2,18 +2,19 @@
 //!
 //! Slides: "Kd-Trees", "Heuristics" 1 to 5, "kd-Tree Traversal" with `t` and `t'`.
 //!
-//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`.
+//! Given: [`KdTree`] with `add_node`, `set_leaf` and `set_children`; [`Growth`].
 
 use crate::stage9_cells::{ROUNDING, look_into, part_above, settled, span, widened};
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Cell, Cells, Growth, KdHeuristics, KdNode, KdTree};
 use raykata::ray::Ray;
 
 /// Builds a kd-tree from the root down.
 ///
 /// Divide a node with more than `leaf_size` primitives, unless it is at depth [`KdTree::most_depth`] (the root is at
-/// depth 0) or all primitives would be on both sides. A plane lies within its cell. List a primitive once in every leaf
+/// depth 0), all primitives would be on both sides, or [`Growth::divide`] returns `None`: all leaves together list at
+/// most [`MOST_REFERENCES`] references per primitive. A plane lies within its cell. List a primitive once in every leaf
 /// that its box touches; a primitive that touches a plane is on both sides. Leave out empty boxes and boxes with NaN.
 /// Without a usable box the tree has no nodes.
 ///
@@ -27,9 +28,12 @@ use raykata::ray::Ray;
 /// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides.
 ///
 /// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
-/// there.
+/// there. Without heuristics, long thin boxes are on both sides of most planes, and each level of the tree doubles the
+/// number of references.
 ///
 /// Slides: "Kd-Trees", "Heuristics" 1 to 5.
+///
+/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree {
     // <solution>
     let widened = widened(bounds);
@@ -37,7 +41,7 @@ pub fn build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> Kd
     if !widened.boxes.is_empty() {
         let max_depth = KdTree::most_depth(widened.boxes.len());
         let rules = Rules { heuristics: *heuristics, leaf_size, max_depth };
-        divide(&mut tree, &widened.boxes, widened.around, 0, &rules);
+        divide(&mut tree, &widened.boxes, widened.around, (0, Growth::ROOT), &rules);
     }
     tree
     // <stub> todo!("make a leaf if the primitives are few; else choose a plane and build both sides")
@@ -51,25 +55,35 @@ struct Rules {
     max_depth: usize,
 }
 
-fn divide(tree: &mut KdTree, boxes: &[(u32, Aabb)], cell: Aabb, depth: usize, rules: &Rules) -> u32 {
+fn divide(
+    tree: &mut KdTree,
+    boxes: &[(u32, Aabb)],
+    cell: Aabb,
+    (depth, growth): (usize, Growth),
+    rules: &Rules,
+) -> u32 {
     // Choose a plane, unless the node must be a leaf.
     let node = tree.add_node(depth, rules.max_depth);
     let divided = boxes.len() > rules.leaf_size && depth < rules.max_depth;
-    match divided.then(|| choose_cut(boxes, &cell, depth, &rules.heuristics)).flatten() {
+    let cut = divided.then(|| choose_cut(boxes, &cell, depth, &rules.heuristics)).flatten();
+    // Refuse a plane if the two sides repeat too many primitives.
+    let n_below = |cut| boxes.len() + sides(boxes, cut).n_both;
+    match cut.and_then(|cut| Some((cut, growth.divide(boxes.len(), n_below(cut))?))) {
         None => {
             let ids: Vec<u32> = boxes.iter().map(|(id, _)| *id).collect();
             tree.set_leaf(node, &ids);
         }
-        Some(Cut { axis, position }) => {
+        Some((Cut { axis, position }, growth)) => {
             // Divide the boxes between the two sides. A box that touches the plane goes to both.
             let part = |keep: &dyn Fn(&Aabb) -> bool| -> Vec<(u32, Aabb)> {
                 boxes.iter().filter(|(_, one)| keep(one)).copied().collect()
             };
+            let deeper = (depth + 1, growth);
             let (mut below, mut above) = (cell, cell);
             below.max[axis] = position;
             above.min[axis] = position;
-            let left = divide(tree, &part(&|one| one.min[axis] <= position), below, depth + 1, rules);
-            let right = divide(tree, &part(&|one| one.max[axis] >= position), above, depth + 1, rules);
+            let left = divide(tree, &part(&|one| one.min[axis] <= position), below, deeper, rules);
+            let right = divide(tree, &part(&|one| one.max[axis] >= position), above, deeper, rules);
             tree.set_children(node, axis, position, left, right);
         }
     }

@@ -3,13 +3,13 @@
 //! Slides: "Octree" (recursively subdivide box-shaped cells into 8 octants; trace rays through neighbor cells; "Or,
 //! check rays versus octree boxes hierarchically": sort eight boxes front-to-back at each level).
 //!
-//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`.
+//! Given: [`Octree`] with `divide` and `set_leaf`; [`Cell`] with `octant`, `middle` and `touches`; [`Growth`].
 
 use crate::stage9_cells::{look_into, settled, span, widened};
 use glam::DVec3;
 use raykata::aabb::Aabb;
 use raykata::bvh::PrimitiveHit;
-use raykata::partition::{Cell, Cells, Octree, OctreeNode};
+use raykata::partition::{Cell, Cells, Growth, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 // <solution>
@@ -20,11 +20,15 @@ use crate::stage9_cells::{Exit, first_exit};
 /// `leaf_size` primitives into octants.
 ///
 /// Make a leaf if a cell holds at most `leaf_size` primitives, if it is at `max_depth` (the root is at depth 0), or if
-/// its octants together would hold more than three times as many primitives. List a primitive once in every leaf that
-/// its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no nodes.
+/// its octants together would hold more than three times as many primitives. Make a leaf also if [`Growth::divide`]
+/// returns `None`: all leaves together list at most [`MOST_REFERENCES`] references per primitive. List a primitive once
+/// in every leaf that its box touches. Leave out empty boxes and boxes with NaN. Without a usable box the tree has no
+/// nodes.
 ///
-/// Pitfall: a thousand copies of one box are in the same octants at every level. Without the limit on the growth the
-/// build does not end in reasonable time.
+/// Pitfall: a thousand copies of one box are in the same octants at every level, and the number of references to long
+/// thin boxes doubles at every level. Without the two limits the build does not end in reasonable time.
+///
+/// [`MOST_REFERENCES`]: raykata::partition::MOST_REFERENCES
 ///
 /// Slide: "Octree" (recursively subdivide box-shaped cells into 8 octants).
 pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
@@ -40,7 +44,8 @@ pub fn build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree {
     cube.max = cube.max.map(|x| x.min(f32::MAX));
 
     let mut octree = Octree::new(cube);
-    divide(&mut octree, 0, &widened.boxes, Cell::new(&cube), 0, &LeafRule { leaf_size, max_depth });
+    let limits = LeafRule { leaf_size, max_depth };
+    divide(&mut octree, 0, &widened.boxes, Cell::new(&cube), (0, Growth::ROOT), &limits);
     octree
     // <stub> todo!("make a leaf if the primitives are few; else divide the cell and build all eight octants")
     // </solution>
@@ -57,7 +62,7 @@ fn divide(
     node: u32,
     boxes: &[(u32, Aabb)],
     cell: Cell,
-    depth: usize,
+    (depth, growth): (usize, Growth),
     limits: &LeafRule,
 ) {
     // List the boxes that touch each octant.
@@ -67,14 +72,15 @@ fn divide(
     });
     // Make a leaf if the primitives are few, or if dividing does not help.
     let n_below: usize = octants.iter().map(Vec::len).sum();
-    if boxes.len() <= limits.leaf_size || depth >= limits.max_depth || n_below > 3 * boxes.len() {
+    let is_leaf = boxes.len() <= limits.leaf_size || depth >= limits.max_depth || n_below > 3 * boxes.len();
+    let Some(growth) = growth.divide(boxes.len(), n_below).filter(|_| !is_leaf) else {
         let ids: Vec<u32> = boxes.iter().map(|(id, _)| *id).collect();
         return octree.set_leaf(node, &ids);
-    }
+    };
     // Divide the node, and build its octants.
     let first = octree.divide(node, depth + 1, limits.max_depth);
     for (octant, boxes) in octants.iter().enumerate() {
-        divide(octree, first + octant as u32, boxes, cell.octant(octant), depth + 1, limits);
+        divide(octree, first + octant as u32, boxes, cell.octant(octant), (depth + 1, growth), limits);
     }
 }
 // </solution>

@@ -6,6 +6,7 @@ use super::types::*;
 use super::*;
 use crate::bvh::PrimitiveHit;
 use crate::frame::Watch;
+use crate::partition::limit::limited;
 use std::sync::Arc;
 
 /// The functions of a crate as a [`Kit`], called directly in this process.

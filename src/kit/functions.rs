@@ -5,6 +5,7 @@ use super::adapters::{divide, look, search};
 use super::example::Example;
 use super::types::*;
 use super::{KitError, kit_error};
+use crate::partition::limit::limited;
 use std::cell::Cell as Local;
 use std::fmt;
 

@@ -518,7 +518,9 @@ macro_rules! student_functions {
                 /// are divided where that helps, down to `max_depth`.
                 OctreeBuild fn octree_build(bounds: &[Aabb], leaf_size: usize, max_depth: usize) -> Octree
                     = stage9_octree::build;
-                |q: OctreeQuery| -> Octree { F::octree_build(&q.bounds, q.leaf_size, q.max_depth) }
+                |q: OctreeQuery| -> Octree {
+                    limited(q.bounds.len(), || F::octree_build(&q.bounds, q.leaf_size, q.max_depth))
+                }
                 /// The closest hit in an octree, from leaf to leaf along the ray; `None` if nothing is hit.
                 OctreeByCells fn octree_by_cells[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit_by_cells;
@@ -532,7 +534,9 @@ macro_rules! student_functions {
                 /// `leaf_size` primitives are divided.
                 KdBuild fn kd_build(bounds: &[Aabb], heuristics: &KdHeuristics, leaf_size: usize) -> KdTree
                     = stage9_kd_tree::build;
-                |q: KdQuery| -> KdTree { F::kd_build(&q.bounds, &q.heuristics, q.leaf_size) }
+                |q: KdQuery| -> KdTree {
+                    limited(q.bounds.len(), || F::kd_build(&q.bounds, &q.heuristics, q.leaf_size))
+                }
                 /// The closest hit in a kd-tree, nearer side of each plane first; `None` if nothing is hit.
                 KdSearch fn kd_search[P: Cells](tree: &KdTree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_kd_tree::closest_hit;
@@ -541,7 +545,9 @@ macro_rules! student_functions {
                 /// divided where that helps, down to `max_depth`.
                 BspBuild fn bsp_build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp
                     = stage9_bsp::build;
-                |q: BspQuery| -> Bsp { F::bsp_build(&q.hulls, q.leaf_size, q.max_depth) }
+                |q: BspQuery| -> Bsp {
+                    limited(q.hulls.len(), || F::bsp_build(&q.hulls, q.leaf_size, q.max_depth))
+                }
                 /// The closest hit in a BSP tree, nearer side of each plane first; `None` if nothing is hit.
                 BspSearch fn bsp_search[P: Cells](bsp: &Bsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_bsp::closest_hit;

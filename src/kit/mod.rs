@@ -132,6 +132,7 @@ pub struct Rendering {
     pub build_seconds: f64,
     /// The time to render the pixels, in seconds.
     pub render_seconds: f64,
-    /// What is missing in the picture and why, one sentence each.
+    /// What is missing in the picture and why, and which structure is coarser than the scene asks for, one
+    /// sentence each.
     pub notes: Vec<String>,
 }

@@ -1,6 +1,6 @@
 //! The BSP tree as data: binary space partitioning by planes in any direction.
 
-use super::{check_depth, walk};
+use super::{check_depth, limit, walk};
 use crate::aabb::Aabb;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -104,8 +104,11 @@ impl Bsp {
     ///
     /// # Panics
     ///
-    /// If there is no node with the index `node`.
+    /// If there is no node with the index `node`. In frames and checks also if the leaves list more than
+    /// [`MOST_REFERENCES`](super::MOST_REFERENCES) references per primitive.
+    #[track_caller]
     pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
+        limit::count(primitives.len());
         let first = self.items.len() as u32;
         self.items.extend(primitives);
         self.nodes[node as usize] = BspNode::Leaf { first, count: primitives.len() as u32 };

@@ -1,6 +1,6 @@
 //! The kd-tree as data: binary space partitioning by planes across the axes.
 
-use super::{Cell, check_depth, walk};
+use super::{Cell, check_depth, limit, walk};
 use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 
@@ -110,8 +110,11 @@ impl KdTree {
     ///
     /// # Panics
     ///
-    /// If there is no node with the index `node`.
+    /// If there is no node with the index `node`. In frames and checks also if the leaves list more than
+    /// [`MOST_REFERENCES`](super::MOST_REFERENCES) references per primitive.
+    #[track_caller]
     pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
+        limit::count(primitives.len());
         let first = self.items.len() as u32;
         self.items.extend(primitives);
         self.nodes[node as usize] = KdNode::Leaf { first, count: primitives.len() as u32 };

@@ -1,15 +1,18 @@
 //! Partitions of space as data: cells, each with the numbers of the primitives that overlap it. Building and
 //! searching them are exercises of stage 9.
 //!
-//! `grid` · `octree` · `kd_tree` · `bsp`
+//! `grid` · `octree` · `kd_tree` · `bsp` · `growth` (the bound on references) · `limit` (enforces it)
 
 pub mod bsp;
 pub mod grid;
+pub mod growth;
 pub mod kd_tree;
+pub(crate) mod limit;
 pub mod octree;
 
 pub use bsp::{Bsp, BspNode, CutPlane};
 pub use grid::{Grid, MOST_CELLS_ALONG};
+pub use growth::{Growth, MOST_REFERENCES};
 pub use kd_tree::{KdHeuristics, KdNode, KdTree};
 pub use octree::{Octree, OctreeNode};
 

@@ -1,6 +1,6 @@
 //! The octree as data: cells that are divided into eight octants.
 
-use super::{Cell, check_depth, walk};
+use super::{Cell, check_depth, limit, walk};
 use crate::aabb::Aabb;
 use serde::{Deserialize, Serialize};
 
@@ -51,8 +51,11 @@ impl Octree {
     ///
     /// # Panics
     ///
-    /// If there is no node with the index `node`.
+    /// If there is no node with the index `node`. In frames and checks also if the leaves list more than
+    /// [`MOST_REFERENCES`](super::MOST_REFERENCES) references per primitive.
+    #[track_caller]
     pub fn set_leaf(&mut self, node: u32, primitives: &[u32]) {
+        limit::count(primitives.len());
         let first = self.items.len() as u32;
         self.items.extend(primitives);
         self.nodes[node as usize] = OctreeNode::Leaf { first, count: primitives.len() as u32 };

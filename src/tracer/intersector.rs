@@ -21,6 +21,8 @@ use std::marker::PhantomData;
 pub struct Intersector<F> {
     /// The world with an acceleration structure over its primitives and one over each shared mesh.
     pub scene: Structured,
+    /// What the user should know about the structures, at most one sentence.
+    pub notes: Vec<String>,
     accelerator: Option<Accelerator>,
     functions: PhantomData<F>,
 }
@@ -42,15 +44,19 @@ impl<F: StudentFunctions> Intersector<F> {
         let around: Vec<Aabb> = of_meshes.iter().map(around).collect();
         let of_scene = bounds(&world.primitives, &around);
         // Build one structure over the scene and one over each shared mesh.
-        let over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
-            Structure::build::<F>(bounds, graph, |index| hull(&primitives[index]), plan.accelerator, quality)
+        let mut notes = Vec::new();
+        let mut over = |bounds: &[Aabb], primitives: &[Primitive], graph: Option<Graph>| {
+            let hull = |index: usize| hull(&primitives[index]);
+            Structure::build::<F>(bounds, graph, hull, plan.accelerator, quality, &mut notes)
         };
         let structure = over(&of_scene, &world.primitives, graph);
         let meshes = world.shared_meshes.iter().zip(&of_meshes);
         let mesh_structures = meshes.map(|(mesh, bounds)| over(bounds, &mesh.primitives, None)).collect();
+        // One note is enough, because all structures are of the same kind.
+        notes.truncate(1);
         let scene =
             Structured { world, structure, mesh_structures, tests: plan.tests, savings: quality.savings };
-        Intersector { scene, accelerator: plan.accelerator, functions: PhantomData }
+        Intersector { scene, notes, accelerator: plan.accelerator, functions: PhantomData }
     }
 
     /// Bytes of memory that the structures of all shared meshes take.

@@ -4,16 +4,19 @@
 //! [`Renderer`] renders the frames of a kit. `plan` decides what is computed, and what replaces functions
 //! that are not written. `frame` puts together `camera_sampler`, which makes camera rays, and `intersector`,
 //! which finds their hits. The intersector searches a `structure` through a `probe`, which tests triangles
-//! and spheres by `intersection` and shapes in spaces of their own by `solids`. `path` follows a ray through
-//! the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a pixel,
-//! and `outlines` draws structures.
+//! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
+//! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
+//! through the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a
+//! pixel, and `outlines` draws structures.
 
 mod camera_sampler;
 mod frame;
+mod grid_resolution;
 mod hit;
 mod interaction;
 mod intersection;
 mod intersector;
+mod large_leaves;
 mod motion;
 mod outlines;
 mod packets;
@@ -130,7 +133,7 @@ fn render<F: StudentFunctions>(
         bytes_of_parts: frame.intersector.bytes_of_parts(),
         build_seconds,
         render_seconds: started.elapsed().as_secs_f64(),
-        notes: [frame.plan.notes.as_slice(), scene.world.notes.as_slice()].concat(),
+        notes: [&frame.plan.notes, &frame.intersector.notes, &scene.world.notes].map(Vec::as_slice).concat(),
     })
 }
 

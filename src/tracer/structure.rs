@@ -1,16 +1,19 @@
 //! The acceleration structure over a set of primitives, built and searched by the functions of stages 3, 8
 //! and 9.
 
+use super::grid_resolution::grid_resolution;
+use super::large_leaves::large_leaves;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use crate::count::Event;
 use crate::graph::{Graph, Savings};
 use crate::kit::{StructureSize, StudentFunctions};
-use crate::partition::{Bsp, Cells, Grid, KdTree, MOST_CELLS_ALONG, Octree, corners};
+use crate::partition::limit::limited;
+use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, corners};
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
 use crate::shape::Sphere;
-use glam::{UVec3, Vec3};
+use glam::Vec3;
 use std::marker::PhantomData;
 
 /// An acceleration structure over a set of primitives.
@@ -71,10 +74,6 @@ pub trait Primitives: Probe + Cells {
     fn inverse_direction(&self) -> Vec3;
 }
 
-/// Cells per primitive, if the scene does not say how many (Wald et al., "Ray Tracing Animated Scenes Using Coherent
-/// Grid Traversal", 2006, find 2 to 5 best).
-const DENSITY: f32 = 4.0;
-
 /// The deepest level of an octree: octants there are a millionth of the scene wide.
 const DEEPEST_OCTANT: usize = 20;
 
@@ -84,20 +83,22 @@ impl Structure {
     ///
     /// A shared mesh has no scene graph, and gets a hierarchy in its place. `hull` returns the corners of a
     /// flat primitive by index, for a BSP tree; other primitives are represented by the corners of their
-    /// boxes.
+    /// boxes. If a structure is coarser than the scene asks for, because primitives overlap, `notes` receives a
+    /// sentence that says so.
     pub fn build<F: StudentFunctions>(
         bounds: &[Aabb],
         graph: Option<Graph>,
         hull: impl Fn(usize) -> Option<Vec<Vec3>>,
         accelerator: Option<Accelerator>,
         quality: &Quality,
+        notes: &mut Vec<String>,
     ) -> Structure {
-        let leaf_size = quality.leaf_size as usize;
+        let (n, leaf_size) = (bounds.len(), quality.leaf_size as usize);
         let octree = |by_cells| Structure::Octree {
-            tree: F::octree_build(bounds, leaf_size, DEEPEST_OCTANT),
+            tree: limited(n, || F::octree_build(bounds, leaf_size, DEEPEST_OCTANT)),
             by_cells,
         };
-        match (accelerator, graph) {
+        let structure = match (accelerator, graph) {
             (None, _) => Structure::Painter,
             (Some(Accelerator::BruteForce), _) => Structure::List,
             (Some(Accelerator::BoundingBoxes), Some(graph)) => {
@@ -110,18 +111,20 @@ impl Structure {
                 Structure::Graph { graph, volumes }
             }
             (Some(Accelerator::Grid), _) => {
-                Structure::Grid(F::grid_build(bounds, resolution::<F>(bounds, quality)))
+                let resolution = grid_resolution::<F>(bounds, &around(bounds), quality, notes);
+                Structure::Grid(F::grid_build(bounds, resolution))
             }
             (Some(Accelerator::Octree), _) => octree(false),
             (Some(Accelerator::OctreeByCells), _) => octree(true),
             (Some(Accelerator::KdTree), _) => {
-                Structure::KdTree(F::kd_build(bounds, &quality.kd_heuristics, leaf_size))
+                Structure::KdTree(limited(n, || F::kd_build(bounds, &quality.kd_heuristics, leaf_size)))
             }
             (Some(Accelerator::Bsp), _) => {
                 let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
                 let hulls: Vec<Vec<Vec3>> = bounds.iter().enumerate().map(hull).collect();
-                let depth = KdTree::most_depth(hulls.len());
-                Structure::Bsp { tree: F::bsp_build(&hulls, leaf_size, depth), around: around(bounds) }
+                let depth = KdTree::most_depth(n);
+                let tree = limited(n, || F::bsp_build(&hulls, leaf_size, depth));
+                Structure::Bsp { tree, around: around(bounds) }
             }
             (
                 Some(
@@ -133,7 +136,9 @@ impl Structure {
                 ),
                 _,
             ) => Structure::Hierarchy(F::build(bounds, quality.split, leaf_size)),
-        }
+        };
+        notes.extend(large_leaves(&structure, leaf_size));
+        structure
     }
 
     /// The closest hit of `ray` with the primitives of `probe` within its range, or `None`; for
@@ -255,21 +260,6 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
     #[inline]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
         Probe::hit(self.probe, primitive, ray)
-    }
-}
-
-/// Cells of a grid along each axis: as many along the longest side as the scene says, and cubes; or what the
-/// formula gives.
-fn resolution<F: StudentFunctions>(bounds: &[Aabb], quality: &Quality) -> UVec3 {
-    let around = around(bounds);
-    let longest = (around.max - around.min).max_element();
-    match quality.grid_resolution {
-        0 => F::grid_resolution(&around, bounds.len(), DENSITY),
-        n if longest > 0.0 && longest.is_finite() => {
-            let cells = n as f32 * ((around.max - around.min) / longest);
-            cells.ceil().as_uvec3().clamp(UVec3::ONE, UVec3::splat(MOST_CELLS_ALONG))
-        }
-        _ => UVec3::ONE,
     }
 }
 

@@ -1,6 +1,9 @@
 //! The tests of the reference in one program, so that it is linked once and slow tests run in parallel.
 
+mod adversarial;
+mod bounds;
 mod calibration;
+mod coarse_structures;
 mod distribution;
 mod frames;
 mod instances;

@@ -200,7 +200,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         );
     }
     for note in &rendering.notes {
-        println!("  not simulated    {note}");
+        println!("  note             {note}");
     }
     match film.not_a_number() {
         0 => {}

@@ -66,7 +66,7 @@ pub fn print(title: &str, rows: &[Measured]) {
     notes.sort();
     notes.dedup();
     for note in notes {
-        println!("not simulated: {note}");
+        println!("note: {note}");
     }
 }
 

@@ -66,7 +66,7 @@ fn page(report: &Report<'_>) -> Result<String> {
         left_out += &element("li", words);
     }
     for lacking in &report.measured.lacking {
-        left_out += &element("li", format!("Lacking: {lacking}"));
+        left_out += &element("li", format!("Note: {lacking}"));
     }
     left_out += &element(
         "li",

@@ -64,7 +64,7 @@ pub fn print(report: &Report<'_>) {
         println!("  left out: {left_out}");
     }
     for lacking in &report.measured.lacking {
-        println!("  lacking: {lacking}");
+        println!("  note: {lacking}");
     }
     numerics(report);
     if let Some(advice) = &report.advice {

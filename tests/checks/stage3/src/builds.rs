@@ -9,6 +9,7 @@ use checks::{Trial, golden, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
+use raykata::bvh::DEEPEST_SPLIT;
 use raykata::kit::{BuildQuery, KitError, kit_error};
 use raykata::scene::Split;
 
@@ -102,7 +103,28 @@ pub(super) fn build_ends_where_all_centroids_are_one(trial: &Trial<'_>) -> Check
             Aabb::new(Vec3::splat(x), Vec3::splat(x))
         })
         .collect();
-    build_all_ways(trial, &halving)
+    build_all_ways(trial, &halving)?;
+    // All boxes have a common corner, and a spatial median would split off the largest box at each of 400 levels.
+    let nested: Vec<Aabb> = (1..=400).map(|i| Aabb::new(Vec3::ZERO, Vec3::splat(i as f32))).collect();
+    judge_depth(trial, &nested, "400 boxes with a common corner, the box i with the sides i")
+}
+
+/// Whether the tree has at most `DEEPEST_SPLIT + ⌈log₂ n⌉ + 1` levels with every split.
+fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
+    let most = DEEPEST_SPLIT + bounds.len().next_power_of_two().ilog2() as usize + 1;
+    for split in Split::ALL {
+        let query = BuildQuery { bounds: bounds.to_vec(), split, leaf_size: 1 };
+        let depth = trial.kit.build(std::slice::from_ref(&query)).remove(0).depth();
+        if depth > most {
+            let input = format!("build of {what}, {split:?}, leaf_size 1");
+            let [yours, expected] = [depth, most].map(|n| format!("{n} levels"));
+            let broken = Broken::with_texts(input, yours, format!("at most {expected}"), "counted");
+            return Err(broken.looks_like(Some(
+                "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median",
+            )));
+        }
+    }
+    Ok(())
 }
 
 pub(super) fn build_of_nothing_and_of_one(trial: &Trial<'_>) -> CheckResult {

@@ -9,7 +9,7 @@ use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
-use raykata::partition::{Bsp, BspNode, CutPlane, corners};
+use raykata::partition::{Bsp, BspNode, CutPlane, MOST_REFERENCES, corners};
 
 fn describe(query: &BspQuery) -> String {
     let hulls: Vec<String> = query.hulls.iter().map(checks::paste::list).collect();
@@ -129,23 +129,46 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         vec![vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0), vec3(i as f32 + 0.7, 0.0, 0.0)]
     });
     let hulls = [
-        ("forty squares in one plane", stack),
-        ("thirty sheets through one line", star),
-        ("twenty slivers in a line", line.collect()),
+        // Each plane has all squares on one of its sides, so the root is a leaf.
+        ("forty squares in one plane", stack, 1),
+        ("thirty sheets through one line", star, MOST_REFERENCES),
+        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
     ];
-    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all)));
-    for (name, hulls) in hulls.into_iter().chain(sets) {
-        let n = hulls.len();
-        let query = BspQuery { hulls, leaf_size: 1, max_depth: 12 };
-        let input = format!("build of {name}, leaf_size 1, max_depth 12");
-        let says = "stop at max_depth, and where no plane divides the primitives";
-        let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
-        let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
-        judge_tree(&query, &yours)?;
-        let says = "you divide primitives that are on both sides of each plane: make a leaf of them";
-        judge_references(&input, &yours.items, 1024 + 64 * n, says)?;
+    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES));
+    for (name, hulls, most) in hulls.into_iter().chain(sets) {
+        judge_build(trial, name, hulls, 12, most)?;
     }
-    Ok(())
+    judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)
+}
+
+/// Thin triangles in all directions through a ball: each plane has some of them on both sides.
+fn crossing_needles(n: usize) -> Vec<Vec<Vec3>> {
+    // Points that are spread evenly over the unit sphere (Fibonacci lattice).
+    let point = |i: usize| {
+        let z = 1.0 - (2 * i + 1) as f32 / n as f32;
+        let (y, x) = (2.399_963 * i as f32).sin_cos();
+        vec3(x * (1.0 - z * z).sqrt(), y * (1.0 - z * z).sqrt(), z)
+    };
+    (0..n).map(|i| vec![point(i), point(7 * i % n), point(7 * i % n) + 1e-3 * Vec3::ONE]).collect()
+}
+
+/// Judges a tree with leaves of one primitive, which may have `most` references per primitive.
+fn judge_build(
+    trial: &Trial<'_>,
+    name: &str,
+    hulls: Vec<Vec<Vec3>>,
+    max_depth: usize,
+    most: usize,
+) -> CheckResult {
+    let n = hulls.len();
+    let query = BspQuery { hulls, leaf_size: 1, max_depth };
+    let input = format!("build of {name}, leaf_size 1, max_depth {max_depth}");
+    let too_deep = "stop at max_depth, and where no plane divides the primitives";
+    let too_many = "you divide primitives that are on both sides of each plane: make a leaf of them";
+    let build = || trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
+    let yours = ended(&input, WHAT_MAKES_IT, [too_deep, too_many], build)?;
+    judge_tree(&query, &yours)?;
+    judge_references(&input, &yours.items, most * n, too_many)
 }
 
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.

@@ -12,7 +12,7 @@ use glam::{Vec3, uvec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, KdQuery};
-use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree};
+use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree, MOST_REFERENCES};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -81,12 +81,12 @@ pub(super) fn kd_tree_build_ends(trial: &Trial<'_>) -> CheckResult {
         for heuristics in [KdHeuristics::default(), KdHeuristics::NONE] {
             let query = KdQuery { bounds: bounds.clone(), heuristics, leaf_size: 1 };
             let input = format!("build of {name}, {heuristics:?}, leaf_size 1");
-            let says = "stop at KdTree::most_depth, and where all primitives are on both sides";
+            let too_deep = "stop at KdTree::most_depth, and where all primitives are on both sides";
+            let too_many = "you divide primitives that are nearly all on both sides: make a leaf of them";
             let build = || trial.kit.kd_build(std::slice::from_ref(&query)).remove(0);
-            let yours = ended(&input, WHAT_MAKES_IT, says, build)?;
+            let yours = ended(&input, WHAT_MAKES_IT, [too_deep, too_many], build)?;
             judge_tree(&query, &yours)?;
-            let says = "you divide primitives that are all on both sides: make a leaf of them";
-            judge_references(&input, &yours.items, 1 << 17, says)?;
+            judge_references(&input, &yours.items, MOST_REFERENCES * bounds.len(), too_many)?;
         }
     }
     Ok(())

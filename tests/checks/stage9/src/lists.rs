@@ -61,15 +61,17 @@ pub(super) fn judge_tree(
     })
 }
 
-/// The tree that `build` makes; an error if it panics, for example because its recursion does not end.
+/// The tree that `build` makes; an error if it panics, because its recursion does not end or its leaves list too many
+/// references. There is a diagnosis for each of the two.
 pub(super) fn ended<T>(
     input: &str,
     source: &'static str,
-    says: &'static str,
+    [too_deep, too_many]: [&'static str; 2],
     build: impl FnOnce() -> T,
 ) -> Result<T, Broken> {
     kit_error::catch(build).map_err(|error| match error {
         KitError::Panicked { message, .. } => {
+            let says = if message.contains("references") { too_many } else { too_deep };
             Broken::with_texts(input, message, "a tree", source).looks_like(Some(says))
         }
         error => kit_error::unwind(error),
@@ -127,6 +129,24 @@ pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, V
     None
 }
 
+/// Long thin boxes, each along an axis through the whole cube, crossing each other: at each level of a tree most of them
+/// are in twice as many cells.
+pub(super) fn needles(n: usize) -> Vec<Aabb> {
+    let needle = |i: usize| {
+        // Spread the needles over the cube by the multiples of the golden ratio and of another irrational number.
+        let [u, v] = [0.618_034, 0.754_878].map(|step: f32| (i as f32 * step).fract());
+        let (mut low, mut high) = (Vec3::ZERO, Vec3::ZERO);
+        low[i % 3] = 0.0;
+        high[i % 3] = 1.0;
+        for (axis, at) in [(i + 1, u), (i + 2, v)] {
+            low[axis % 3] = at;
+            high[axis % 3] = at + 1e-3;
+        }
+        Aabb::new(low, high)
+    };
+    (0..n).map(needle).collect()
+}
+
 /// Named sets of boxes for which the recursion of a builder may not end.
 pub(super) fn infinite() -> Vec<(&'static str, Vec<Aabb>)> {
     let cube = Aabb::new(Vec3::ZERO, Vec3::ONE);
@@ -155,6 +175,7 @@ pub(super) fn infinite() -> Vec<(&'static str, Vec<Aabb>)> {
         ("64 points in a line", line),
         ("100 points, each half as far as the one before", halving),
         ("ten boxes of which six cover everything", long.collect()),
+        ("400 long needles along the axes", needles(400)),
         ("boxes with NaN coordinates", vec![Aabb::new(Vec3::NAN, Vec3::NAN); 3]),
     ]
 }

@@ -1,0 +1,229 @@
+//! The size of all structures, and the cost of a search, for lists of triangles that are hard to divide. Everything is
+//! counted; no clock is read.
+
+use super::adversarial::{Hard, hard_lists};
+use glam::Vec3;
+use oracle::splitmix::Random;
+use raykata::aabb::Aabb;
+use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, PrimitiveHit, Probe};
+use raykata::partition::{
+    Bsp, BspNode, Cells, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree, OctreeNode,
+};
+use raykata::ray::Ray;
+use raykata::scene::Split;
+use raykata::shape::Triangle;
+use solutions::{
+    stage2_triangles, stage3_boxes, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree, stage9_octree,
+};
+
+/// Triangles per list. `N=50000 cargo test -p solutions --test suite bounds` takes more.
+fn n_triangles() -> usize {
+    std::env::var("N").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
+}
+
+const LEAF_SIZE: usize = 4;
+
+/// The depth that frames use.
+const OCTREE_DEPTH: usize = 20;
+
+/// A structure over hard triangles: its name, the number of nodes and of references, and its search.
+struct Built<'a> {
+    what: &'a str,
+    n_nodes: usize,
+    n_references: usize,
+    search: &'a dyn Fn(&mut Counting<'_>, &Ray) -> Option<PrimitiveHit>,
+}
+
+/// Tests rays against triangles, and counts.
+struct Counting<'a> {
+    triangles: &'a [Triangle],
+    bvh: &'a Bvh,
+    n_visits: usize,
+    n_tests: usize,
+}
+
+impl Counting<'_> {
+    fn test(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.n_tests += 1;
+        stage2_triangles::triangle_choice(ray, &self.triangles[primitive as usize]).map(|hit| hit.t)
+    }
+}
+
+impl Cells for Counting<'_> {
+    fn visit(&mut self, _: u32) {
+        self.n_visits += 1;
+    }
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.test(primitive, ray)
+    }
+}
+
+impl Probe for Counting<'_> {
+    fn open(&mut self, node: u32) -> Contents {
+        self.n_visits += 1;
+        self.bvh.nodes[node as usize].contents
+    }
+    fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        let bounds = &self.bvh.nodes[node as usize].bounds;
+        stage3_boxes::slab(ray, ray.direction.recip(), bounds).map(|(enter, _)| enter)
+    }
+    fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        self.test(primitive, ray)
+    }
+}
+
+fn boxes(hard: &Hard) -> Vec<Aabb> {
+    hard.triangles.iter().map(stage3_boxes::triangle_bounds).collect()
+}
+
+/// Rays at the triangles, from a distance of about three times their size.
+fn rays(triangles: &[Triangle]) -> Vec<Ray> {
+    let mut random = Random::new(7, 0);
+    let mut ray = || {
+        let Triangle { a, b, c } = triangles[random.below(triangles.len() as u64) as usize];
+        let size = (b - a).abs().max_element().max((c - a).abs().max_element()).max(1e-3);
+        let away = random.direction();
+        let target = a + (b - a) / 3.0 + (c - a) / 3.0;
+        Ray::new(target + 3.0 * size * away, (0.3 * random.direction() - away).normalize_or(Vec3::X))
+    };
+    (0..40).map(|_| ray()).collect()
+}
+
+/// Demands that a structure has at most `most_nodes` nodes and 16 references per triangle, that each ray visits a node
+/// at most once and tests no more primitives than there are references, and that it finds what brute force finds.
+fn judge(hard: &Hard, bvh: &Bvh, most_nodes: usize, built: &Built<'_>) {
+    let Built { what, n_nodes, n_references, search } = *built;
+    let (name, n) = (hard.name, hard.triangles.len());
+    println!("{what} over {n} {name}: {n_nodes} nodes, {n_references} references");
+    assert!(n_nodes <= most_nodes, "{what} over {n} {name}: {n_nodes} nodes, more than {most_nodes}");
+    let most = MOST_REFERENCES * n;
+    assert!(n_references <= most, "{what} over {n} {name}: {n_references} references, more than {most}");
+    for ray in rays(&hard.triangles) {
+        let counting = || Counting { triangles: &hard.triangles, bvh, n_visits: 0, n_tests: 0 };
+        let mut probe = counting();
+        let found = search(&mut probe, &ray);
+        assert!(probe.n_visits <= n_nodes, "{what} over {name}: {} visits, {ray:?}", probe.n_visits);
+        assert!(probe.n_tests <= n_references, "{what} over {name}: {} tests, {ray:?}", probe.n_tests);
+        let expected = stage2_triangles::brute_force(n as u32, &mut counting(), &ray);
+        assert_eq!(found, expected, "{what} over {name}, {ray:?}");
+    }
+}
+
+#[test]
+fn hierarchies_over_hard_triangles_are_shallow() {
+    for hard in hard_lists(n_triangles()) {
+        let n = hard.triangles.len();
+        for split in Split::ALL {
+            let bvh = stage3_build::build(&boxes(&hard), split, LEAF_SIZE);
+            let most = DEEPEST_SPLIT + n.next_power_of_two().ilog2() as usize + 1;
+            let depth = bvh.depth();
+            assert!(depth <= most, "{split:?} over {n} {}: {depth} levels, more than {most}", hard.name);
+            let search =
+                |probe: &mut Counting<'_>, ray: &Ray| stage3_traversal::closest_hit(&bvh, probe, ray);
+            let what = format!("a hierarchy by {split:?}");
+            let built = Built {
+                what: &what,
+                n_nodes: bvh.nodes.len(),
+                n_references: bvh.order.len(),
+                search: &search,
+            };
+            judge(&hard, &bvh, 2 * n - 1, &built);
+        }
+    }
+}
+
+/// The most nodes of a tree whose divided nodes have `n_children` children: at each depth the divided nodes list at
+/// most 16 references per triangle, and each of them more than `LEAF_SIZE`.
+fn most_nodes(n: usize, n_children: usize, depth: usize) -> usize {
+    1 + n_children * depth * (MOST_REFERENCES * n / (LEAF_SIZE + 1))
+}
+
+#[test]
+fn octrees_over_hard_triangles_are_small() {
+    for hard in hard_lists(n_triangles()) {
+        let octree: Octree = stage9_octree::build(&boxes(&hard), LEAF_SIZE, OCTREE_DEPTH);
+        let (n_nodes, n_references) = (octree.nodes.len(), octree.items.len());
+        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit(&octree, probe, ray);
+        let built = Built { what: "an octree", n_nodes, n_references, search: &search };
+        let most = most_nodes(hard.triangles.len(), 8, OCTREE_DEPTH);
+        judge(&hard, &Bvh::default(), most, &built);
+        // The search by cells visits the nodes above a leaf again for each leaf.
+        let leaves = octree.nodes.iter().filter(|node| matches!(node, OctreeNode::Leaf { .. })).count();
+        let by_cells =
+            |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit_by_cells(&octree, probe, ray);
+        let n_visits = leaves * octree.depth();
+        let built =
+            Built { what: "an octree, by cells,", n_nodes: n_visits, n_references, search: &by_cells };
+        judge(&hard, &Bvh::default(), n_visits, &built);
+    }
+}
+
+#[test]
+fn kd_trees_over_hard_triangles_are_small() {
+    let without = |change: fn(&mut KdHeuristics)| {
+        let mut heuristics = KdHeuristics::default();
+        change(&mut heuristics);
+        heuristics
+    };
+    for hard in hard_lists(n_triangles()) {
+        for heuristics in [
+            KdHeuristics::NONE,
+            KdHeuristics::default(),
+            without(|all| all.longest_axis = false),
+            without(|all| all.balanced_counts = false),
+            without(|all| all.few_straddlers = false),
+            without(|all| all.cut_off_empty_space = false),
+            without(|all| all.stop_at_overlap = false),
+        ] {
+            let tree = stage9_kd_tree::build(&boxes(&hard), &heuristics, LEAF_SIZE);
+            let n = hard.triangles.len();
+            let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_kd_tree::closest_hit(&tree, probe, ray);
+            let what = format!("a kd-tree with {heuristics:?}");
+            let built = Built {
+                what: &what,
+                n_nodes: tree.nodes.len(),
+                n_references: tree.items.len(),
+                search: &search,
+            };
+            judge(&hard, &Bvh::default(), most_nodes(n, 2, KdTree::most_depth(n)), &built);
+        }
+    }
+}
+
+#[test]
+fn bsp_trees_over_hard_triangles_are_small() {
+    for hard in hard_lists(n_triangles()) {
+        let hulls: Vec<Vec<Vec3>> = hard.triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
+        let depth = KdTree::most_depth(hulls.len());
+        let bsp: Bsp = stage9_bsp::build(&hulls, LEAF_SIZE, depth);
+        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
+        let built = Built {
+            what: "a BSP tree",
+            n_nodes: bsp.nodes.len(),
+            n_references: bsp.items.len(),
+            search: &search,
+        };
+        judge(&hard, &Bvh::default(), most_nodes(hulls.len(), 2, depth), &built);
+    }
+}
+
+/// The bound must not stop trees over triangles that can be divided: all leaves have at most eight of them.
+#[test]
+fn trees_over_triangles_apart_are_divided_as_asked() {
+    let mut random = Random::new(11, 0);
+    let tile = |_| {
+        let a = random.in_cube();
+        Aabb::new(a, a + 0.002)
+    };
+    let bounds: Vec<Aabb> = (0..n_triangles()).map(tile).collect();
+    let octree = stage9_octree::build(&bounds, LEAF_SIZE, OCTREE_DEPTH);
+    let tree = stage9_kd_tree::build(&bounds, &KdHeuristics::default(), LEAF_SIZE);
+    let hulls: Vec<Vec<Vec3>> = bounds.iter().map(raykata::partition::corners).collect();
+    let bsp = stage9_bsp::build(&hulls, LEAF_SIZE, KdTree::most_depth(hulls.len()));
+    let counts = [
+        octree.nodes.iter().map(|n| if let OctreeNode::Leaf { count, .. } = n { *count } else { 0 }).max(),
+        tree.nodes.iter().map(|n| if let KdNode::Leaf { count, .. } = n { *count } else { 0 }).max(),
+        bsp.nodes.iter().map(|n| if let BspNode::Leaf { count, .. } = n { *count } else { 0 }).max(),
+    ];
+    assert!(counts.iter().all(|count| count.is_some_and(|count| count <= 8)), "{counts:?}");
+}
