@@ -155,7 +155,7 @@ impl Shape {
 
 /// Half the extent of a disk along each axis: `r sin` of the angle between normal and axis.
 fn disk_reach(normal: Vec3, radius: f32) -> Vec3 {
-    let n = normal.normalize_or_zero();
+    let n = normal.as_dvec3().normalize_or_zero().as_vec3();
     radius * (Vec3::ONE - n * n).max(Vec3::ZERO).map(f32::sqrt)
 }
 

@@ -89,7 +89,11 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let [alpha, beta, gamma] = [edge(q, r), edge(r, p), edge(p, q)];
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
     let sum = alpha + beta + gamma;
-    // Bound their rounding errors, and reject the ray if two signs differ for certain.
+    // Reject inputs with NaN or infinite numbers.
+    if !sum.is_finite() {
+        return None;
+    }
+    // Bound the rounding errors, and reject the ray if two signs differ for certain.
     let width = largest([p.x, p.y, q.x, q.y, r.x, r.y]);
     let depth = largest(corners.map(|corner| corner[z]));
     let edge_error = EDGE_ERROR * width * (width + depth);
@@ -172,9 +176,9 @@ fn exact_hit(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
     let [alpha, beta, gamma] =
         [[b, c], [c, a], [a, b]].map(|[q, r]| sum_of_determinants([[d, q, r], [o, d, r], [q, d, o]]));
     let (least, most) = (alpha.min(beta).min(gamma), alpha.max(beta).max(gamma));
-    // Reject the ray if two signs differ, if it lies in the plane of the triangle, and NaN.
+    // Reject the ray if two signs differ, or if it lies in the plane of the triangle.
     let sum = alpha + beta + gamma;
-    if (least < 0.0 && most > 0.0) || sum == 0.0 || !sum.is_finite() {
+    if (least < 0.0 && most > 0.0) || sum == 0.0 {
         return None;
     }
     // t is |a-o  b-o  c-o| divided by the sum of these determinants.

@@ -10,6 +10,10 @@
 use glam::Vec3;
 use raykata::ray::Ray;
 
+// <solution>
+use glam::DVec3;
+// </solution>
+
 /// The smaller one of the roots that count (`ray.contains(t)` is true), or `None` if neither of them counts.
 ///
 /// The roots come in any order. Each of them may be NaN or infinite. A root that is NaN does not count, but the other
@@ -37,21 +41,25 @@ pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
 /// Pitfall: `b² - a c` subtracts two huge numbers when the sphere is distant or small. At distance 100,000 from a
 /// unit sphere it loses 24 of 100 true hits. The checks accept an error of a few roundings, also for near spheres. So
 /// use the equal form `a (r² - |f⊥|²)` with `f = o - center` and `f⊥ = f + (b / a) d`, which does not cancel.
+///
+/// Sizes are between 1e-6 and 1e6 in the checks. Where they are below 1e-9 or above 1e9, products of four lengths do not
+/// fit single precision: the reference computes them in double precision.
 #[inline]
 pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
+    // Compute the squares in double precision: in single precision they overflow above 1e19 and underflow below 1e-19.
+    let (f, d, r) = ((ray.origin - center).as_dvec3(), ray.direction.as_dvec3(), f64::from(radius));
     // Compute the coefficients of the quadratic a t² - 2 b t + c = 0.
-    let f = ray.origin - center;
-    let a = ray.direction.length_squared();
-    let b = -f.dot(ray.direction);
-    let c = f.length_squared() - radius * radius;
+    let a = d.length_squared();
+    let b = -f.dot(d);
+    let c = f.length_squared() - r * r;
 
     // Compute the discriminant without cancellation: b² - a c = a h², where f⊥ is the part of f at right angles to the
     // ray, and h² = r² - |f⊥|² is the squared half chord.
-    let f_perpendicular = f + (b / a) * ray.direction;
-    let half_chord_squared = radius * radius - f_perpendicular.length_squared();
+    let f_perpendicular = f + (b / a) * d;
+    let half_chord_squared = r * r - f_perpendicular.length_squared();
     // Reject rays that pass beside the sphere. NaN makes the comparison false, so it is rejected as well.
-    if !(half_chord_squared >= 0.0 && radius > 0.0) {
+    if !(half_chord_squared >= 0.0 && r > 0.0) {
         return None;
     }
 
@@ -59,7 +67,7 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // c / a, which gives the other root.
     let q = b + (a * half_chord_squared).sqrt().copysign(b);
     // Return the nearest root in the ray's range.
-    nearest_root([c / q, q / a], ray)
+    nearest_root([c / q, q / a].map(|t| t as f32), ray)
     // <stub> todo!("solve the quadratic for t and return the nearest root that counts")
     // </solution>
 }
@@ -75,15 +83,16 @@ pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
 /// hits the far side. The slide's `d² = L·L - t_ca²` cancels for a distant sphere and needs a unit direction.
 pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // <solution>
-    let to_center = center - ray.origin;
-    let length_squared = ray.direction.length_squared();
+    // Compute the squares in double precision, in which they neither overflow nor underflow.
+    let (to_center, d, r) = ((center - ray.origin).as_dvec3(), ray.direction.as_dvec3(), f64::from(radius));
+    let length_squared = d.length_squared();
 
     // Find the ray's point nearest to the centre, and the vector from there to the centre.
-    let t_ca = to_center.dot(ray.direction) / length_squared;
-    let nearest = to_center - t_ca * ray.direction;
+    let t_ca = to_center.dot(d) / length_squared;
+    let nearest = to_center - t_ca * d;
     // Compute the squared half chord by Pythagoras. Reject rays that pass beside the sphere, and NaN.
-    let half_chord_squared = radius * radius - nearest.length_squared();
-    if !(half_chord_squared >= 0.0 && radius > 0.0) {
+    let half_chord_squared = r * r - nearest.length_squared();
+    if !(half_chord_squared >= 0.0 && r > 0.0) {
         return None;
     }
     // Convert half of the chord to lengths of the direction.
@@ -92,9 +101,9 @@ pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
     // Compute the root farther from t = 0 as a sum of two numbers of the same sign. The other difference would cancel
     // for an origin near the surface, so divide the product of both roots, (|L|² - r²) / |d|² (the power of a point).
     let away = t_ca + t_hc.copysign(t_ca);
-    let power = (to_center.length_squared() - radius * radius) / length_squared;
+    let power = (to_center.length_squared() - r * r) / length_squared;
     // Return the nearest root in the ray's range.
-    nearest_root([power / away, away], ray)
+    nearest_root([power / away, away].map(|t| t as f32), ray)
     // <stub> todo!("find t_ca and t_hc, and return the nearest of t_ca - t_hc and t_ca + t_hc that counts")
     // </solution>
 }
@@ -106,7 +115,7 @@ pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
 pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
     // <solution>
     // Divide by the length and not by r: this keeps the normal at length 1 when `point` has a rounding error.
-    (point - center).normalize_or(Vec3::Z)
+    (point - center).as_dvec3().normalize_or(DVec3::Z).as_vec3()
     // <stub> todo!("return the unit vector from the centre to the point")
     // </solution>
 }

@@ -136,9 +136,15 @@ fn on_triangle<F: StudentFunctions>(
     let weights = barycentric::<F>(looks.tests, ray, triangle, detail);
     let Triangle { a, b, c } = *triangle;
     // Compute the point from the corners: its error is seven roundings of the terms, however long the ray is.
-    let terms = [weights.x * a, weights.y * b, weights.z * c];
-    let point = terms[0] + terms[1] + terms[2];
-    let error = gamma(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+    let at = |weights: Vec3| {
+        let terms = [weights.x * a, weights.y * b, weights.z * c];
+        let error = gamma(7) * (terms[0].abs() + terms[1].abs() + terms[2].abs());
+        (terms[0] + terms[1] + terms[2], error)
+    };
+    let (mut point, mut error) = at(weights);
+    if weights.min_element() < NEAR_AN_EDGE {
+        (point, error) = at(off_the_edges(weights, triangle, error));
+    }
     let normal = normal_of(triangle);
     // Interpolate the vertex normals, in a moving triangle between times 0 and 1 as well.
     let smooth = primitive.normals.get().filter(|_| looks.smooth).map(|index| {
@@ -149,6 +155,27 @@ fn on_triangle<F: StudentFunctions>(
         }
     });
     Point { point, error, normal, smooth }
+}
+
+/// A hit with a smaller barycentric coordinate may lie on an edge up to rounding.
+const NEAR_AN_EDGE: f32 = 1e-3;
+
+/// Barycentric coordinates of a point that is at least four times `error` away from each edge, or near the middle of the
+/// triangle if it is too small for that.
+///
+/// A ray that leaves a point of an edge starts in the plane of the neighbouring triangle, up to rounding: perhaps behind it,
+/// and so outside of a closed mesh. The ray offset moves the origin by `error` at most, so a distance of four times as much
+/// keeps it inside where the faces meet at an angle of 20 degrees or more. The distance is a few roundings of the position,
+/// far below what a picture can show.
+#[cold]
+fn off_the_edges(weights: Vec3, &Triangle { a, b, c }: &Triangle, error: Vec3) -> Vec3 {
+    let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
+    // The height over an edge is twice the area, divided by the length of the edge.
+    let double_area = (b - a).cross(c - a).length();
+    let per_distance = DVec3::new(b.distance(c), c.distance(a), a.distance(b)) / double_area;
+    let least = (4.0 * error.as_dvec3().length() * per_distance).min(DVec3::splat(0.25));
+    let moved = weights.as_dvec3().max(least);
+    (moved / moved.element_sum()).as_vec3()
 }
 
 /// The unit normal of a triangle of any size, on the side from which its corners run anticlockwise.
@@ -217,6 +244,8 @@ fn on_solid<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, hit: &Hit, solid:
     // Bound the error: the rounding of `t` moves the point along the ray, and product and sum are rounded as
     // well. Twice that is enough for tests in single precision.
     let error = 4.0 * UNIT_ROUNDOFF * (hit.t * own.direction).abs() + 2.0 * UNIT_ROUNDOFF * point.abs();
+    // Keep away from the edges, as on a triangle.
+    let point = point + 4.0 * error.length() * solid.shape.off_the_edges(point, normal);
     to_world::<F>(Point { point, error, normal, smooth: None }, placement)
 }
 

@@ -3,7 +3,7 @@
 use crate::kit::LightSample;
 use crate::material::{AreaShape, Emitter, Falloff, Light};
 use crate::shape::Sphere;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 impl Light {
     /// The light that would arrive at `point`, in world space, from the centre of this light if nothing stood
@@ -17,7 +17,8 @@ impl Light {
         match &self.emitter {
             Emitter::Point { position, .. } => self.sample_at(*position, point),
             Emitter::Area { shape: AreaShape::Sphere(sphere), .. } => {
-                let direction = (sphere.center - point).normalize_or(Vec3::Y);
+                let way = (sphere.center - point).as_dvec3();
+                let direction = way.normalize_or(DVec3::Y).as_vec3();
                 self.sample_toward_sphere(sphere, direction, point)
             }
             Emitter::Area { shape, .. } => self.sample_at(shape.center(), point),
@@ -36,7 +37,8 @@ impl Light {
     #[inline]
     pub fn sample_at(&self, place: Vec3, point: Vec3) -> LightSample {
         let way = place - point;
-        let distance = way.length();
+        // Squares of lengths below 1e-19 and above 1e19 do not fit single precision.
+        let distance = way.as_dvec3().length() as f32;
         let direction = if distance > 0.0 { way / distance } else { Vec3::Y };
         self.arriving(direction, distance, distance)
     }

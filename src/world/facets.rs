@@ -1,6 +1,7 @@
 //! Shapes as triangles. Curved shapes have so many of them that the outline looks round, and interpolated
 //! normals that make the shading look round.
 
+use super::transforms::unit;
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Sphere};
 use glam::{Vec2, Vec3, vec2};
 use std::f32::consts::TAU;
@@ -63,7 +64,7 @@ pub(super) fn cuboid(cuboid: &Cuboid) -> Vec<Facet> {
 
 /// Unit vectors around `axis`, starting and ending with the same one.
 fn circle(axis: Vec3) -> Vec<Vec3> {
-    let (x, y) = axis.normalize().any_orthonormal_pair();
+    let (x, y) = unit(axis).any_orthonormal_pair();
     (0..=AROUND)
         .map(|i| {
             let (sin, cos) = (TAU * (i % AROUND) as f32 / AROUND as f32).sin_cos();
@@ -100,11 +101,13 @@ pub(super) fn cylinder(cylinder: &Cylinder) -> Vec<Facet> {
 /// A closed cone as a disk and 128 triangles from there to the apex, without texture coordinates.
 pub(super) fn cone(cone: &Cone) -> Vec<Facet> {
     let axis = cone.apex - cone.base;
-    let height = axis.length();
+    // Compute the normal in double precision, in which no product of two lengths overflows or underflows.
+    let (along, radius) = (axis.as_dvec3(), f64::from(cone.radius));
+    let height = along.length();
     let mut facets = cap(cone.base, -axis, cone.radius);
     for side in circle(axis).windows(2) {
         // The slope of the side is radius over height.
-        let normal = |out: Vec3| (height * out + cone.radius * axis / height).normalize();
+        let normal = |out: Vec3| (height * out.as_dvec3() + radius * along / height).normalize().as_vec3();
         let corners = [cone.base + cone.radius * side[0], cone.base + cone.radius * side[1], cone.apex];
         let normals = [normal(side[0]), normal(side[1]), normal(0.5 * (side[0] + side[1]))];
         facets.push(curved(corners, normals));

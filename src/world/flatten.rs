@@ -3,7 +3,7 @@
 
 use super::facets::{self, Facet};
 use super::meshes::{Meshes, Ready};
-use super::transforms::{normal_matrix, plane_axes, uniform_scale};
+use super::transforms::{normal_matrix, plane_axes, uniform_scale, unit};
 use super::{
     Geometry, InfinitePlane, Instance, Primitive, SharedMesh, Slot, Solid, SolidShape, World, WorldFunctions,
     what_is_not_simulated,
@@ -211,7 +211,7 @@ impl Flattener<'_> {
             let mirrored = to_world.matrix3.determinant() < 0.0;
             if mirrored { Triangle { a, b: c, c: b } } else { Triangle { a, b, c } }
         };
-        let normal = (normal_matrix(&way.start) * plane.normal.normalize()).normalize();
+        let normal = unit(normal_matrix(&way.start) * unit(plane.normal));
         let point = way.start.transform_point3(plane.point);
         self.world.planes.push(InfinitePlane {
             plane: Plane { point, normal },
@@ -285,7 +285,7 @@ impl Flattener<'_> {
         if let Some(own) = facet.normals {
             let carried = |to_world: &Affine3A| {
                 let matrix = normal_matrix(to_world);
-                own.map(|normal| (matrix * normal).normalize_or_zero())
+                own.map(|normal| (matrix * normal).as_dvec3().normalize_or_zero().as_vec3())
             };
             normals = Slot::push(&mut world.normals, carried(&way.start));
             if let Some(end) = &way.end {

@@ -3,7 +3,7 @@
 use crate::aabb::Aabb;
 use crate::graph::Placement;
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Polygon, Shape, Sphere};
-use glam::{Vec2, Vec3, vec2};
+use glam::{DVec3, Vec2, Vec3, vec2};
 use std::f32::consts::{PI, TAU};
 
 /// A shape in a space of its own, into which rays are transformed before they are tested (stage 8).
@@ -46,6 +46,32 @@ impl SolidShape {
         })
     }
 
+    /// The direction along the surface, at a `point` with a `normal`, that leads away from the edges of the shape: along each
+    /// axis of a box -1, 0 or 1, and otherwise of unit length or zero.
+    pub fn off_the_edges(&self, point: Vec3, normal: Vec3) -> Vec3 {
+        let along = |to_middle: Vec3| {
+            let (to_middle, n) = (to_middle.as_dvec3(), normal.as_dvec3());
+            (to_middle - to_middle.dot(n) / n.length_squared() * n).normalize_or_zero().as_vec3()
+        };
+        match self {
+            SolidShape::Sphere(_) => Vec3::ZERO,
+            SolidShape::Cuboid(cuboid) => {
+                let to_middle = 0.5 * cuboid.min + 0.5 * cuboid.max - point;
+                let across = normal.abs().max_position();
+                let mut direction = to_middle.signum();
+                direction[across] = 0.0;
+                direction
+            }
+            SolidShape::Cylinder(cylinder) => along(0.5 * cylinder.base + 0.5 * cylinder.top - point),
+            SolidShape::Cone(cone) => along(0.5 * cone.base + 0.5 * cone.apex - point),
+            SolidShape::Disk(disk) => along(disk.center - point),
+            SolidShape::Polygon(polygon) => {
+                let count = polygon.corners.len() as f32;
+                along(polygon.corners.iter().map(|&corner| (corner - point) / count).sum())
+            }
+        }
+    }
+
     /// A box around the shape in its own space, a few roundings larger than the exact one on each side, so
     /// that it loses no point of the shape.
     pub fn bounds(&self) -> Aabb {
@@ -84,7 +110,7 @@ impl SolidShape {
 /// The v coordinate is 0 at -y and 1 at +y. The u coordinate is 0.5 at +z and 0.75 at +x, and jumps from 1 to
 /// 0 at -z. The direction may be of any length; zero, infinite and NaN directions count as +y.
 pub fn around_sphere(direction: Vec3) -> Vec2 {
-    let own = direction.normalize_or(Vec3::Y);
+    let own = direction.as_dvec3().normalize_or(DVec3::Y).as_vec3();
     vec2(0.5 + own.x.atan2(own.z) / TAU, 0.5 + own.y.clamp(-1.0, 1.0).asin() / PI)
 }
 

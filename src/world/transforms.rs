@@ -2,11 +2,16 @@
 
 use glam::{Affine3A, Mat3A, Vec3};
 
+/// `v / |v|` for any finite length but zero: in single precision, squares below 1e-19 underflow and above 1e19 overflow.
+pub(super) fn unit(v: Vec3) -> Vec3 {
+    v.as_dvec3().normalize().as_vec3()
+}
+
 /// Two unit vectors `u` and `v` along a plane, at right angles to each other, with `u × v` along `normal`,
 /// which may be of any length but zero. On the floor they are x and -z, so that an image is upright for a
 /// viewer who looks along -z.
 pub(super) fn plane_axes(normal: Vec3) -> (Vec3, Vec3) {
-    let normal = normal.normalize();
+    let normal = unit(normal);
     // Start from an axis far from the normal: x for floors and ceilings, y for walls.
     let u = if normal.y.abs() > 0.5 { Vec3::X } else { Vec3::Y.cross(normal).normalize() };
     let u = (u - u.dot(normal) * normal).normalize();

@@ -5,6 +5,7 @@ mod bounds;
 mod calibration;
 mod coarse_structures;
 mod distribution;
+mod edges;
 mod frames;
 mod instances;
 mod leaks;
