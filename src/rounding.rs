@@ -37,17 +37,30 @@ pub const fn gamma(n: u32) -> f32 {
 /// ```
 pub fn exact_sum(terms: impl IntoIterator<Item = f64>) -> f64 {
     // The partial sums, the smallest first. No two have a binary digit in the same place.
-    let mut partials: Vec<f64> = Vec::new();
+    let mut partials: Vec<f64> = Vec::with_capacity(8);
     for term in terms {
         let mut sum = term;
-        // Add each partial sum to the term, and keep the rounding error of each sum, which is exact, as a partial sum.
-        partials.retain_mut(|partial| {
-            let (large, small) = if sum.abs() < partial.abs() { (*partial, sum) } else { (sum, *partial) };
-            sum = large + small;
-            *partial = small - (sum - large);
-            *partial != 0.0
-        });
+        let mut kept = 0;
+        // Add each partial sum to the term, and keep in its place the rounding error, which is a double.
+        for index in 0..partials.len() {
+            let (rounded, error) = two_sum(sum, partials[index]);
+            sum = rounded;
+            if error != 0.0 {
+                partials[kept] = error;
+                kept += 1;
+            }
+        }
+        partials.truncate(kept);
         partials.push(sum);
     }
     partials.into_iter().sum()
+}
+
+/// The rounded sum of two numbers, and its rounding error, exactly (Knuth, "The Art of Computer Programming", volume 2,
+/// section 4.2.2).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let b_rounded = sum - a;
+    let a_rounded = sum - b_rounded;
+    (sum, (a - a_rounded) + (b - b_rounded))
 }

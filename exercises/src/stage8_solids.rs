@@ -68,6 +68,8 @@ pub fn disk(ray: &Ray, disk: &Disk) -> Option<SolidHit> {
 /// Pitfall: a point on the plane is rounded, and near an edge this rounding decides. Test on which side of each edge
 /// the ray passes instead: the sign of `d · (p × q)` for the ends `p` and `q` of the edge relative to the ray's origin.
 /// A neighbouring polygon computes the same value for the shared edge, up to the sign, so no ray passes between them.
+/// Corners that rounding moved off their plane have no common plane: near its rim such a polygon differs from the triangles
+/// of its fan.
 pub fn polygon(ray: &Ray, polygon: &Polygon) -> Option<SolidHit> {
     todo!("test that the ray passes all edges on the same side; take t from the polygon's plane")
 }

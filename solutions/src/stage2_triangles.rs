@@ -6,7 +6,9 @@
 //! A hit is `(t, β, γ)` with `o + t d = a + β (b - a) + γ (c - a)`, where `β ≥ 0`, `γ ≥ 0` and `β + γ ≤ 1`. With
 //! `α = 1 - β - γ`, the numbers `(α, β, γ)` are the barycentric coordinates of the hit for the corners a, b and c.
 //!
-//! The contract of the three intersection functions: points on an edge belong to the triangle. The triangle is hit
+//! The contract of the three intersection functions: points on an edge belong to the triangle. (In single precision that is
+//! certain only if nothing is rounded: otherwise a point of an edge may come out beside it. Stage 10 decides exactly.) The
+//! triangle is hit
 //! from the front and from the back, so the order of the corners does not matter. `t` counts lengths of `direction`,
 //! which need not be a unit vector. A hit counts if `ray.contains(t)`: the range is open. The triangle may have any
 //! size, so no fixed epsilon is right. The result is `None` for a ray along the plane of the triangle, a triangle

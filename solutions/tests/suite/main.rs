@@ -4,6 +4,7 @@ mod adversarial;
 mod bounds;
 mod calibration;
 mod coarse_structures;
+mod digits;
 mod distribution;
 mod edges;
 mod frames;

@@ -32,8 +32,6 @@ pub struct Agreement {
     pub hits: u64,
     /// The number of rays that meet several triangles first, at the same `t`.
     pub ties: u64,
-    /// The number of answers that a rounding error of double precision decided, because the ray passes through an edge.
-    pub roundings: u64,
     /// The number of wrong answers: they differ from the exact result or from brute force.
     pub mismatches: u64,
 }
@@ -43,67 +41,32 @@ struct JudgedRay {
     ray: Ray,
     /// The triangles that are met first by exact arithmetic; several for a tie.
     ties: Vec<usize>,
-    /// The first `t` at which the ray meets a triangle away from its edges, by more than a rounding error.
-    sure: Option<f32>,
     /// The hit that brute force finds.
     brute: Option<PrimitiveHit>,
 }
-
-/// A margin below this counts as on the edge. Double precision knows an edge to a few rounding errors of 2⁻⁵³, which is
-/// less than a millionth of a rounding error of single precision.
-const ON_AN_EDGE: f64 = 1e-6;
 
 impl JudgedRay {
     /// Computes the right answers for a ray. `brute` is the hit of brute force.
     fn new(scene: &HardScene, ray: Ray, brute: Option<PrimitiveHit>) -> JudgedRay {
         let ties = triangle::tie_set(&ray, &scene.triangles);
-        let sure = scene.triangles.iter().filter(|triangle| !is_on_an_edge(&ray, triangle));
-        let sure = sure.filter_map(|triangle| exact_t(&ray, triangle)).min_by(f32::total_cmp);
-        JudgedRay { ray, ties, sure, brute }
+        JudgedRay { ray, ties, brute }
     }
 
-    fn judge(&self, triangles: &[Triangle], found: Option<PrimitiveHit>) -> Judgement {
+    /// Whether a search found the right hit, and the same as brute force.
+    fn is_right(&self, triangles: &[Triangle], found: Option<PrimitiveHit>) -> bool {
         if found != self.brute {
-            return Judgement::Wrong;
+            return false;
         }
-        let Some(found) = found else {
-            return match (self.ties.is_empty(), self.sure) {
-                (true, _) => Judgement::Right,
-                (false, None) => Judgement::Rounding,
-                (false, Some(_)) => Judgement::Wrong,
-            };
-        };
-        let (index, triangle) = (found.primitive as usize, &triangles[found.primitive as usize]);
+        let Some(found) = found else { return self.ties.is_empty() };
         let first = self.ties.first().and_then(|&first| exact_t(&self.ray, &triangles[first]));
         // Two different `t` may round to the same number. Then the smaller index wins.
-        if self.ties.contains(&index) || (first.is_some() && exact_t(&self.ray, triangle) == first) {
-            return Judgement::Right;
-        }
-        let no_later = self.sure.is_none_or(|sure| found.t <= sure);
-        let hit = exact_t(&self.ray, triangle) == Some(found.t) || is_on_an_edge(&self.ray, triangle);
-        if no_later && hit { Judgement::Rounding } else { Judgement::Wrong }
+        let found = found.primitive as usize;
+        self.ties.contains(&found) || (first.is_some() && exact_t(&self.ray, &triangles[found]) == first)
     }
 
-    fn judge_any(&self, found: bool) -> Judgement {
-        match (found == self.brute.is_some(), found != self.ties.is_empty()) {
-            (false, _) => Judgement::Wrong,
-            (true, true) => Judgement::Right,
-            (true, false) if self.sure.is_none() => Judgement::Rounding,
-            (true, false) => Judgement::Wrong,
-        }
+    fn is_any_right(&self, found: bool) -> bool {
+        found == self.brute.is_some() && found != self.ties.is_empty()
     }
-}
-
-fn is_on_an_edge(ray: &Ray, triangle: &Triangle) -> bool {
-    triangle::margin(ray, triangle).is_none_or(|margin| margin < ON_AN_EDGE)
-}
-
-/// The comparison of an answer with the exact one and with brute force.
-enum Judgement {
-    Right,
-    /// The ray passes through an edge, and a rounding error of double precision decided the answer.
-    Rounding,
-    Wrong,
 }
 
 fn exact_t(ray: &Ray, triangle: &Triangle) -> Option<f32> {
@@ -138,7 +101,7 @@ fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agree
         rays.iter().zip(&brute).map(|(ray, brute)| JudgedRay::new(scene, *ray, *brute)).collect();
     let compared = |search: String, found: Vec<Option<PrimitiveHit>>| {
         let mut found = found.into_iter();
-        agreement(scene, search, &asked, |one| one.judge(&scene.triangles, found.next().flatten()))
+        agreement(scene, search, &asked, |one| one.is_right(&scene.triangles, found.next().flatten()))
     };
     let mut agreements = vec![compared("brute force".into(), brute.clone())];
     let distances = distances(kit, scene, &rays);
@@ -150,7 +113,7 @@ fn of_scene(kit: &dyn Kit, scene: &HardScene, seed: u64, rays: u64) -> Vec<Agree
         let quality = Quality { split, ..with(Accelerator::Bvh, leaf_size) };
         agreements.push(compared(named("nearer first"), found_by(quality)));
         let mut any = in_batches(&queries, |batch| kit.any_hit(batch)).into_iter();
-        let judge = |one: &JudgedRay| one.judge_any(any.next().is_some_and(|(found, _)| found));
+        let judge = |one: &JudgedRay| one.is_any_right(any.next().is_some_and(|(found, _)| found));
         agreements.push(agreement(scene, named("any hit"), &asked, judge));
     }
     for (search, quality) in structures(with) {
@@ -233,23 +196,14 @@ fn agreement(
     scene: &HardScene,
     search: String,
     asked: &[JudgedRay],
-    mut judge: impl FnMut(&JudgedRay) -> Judgement,
+    mut is_right: impl FnMut(&JudgedRay) -> bool,
 ) -> Agreement {
-    let mut agreement = Agreement {
+    Agreement {
         scene: scene.name,
         search,
         rays: asked.len() as u64,
         hits: asked.iter().filter(|one| !one.ties.is_empty()).count() as u64,
         ties: asked.iter().filter(|one| one.ties.len() > 1).count() as u64,
-        roundings: 0,
-        mismatches: 0,
-    };
-    for one in asked {
-        match judge(one) {
-            Judgement::Right => {}
-            Judgement::Rounding => agreement.roundings += 1,
-            Judgement::Wrong => agreement.mismatches += 1,
-        }
+        mismatches: asked.iter().map(|one| u64::from(!is_right(one))).sum(),
     }
-    agreement
 }

