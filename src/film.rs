@@ -113,7 +113,7 @@ impl Film {
 
     /// Writes the picture as a Radiance HDR file: linear, with eight bits per component and a common
     /// exponent, so that the largest component of a pixel is exact to about one percent. Negative and NaN
-    /// components become 0. The format has no infinity: a pixel with a component of +∞ gets a wrong colour.
+    /// components become 0. The format has no infinity: components above 1e38 become 1e38.
     ///
     /// # Errors
     ///
@@ -121,10 +121,12 @@ impl Film {
     ///
     /// # Panics
     ///
-    /// If `pixels` has fewer than `width * height` colours, and in builds with overflow checks if a component
-    /// is +∞.
+    /// If `pixels` has fewer than `width * height` colours.
     pub fn write_hdr(&self, file: &Path) -> io::Result<()> {
-        let pixels: Vec<image::Rgb<f32>> = self.pixels.iter().map(|p| image::Rgb(p.to_array())).collect();
+        // The largest exponent of the format is that of 1.7e38.
+        let component = |value: f32| if value > 1e38 { 1e38 } else { value };
+        let pixels: Vec<image::Rgb<f32>> =
+            self.pixels.iter().map(|p| image::Rgb(p.to_array().map(component))).collect();
         write_atomically(file, |out| {
             HdrEncoder::new(out)
                 .encode(&pixels, self.width as usize, self.height as usize)
@@ -198,6 +200,10 @@ mod tests {
         let result = write_atomically(&file, |_| Err(io::Error::other("no more light")));
         assert_eq!(result.unwrap_err().to_string(), "no more light");
         assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 0);
+        let mut bright = Film::new(3, 2);
+        bright.pixels[1] = Vec3::new(f32::INFINITY, f32::NAN, -1.0);
+        bright.write_hdr(&folder.join("picture.hdr")).expect("a picture");
+        fs::remove_file(folder.join("picture.hdr")).expect("the file");
         Film::new(3, 2).write_png(&file, encode_srgb).expect("a picture");
         assert_eq!(fs::read_dir(&folder).expect("the folder").count(), 1);
         fs::remove_dir_all(&folder).expect("the folder goes");

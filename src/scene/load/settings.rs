@@ -15,7 +15,8 @@ const MAX_PIXELS: u64 = 1 << 28;
 /// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
 /// contribution of one more.
 const MAX_SAMPLES: u32 = 1 << 20;
-/// The largest number of reflections and refractions on a path.
+/// The largest number of reflections and refractions on a path: after that many, a mirror that reflects 99.3 % has left a
+/// thousandth of the light, which is the default of `min_contribution`.
 const MAX_DEPTH: u32 = 1000;
 /// The largest number of cells along a side of a grid: 1024^3 cells of 4 bytes fill 4 GiB.
 const MAX_GRID: u32 = 1024;

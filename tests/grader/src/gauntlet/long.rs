@@ -79,11 +79,13 @@ const STRUCTURES: [Structure; 9] = {
 fn leaks(kit: &dyn Kit, mesh: &Closed, structure: Structure, rays: &[(Ray, u32)]) -> u64 {
     // Test first the triangles around the vertex at which a ray is aimed: nearly every ray hits one of them.
     if structure.accelerator == Accelerator::BruteForce {
-        return leaks_of(mesh, rays, |inputs: &[Input]| {
+        let answer = |inputs: &[Input]| {
             let queries: Vec<TriangleQuery> =
                 inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
             kit.watertight(&queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
-        });
+        };
+        // A vertex may have hundreds of triangles, so a batch holds few rays.
+        return rays.chunks(500).map(|rays| leaks_of(mesh, rays, answer)).sum();
     }
     let Structure { accelerator, split, .. } = structure;
     let quality = Quality { accelerator, split, leaf_size: 4, ..Quality::default() };

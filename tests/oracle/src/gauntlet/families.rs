@@ -226,9 +226,9 @@ fn torus() -> Closed {
     builder.build("torus", vec3(2.0, 0.0, 0.0), Vec3::splat(0.3))
 }
 
-/// A double cone with 3,000 triangles around each apex.
+/// A double cone with 300 triangles around each apex.
 fn crown() -> Closed {
-    const SIDES: u32 = 3000;
+    const SIDES: u32 = 300;
     let rim = |i: u32| {
         let (sin, cos) = (TAU * (i % SIDES) as f32 / SIDES as f32).sin_cos();
         vec3(cos, sin, if i % 2 == 0 { 0.05 } else { -0.05 })
