@@ -12,3 +12,4 @@ mod seeds;
 mod specials;
 mod stages;
 mod subsets;
+mod textbook;

@@ -138,13 +138,22 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
     };
     let split = |light: usize| parts(query, light, diffuse(light), right(light));
     let kd = query.material.diffuse.as_dvec3();
+    // The lights that add something.
+    let counted: Vec<usize> = visible
+        .iter()
+        .copied()
+        .filter(|&light| share(query, light, diffuse(light), right(light)) != DVec3::ZERO)
+        .collect();
     let radiance = |light: usize| query.lights[light].radiance.as_dvec3();
     let geometric = |light: usize| {
         let normal = query.surface.geometric_normal;
         let term = TermQuery { normal, ..term(query, light) };
         parts(query, light, cosine(query, light, normal), specular(&term)).iter().sum::<DVec3>()
     };
-    let white = |light: usize| (split(light)[0] + split(light)[1]) / radiance(light);
+    let white = |light: usize| {
+        let ks = query.material.specular.as_dvec3();
+        if radiance(light) == DVec3::ZERO { DVec3::ZERO } else { kd * diffuse(light) + ks * right(light) }
+    };
     let flat = |light: usize| parts(query, light, 1.0, right(light)).iter().sum::<DVec3>();
     // A sum over all visible lights, also over those behind the surface.
     let unclamped = |least: f64| {
@@ -166,11 +175,12 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
         (same(ambient + of_visible(&|light| split(light)[1])), "the diffuse term is missing"),
         (same(ambient + of_visible(&|light| split(light)[0])), "the specular term is missing"),
         (
-            visible.first().is_some_and(|&light| gives(&[light])),
+            visible.first().is_some_and(|&light| gives(&[light])) || gives(&counted[..counted.len().min(1)]),
             "you count one light, the first that is visible: add up all lights",
         ),
         (
-            visible.last().is_some_and(|&light| gives(&[light])),
+            visible.last().is_some_and(|&light| gives(&[light]))
+                || gives(&counted[counted.len().max(1) - 1..]),
             "you count one light, the last that is visible: add up all lights",
         ),
         (

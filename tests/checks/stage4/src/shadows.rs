@@ -146,7 +146,7 @@ pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
     trial.forall(3000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);
-            (start.height() > start.most()).then(|| {
+            start.is_too_high().then(|| {
                 let yours = format!("starts {:.3e} above the point", start.height());
                 (yours, format!("at most {:.3e}", start.most()), start.mistakes())
             })

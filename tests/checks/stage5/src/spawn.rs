@@ -66,6 +66,7 @@ fn judge(query: &Leaving, ray: Ray) -> CheckResult {
     };
     let direction = ray.direction.as_dvec3().normalize();
     let is = |v: Vec3| (direction - v.as_dvec3()).length() < 1e-5; // a few roundings
+    let side = side(surface, child.bounce);
     if !is(child.direction) {
         return broken(
             format!("direction {}", ray.direction),
@@ -90,7 +91,6 @@ fn judge(query: &Leaving, ray: Ray) -> CheckResult {
             vec![(true, "a secondary ray is infinite: leave t_max infinite")],
         );
     }
-    let side = side(surface, child.bounce);
     let start = Start::new(surface, side, child.direction, &ray);
     let starts = || {
         let height = start.height();
@@ -107,7 +107,7 @@ fn judge(query: &Leaving, ray: Ray) -> CheckResult {
         ));
         return broken(starts(), format!("{:.3e} or more", start.least()), mistakes);
     }
-    if start.height() > start.most() {
+    if start.is_too_high() {
         return broken(starts(), format!("at most {:.3e}", start.most()), mistakes);
     }
     Ok(())

@@ -215,12 +215,19 @@ fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)]) -> Result<Seen, Broken> {
     let queries: Vec<SphereSampleQuery> = u.iter().enumerate().map(query).collect();
     let mut seen = Seen { u, shares: Vec::new(), rims: Vec::new(), local: Vec::new() };
     let answers = trial.kit.sample_sphere(&queries);
-    let judge = |(query, direction)| judge_direction(query, direction, &mut seen);
+    let all_nan = answers.iter().all(|direction| direction.is_nan());
+    let judge = |(query, direction)| judge_direction(query, direction, all_nan, &mut seen);
     all_hold(queries.iter().zip(answers).map(judge).collect())?;
     Ok(seen)
 }
 
-fn judge_direction(query: &SphereSampleQuery, direction: Vec3, seen: &mut Seen) -> CheckResult {
+/// `all_nan` says whether the directions to all spheres are NaN.
+fn judge_direction(
+    query: &SphereSampleQuery,
+    direction: Vec3,
+    all_nan: bool,
+    seen: &mut Seen,
+) -> CheckResult {
     let SphereSampleQuery { sphere, from, .. } = query;
     let to_center = sphere.center.as_dvec3() - from.as_dvec3();
     let sin_squared = f64::from(sphere.radius).powi(2) / to_center.length_squared();
@@ -246,7 +253,7 @@ fn judge_direction(query: &SphereSampleQuery, direction: Vec3, seen: &mut Seen) 
     let broken =
         Broken::new(sphere_call(query), direction, "a unit direction to the sphere", "the definition");
     Err(broken.explained_by([
-        (inside && direction.is_nan(), "you return NaN: from inside the sphere 1 - sin² is negative"),
+        (inside && all_nan, "you return NaN: from inside the sphere 1 - sin² is negative"),
         (direction.is_nan(), "you return NaN"),
         (!unit, "your direction does not have unit length"),
         (cosine < 0.0, "your direction misses the sphere: it goes away from it"),

@@ -91,7 +91,7 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
         if !((around.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
             return Err(broken.explained_by([
-                (direction.is_nan(), "you return NaN: do you take the root of a negative number?"),
+                (direction.is_nan(), "you return NaN"),
                 (!direction.is_nan(), "your direction does not have unit length"),
             ]));
         }
