@@ -69,9 +69,9 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
     all_hold(u.iter().zip(&places).map(judge).collect())?;
     let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
     covers_evenly("sample_disk(u)", &shares, ["radius²", "angle"], |counts| {
-        let mut mistakes = unused_number(|u| trial.kit.sample_disk(u));
-        mistakes.extend(uneven_disk(counts, is_polar(&u, &places)));
-        mistakes
+        let mut mistakes = is_polar(&u, &places);
+        mistakes.extend(unused_number(|u| trial.kit.sample_disk(u)));
+        uneven_disk(counts, mistakes)
     })?;
     let radii: Vec<f64> = shares.iter().map(|(squared, _)| squared.sqrt()).collect();
     has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, |_| Vec::new())
@@ -248,7 +248,6 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
             "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it",
         ),
         (aims(expected + start), "you add the offset to the focus: subtract it"),
-        (aims(expected), "you leave out the offset: the ray goes from its start to the focus"),
         (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
     ]))
 }
