@@ -51,10 +51,10 @@ impl Start {
     }
 
     /// The rounding of a start that is `moved` away from the point, per axis: one and a half float steps of the sum, and the
-    /// rounding of the way.
+    /// rounding of the way and of the bound.
     fn slack(&self, moved: DVec3) -> DVec3 {
         let point = self.surface.point.as_dvec3();
-        3.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * moved.abs().max_element()
+        3.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
     }
 
     /// Whether the start is where a student's formula puts it.
@@ -99,7 +99,7 @@ impl Start {
                 "you move by the largest error: along the normal the error is error·|n|",
             ),
             (
-                along_the_side(error.length()),
+                along_the_side(f64::from(self.surface.error.length())),
                 "you move by the length of error: along the normal the error is error·|n|",
             ),
             (
