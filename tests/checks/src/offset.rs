@@ -50,11 +50,11 @@ impl Start {
         !(self.height() <= self.most())
     }
 
-    /// The rounding of a start that is `moved` away from the point, per axis: one and a half float steps of the sum, and the
+    /// The rounding of a start that is `moved` away from the point, per axis: two and a half float steps of the sum, and the
     /// rounding of the way and of the bound.
     fn slack(&self, moved: DVec3) -> DVec3 {
         let point = self.surface.point.as_dvec3();
-        3.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
+        5.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
     }
 
     /// Whether the start is where a student's formula puts it.

@@ -95,6 +95,10 @@ fn judge(
         let known = [
             (swapped, "you exchange n1 and n2"),
             (1.0 - reference(query), "you return the transmitted fraction: return the reflected one"),
+            (
+                if behind(query).0.is_none() { 1.0 } else { 1.0 - reference(query) },
+                "you return the transmitted fraction: return the reflected one",
+            ),
         ];
         known
             .into_iter()
@@ -114,6 +118,14 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     // Beyond the critical angle a formula may be asked first or not at all.
     let total = |value: f64| if beyond { 1.0 } else { value };
     vec![
+        (
+            total(formula(r0, behind, 5)),
+            "you use the cosine of the wrong side: behind the surface, also if n1 < n2",
+        ),
+        (
+            total(formula(r0, cosine, 5)),
+            "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray",
+        ),
         (
             total(formula(r0, wrong, 5)),
             "you use the cosine of the wrong side: use that in the less dense medium",

@@ -72,10 +72,7 @@ fn judge(query: &Leaving, ray: Ray) -> CheckResult {
             format!("direction {}", ray.direction),
             format!("direction {}", child.direction),
             vec![
-                (
-                    is(surface.geometric_normal),
-                    "your ray goes along the geometric normal: use secondary.direction",
-                ),
+                (is(side), "your ray goes along the geometric normal: use secondary.direction"),
                 (
                     is(surface.shading_normal),
                     "your ray goes along the shading normal: use secondary.direction",
