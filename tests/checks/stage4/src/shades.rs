@@ -227,7 +227,7 @@ pub(super) fn shade_adds_up_the_lights(trial: &Trial<'_>) -> CheckResult {
     let chosen = [drawn(1.0, [true; 2]), drawn(8.0, [true; 2])];
     let all_visible =
         shade_query().prop_map(|query| ShadeQuery { visible: vec![true; query.lights.len()], ..query });
-    trial.forall_and(&chosen, 2000, all_visible, |queries| judge_shades(trial, queries))
+    trial.forall_and(&chosen, 1000, all_visible, |queries| judge_shades(trial, queries))
 }
 
 pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> CheckResult {
@@ -235,7 +235,7 @@ pub(super) fn shade_leaves_out_what_is_hidden(trial: &Trial<'_>) -> CheckResult 
     let some_occluded =
         shade_query().prop_filter("an occluded light", |query| query.visible.contains(&false));
     trial
-        .forall_and(&[drawn(1.0, [true, false])], 1500, some_occluded, |queries| judge_shades(trial, queries))
+        .forall_and(&[drawn(1.0, [true, false])], 1000, some_occluded, |queries| judge_shades(trial, queries))
 }
 
 pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> CheckResult {
@@ -246,7 +246,7 @@ pub(super) fn shade_traces_at_most_one_ray_per_light(trial: &Trial<'_>) -> Check
         }
         query
     });
-    trial.forall(2000, queries, |queries| {
+    trial.forall(1000, queries, |queries| {
         // The rays that must be traced are those of the student's own `shadow_ray`, which other checks judge.
         let of_lights = |query: &ShadeQuery| {
             let of = |light: &LightSample| ShadowQuery { surface: query.surface, light: *light };

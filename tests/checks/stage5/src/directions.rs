@@ -212,7 +212,7 @@ pub(super) fn refract_obeys_snell(trial: &Trial<'_>) -> CheckResult {
     let bent = arrivals().prop_filter("a slanted ray below the critical angle", |query| {
         snell(query).1 > 1e-4 && query.direction.cross(query.normal).length() > 0.1
     });
-    trial.forall_and(&chosen, 4000, bent, |queries| {
+    trial.forall_and(&chosen, 1500, bent, |queries| {
         compare(queries, trial.kit.refract(queries), |query, yours| judge_refraction(query, yours, SLIDE))
     })
 }
@@ -235,7 +235,7 @@ pub(super) fn refract_goes_straight_where_it_must(trial: &Trial<'_>) -> CheckRes
         RefractQuery { n1: 1.5, ..slanted },
         slanted,
     ];
-    trial.forall_and(&chosen, 500, straight, |queries| {
+    trial.forall_and(&chosen, 300, straight, |queries| {
         compare(queries, trial.kit.refract(queries), |query, yours| {
             if *query == slanted {
                 // Another check judges the angle. Here the ray must only be bent to the normal.
@@ -284,7 +284,7 @@ pub(super) fn refract_beyond_the_critical_angle_is_none(trial: &Trial<'_>) -> Ch
         let slanted = query.direction.cross(query.normal).length() > 0.1;
         (slanted && if beyond { margin < -1e-3 } else { margin > 1e-3 }).then_some(query)
     });
-    trial.forall_and(&chosen, 1000, inputs, |queries| {
+    trial.forall_and(&chosen, 400, inputs, |queries| {
         compare(queries, trial.kit.refract(queries), |query, yours| {
             let beyond = snell(query).0.is_none();
             // Another check judges the angle. Here a ray below the critical angle must only be refracted.

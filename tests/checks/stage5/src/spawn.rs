@@ -56,7 +56,7 @@ pub(super) fn secondary_rays_leave_their_surface(trial: &Trial<'_>) -> CheckResu
     };
     let chosen =
         [Bounce::Reflection, Bounce::Transmission].map(|bounce| leaving(surface, bounce, (0.9, 0.3)));
-    trial.forall_and(&chosen, 3000, inputs(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
+    trial.forall_and(&chosen, 1000, inputs(), |queries| compare(queries, trial.kit.spawn_ray(queries), judge))
 }
 
 fn judge(query: &Leaving, ray: Ray) -> CheckResult {

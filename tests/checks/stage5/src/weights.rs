@@ -35,7 +35,7 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckRe
     };
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
-    trial.forall_and(&drawn, 2000, queries, |queries| {
+    trial.forall_and(&drawn, 1000, queries, |queries| {
         compare_formulas(queries, trial.kit.scatter(queries), judge_own_weight, |query, yours| {
             formulas(query, yours)
         })
