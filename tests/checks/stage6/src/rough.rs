@@ -227,7 +227,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
                     "you subtract the part along the normal once: subtract it twice",
                 ),
                 (
-                    through && near(query.ideal),
+                    (through && near(query.ideal)) || *drawn == query.ideal,
                     "you return ideal, which changes the distribution: reflect the ray back by the normal",
                 ),
                 (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),
