@@ -67,8 +67,8 @@ pub fn refract(direction: Vec3, normal: Vec3, n1: f32, n2: f32) -> Option<Vec3> 
 ///
 /// The ray comes from the medium of index `n1`, and `cos_theta`, in `0..=1`, is the cosine of the angle θ1 between the
 /// ray and the normal. In the formula θ is θ1 if `n1 <= n2`, and the angle θ2 of the refracted ray if `n1 > n2`. The
-/// result is in `0..=1`, and 1 beyond the critical angle. If `n1 == n2` and `cos_theta` is 0, any number in `0..=1`
-/// passes.
+/// result is in `0..=1`, and 1 beyond the critical angle. Within rounding of the critical angle any number in `0..=1`
+/// passes, for example if `n1 == n2` and `cos_theta` is 0.
 ///
 /// Pitfall: if `n1 > n2`, the angle in the formula is the larger one, behind the surface.
 ///
@@ -95,8 +95,8 @@ pub fn fresnel_schlick(cos_theta: f32, n1: f32, n2: f32) -> f32 {
 /// `((n1 cos θ1 - n2 cos θ2) / (n1 cos θ1 + n2 cos θ2))²` and the same with `θ1` and `θ2` exchanged.
 ///
 /// The ray comes from the medium of index `n1`, and `cos_theta`, in `0..=1`, is `cos θ1`; θ2 is the angle of the
-/// refracted ray. The result is in `0..=1`, and 1 beyond the critical angle. If `n1 == n2` and `cos_theta` is 0, any
-/// number in `0..=1` passes.
+/// refracted ray. The result is in `0..=1`, and 1 beyond the critical angle. Within rounding of the critical angle any
+/// number in `0..=1` passes, for example if `n1 == n2` and `cos_theta` is 0.
 ///
 /// Pitfall: in that last case the formula is 0 / 0, which is NaN.
 pub fn fresnel_exact(cos_theta: f32, n1: f32, n2: f32) -> f32 {
@@ -116,7 +116,8 @@ fn cos_behind(cos_1: f32, n1: f32, n2: f32) -> Option<f32> {
 }
 // </solution>
 
-/// The secondary rays that leave a surface, each with its weight: at most one reflected and one refracted ray.
+/// The secondary rays that leave a surface, each with its weight: at most one reflected and one refracted ray. Their
+/// directions are those of [`reflect`] and [`refract`].
 ///
 /// A ray of weight `weight` arrives along `direction`, after `depth` reflections and refractions. It comes from outside
 /// the material if `entering` is true, and from inside otherwise. The index of refraction is

@@ -127,9 +127,9 @@ pub fn sample_disk(u: Vec2) -> Vec2 {
 ///
 /// The lens is a disk around `camera.position` of diameter `lens.aperture`, spanned by `camera.right` and `camera.up`.
 /// `on_lens` is a point of the disk of radius 1, which stands for the lens. The focal plane is at right angles to the
-/// view direction `camera.towards`, at distance `lens.focal_distance`. The direction of the result has unit length. If
-/// the ray starts at the centre of the lens, because `on_lens` or `lens.aperture` is 0, the result is `pinhole`, bit
-/// for bit.
+/// view direction `camera.towards`, at distance `lens.focal_distance`, which is above 0. The direction of the result
+/// has unit length. If the ray starts at the centre of the lens, because `on_lens` or `lens.aperture` is 0, the result
+/// is `pinhole`, bit for bit.
 ///
 /// Pitfall: points at `focal_distance` along each ray form a sphere, and the edges of the picture blur. The difference
 /// of two positions far from the origin is imprecise: subtract before you add `camera.position`.
@@ -178,9 +178,9 @@ pub fn sample_light_disk(disk: &Disk, u: Vec2) -> Vec3 {
 
 /// A unit direction from `from` to the sphere, uniformly distributed over the solid angle of the sphere.
 ///
-/// From outside, the directions fill a cone around the direction to the centre. The angle θ between its axis and its
-/// rim has `sin θ = radius / distance`. From inside the sphere the directions are uniform over all directions. From
-/// the centre any unit direction passes, and NaN fails.
+/// The radius is above 0. From outside, the directions fill a cone around the direction to the centre. The angle θ
+/// between its axis and its rim has `sin θ = radius / distance`. From inside the sphere the directions are uniform
+/// over all directions. From the centre any unit direction passes, and NaN fails.
 ///
 /// Pitfall: for a far sphere `1 - cos θ` is rounded to 0, and its shadows become sharp. It is `sin²θ / (1 + cos θ)`.
 ///
@@ -211,10 +211,10 @@ fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
 
 /// A direction for glossy reflection: a sample of the Phong lobe around `ideal`, the direction for a smooth surface.
 ///
-/// At an angle θ to `ideal`, up to 90°, the density per solid angle is proportional to `cosⁿ θ`, with
-/// `n = 2 / roughness² - 2`, and the same on all sides. `normal` is on the side to which the ray goes. A direction d
-/// that would go through the surface (`d·normal < 0`) is reflected back to this side: `d - 2 (d·normal) normal`. The
-/// result has unit length. If `roughness` is 0, it is `ideal`, bit for bit.
+/// `roughness` is in `0..=1`. At an angle θ to `ideal`, up to 90°, the density per solid angle is proportional to
+/// `cosⁿ θ`, with `n = 2 / roughness² - 2`, and the same on all sides. `normal` is on the side to which the ray goes.
+/// A direction d that would go through the surface (`d·normal < 0`) is reflected back to this side:
+/// `d - 2 (d·normal) normal`. The result has unit length. If `roughness` is 0, it is `ideal`, bit for bit.
 ///
 /// Pitfall: for a slightly rough surface `cos θ = u^(1 / (n + 1))` is close to 1, and `√(1 - cos² θ)` gives only a few
 /// different angles. `-exp_m1(ln(u) / (n + 1))` is `1 - cos θ` with all its digits.

@@ -19,4 +19,5 @@ mod slabs;
 mod specials;
 mod stages;
 mod subsets;
+mod textbook;
 mod watertight;

@@ -80,6 +80,13 @@ impl Broken {
         Broken { mistakes, ..self }.most_specific()
     }
 
+    /// Adds mistakes before those that are known already.
+    pub(crate) fn explained_first_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
+        let later = self.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
+        let later = later.into_iter().map(|text| (true, text));
+        self.explained_by(mistakes.into_iter().chain(later).collect::<Vec<_>>())
+    }
+
     /// With the first mistake as its diagnosis.
     fn most_specific(self) -> Self {
         let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());

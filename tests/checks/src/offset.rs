@@ -45,11 +45,16 @@ impl Start {
         !(self.height() >= 0.99 * self.least())
     }
 
-    /// The rounding of a start that is `moved` away from the point, per axis: one and a half float steps of the sum, and the
-    /// rounding of the way.
+    /// Whether the height is more than allowed, or NaN.
+    pub fn is_too_high(&self) -> bool {
+        !(self.height() <= self.most())
+    }
+
+    /// The rounding of a start that is `moved` away from the point, per axis: two and a half float steps of the sum, and the
+    /// rounding of the way and of the bound.
     fn slack(&self, moved: DVec3) -> DVec3 {
         let point = self.surface.point.as_dvec3();
-        3.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * moved.abs().max_element()
+        5.0 * U * point.abs().max((point + moved).abs()) + 1e-6 * (moved.abs().max_element() + self.least())
     }
 
     /// Whether the start is where a student's formula puts it.
@@ -57,10 +62,12 @@ impl Start {
         (self.moved - moved).abs().cmple(self.slack(moved)).all()
     }
 
-    /// Whether the start is somewhere along `way`, or at the point.
+    /// Whether the start is somewhere along the unit vector `way`, or at the point. Each coordinate may be one float further
+    /// out, and the projection spreads these roundings over all axes.
     fn is_along(&self, way: DVec3) -> bool {
         let along = self.moved.dot(way);
-        along >= 0.0 && self.is(along * way)
+        let slack = 3.0 * self.slack(self.moved).max_element();
+        along >= -slack && (self.moved - along * way).abs().max_element() <= slack
     }
 
     /// The known mistakes, each with whether it gives this start.
@@ -70,7 +77,12 @@ impl Start {
         let shading = self.surface.shading_normal.as_dvec3();
         let shading = shading * self.side.dot(shading).signum();
         let smooth = self.surface.shading_normal != self.surface.geometric_normal;
-        let fixed = |way: DVec3| (2..=7).any(|digits| self.is(10f64.powi(-digits) * way));
+        // A round number, alone or in addition to the bound.
+        let fixed = |way: DVec3| {
+            (0..=7)
+                .flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)))
+                .any(|length| self.is(length * way) || self.is((length + self.least()) * way))
+        };
         let along_the_side = |distance: f64| self.is(distance * self.side);
         vec![
             (
@@ -87,7 +99,7 @@ impl Start {
                 "you move by the largest error: along the normal the error is error·|n|",
             ),
             (
-                along_the_side(error.length()),
+                along_the_side(f64::from(self.surface.error.length())),
                 "you move by the length of error: along the normal the error is error·|n|",
             ),
             (

@@ -38,16 +38,17 @@ fn judge_encoded(linear: f32, yours: u8) -> CheckResult {
     if (f64::from(yours) - right).abs() <= 0.501 {
         return Ok(());
     }
-    // A wrong formula is known if it gives this byte, rounded to the nearest one or down.
-    let gives = |value: f64| f64::from(yours) == value.round() || f64::from(yours) == value.floor();
+    // A wrong formula is known if it gives this byte, rounded to the nearest one or down, up to the rounding of the formula.
+    let down = |value: f64| (-0.001..1.001).contains(&(value - f64::from(yours)));
+    let gives = |value: f64| down(value) || down(value + 0.5);
     let input = format!("encode_gamma({})", linear.paste());
     Err(Broken::new(input, yours, right.round() as u8, "255 √linear, rounded").explained_by([
-        (f64::from(yours) == right.floor(), "you round down: add 0.5 before the cast"),
+        (down(right), "you round down: add 0.5 before the cast"),
         (
-            f64::from(yours) == (256.0 * exact.sqrt()).floor().min(255.0),
+            down((256.0 * exact.sqrt()).min(255.9)),
             "you round 256 √linear down: round 255 √linear to the nearest byte",
         ),
-        (f64::from(yours) == right.ceil(), "you round up: round to the nearest byte"),
+        (down(right + 1.0), "you round up: round to the nearest byte"),
         (gives(255.0 * exact), "the square root is missing: the byte is 255 times the root"),
         (gives(right.sqrt() * 255f64.sqrt()), "you take the root twice: take it once"),
         (gives(255.0 * exact * exact), "you square: encoding takes the root, decoding squares"),
@@ -76,16 +77,13 @@ pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
         if yours == *expected || (*linear == 0.25 && yours == 127) {
             return Ok(());
         }
-        // The cast of a number above 255.5 wraps around if it goes over a wider integer.
-        let wrapped = (255.0 * f64::from(*linear).sqrt() + 0.5) as i64 as u8;
         let input = format!("encode_gamma({})", linear.paste());
         Err(Broken::new(input, yours, expected, "clamped to 0..=1").explained_by([
-            (
-                *linear > 1.0 && yours == wrapped,
-                "you cast a number above 255, which wraps: clamp to 0..=1 first",
-            ),
+            (*linear > 1.0, "a number above 1 must give 255: clamp to 0..=1 before the root"),
             (*linear < 0.0, "a number below 0 must give 0: clamp to 0..=1 before the root"),
             (linear.is_nan(), "NaN must give 0"),
+            (!(*linear >= 0.0), "a number below 0 and NaN must give 0"),
+            (!(0.0..=1.0).contains(linear), "numbers outside 0..=1 must be clamped, and NaN must give 0"),
         ]))
     });
     all_hold(judged.collect())

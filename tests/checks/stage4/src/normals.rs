@@ -26,7 +26,7 @@ fn queries() -> impl Strategy<Value = Query> + Clone {
 }
 
 pub(super) fn shading_normal_faces_the_viewer(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(3000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
+    trial.forall(2000, queries(), |queries| compare(queries, trial.kit.shading_normal(queries), judge_normal))
 }
 
 fn judge_normal(query: &Query, yours: Vec3) -> CheckResult {

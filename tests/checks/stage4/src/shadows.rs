@@ -69,7 +69,7 @@ fn judge_shadow_rays(
 pub(super) fn shadow_ray_reaches_just_short_of_the_light(trial: &Trial<'_>) -> CheckResult {
     let suns = [vec3(0.6, 0.8, 0.0), Vec3::Y]
         .map(|direction| ShadowQuery { surface: flat(Vec3::Y), light: light(direction, f32::INFINITY) });
-    trial.forall_and(&suns, 1000, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
+    trial.forall_and(&suns, 500, lit(), |queries| judge_shadow_rays(trial, queries, judge_end))
 }
 
 /// L2: the surface of the light itself must not occlude it. An object close to the light must.
@@ -128,7 +128,7 @@ fn start(query: &ShadowQuery, ray: &Ray) -> Start {
 
 pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
     // R6: the true surface is up to `error` above the point.
-    trial.forall(3000, lit(), |queries| {
+    trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);
             let mut mistakes = start.mistakes();
@@ -143,10 +143,10 @@ pub(super) fn shadow_ray_leaves_its_own_surface_at_any_scale(trial: &Trial<'_>) 
 }
 
 pub(super) fn shadow_ray_sees_what_is_close(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(3000, lit(), |queries| {
+    trial.forall(1000, lit(), |queries| {
         judge_shadow_rays(trial, queries, |query, ray| {
             let start = start(query, ray);
-            (start.height() > start.most()).then(|| {
+            start.is_too_high().then(|| {
                 let yours = format!("starts {:.3e} above the point", start.height());
                 (yours, format!("at most {:.3e}", start.most()), start.mistakes())
             })
@@ -175,7 +175,7 @@ pub(super) fn shadow_ray_is_not_traced_without_effect(trial: &Trial<'_>) -> Chec
         (flat(Vec3::NEG_Z), Vec3::NEG_Y),
     ]
     .map(|(surface, direction)| ShadowQuery { surface, light: light(direction, 5.0) });
-    trial.forall_and(&ties, 1500, lights, |queries| {
+    trial.forall_and(&ties, 1000, lights, |queries| {
         compare(queries, trial.kit.shadow_ray(queries), judge_effect)
     })
 }

@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::compare_formulas;
 use checks::paste::call;
 use proptest::prelude::*;
 use raykata::kit::FresnelQuery;
@@ -48,7 +48,18 @@ pub(super) fn exact(query: &FresnelQuery) -> f64 {
     0.5 * (ratio(n1 * cosine, n2 * cos_2) + ratio(n1 * cos_2, n2 * cosine))
 }
 
-/// Judges reflectances. `mistakes` are the values that known mistakes give.
+/// Near the critical angle the reflectance and its rounding error change with the root of the distance to it.
+fn tolerance(query: &FresnelQuery) -> f64 {
+    1e-5 + 4e-6 / behind(query).1.abs().sqrt().max(1e-3)
+}
+
+/// Whether rounding decides on which side of the critical angle the ray is. Equal indices at cos θ = 0, where the formula is
+/// 0 / 0, are such a case.
+fn is_critical(query: &FresnelQuery) -> bool {
+    behind(query).1.abs() < 1e-5
+}
+
+/// Judges reflectances. `mistakes` are the values that wrong formulas give.
 fn judge(
     name: &str,
     queries: &[FresnelQuery],
@@ -56,34 +67,44 @@ fn judge(
     reference: fn(&FresnelQuery) -> f64,
     mistakes: fn(&FresnelQuery) -> Vec<(f64, &'static str)>,
 ) -> Vec<CheckResult> {
-    compare(queries, answers, |query, yours| {
-        let (expected, margin) = (reference(query), behind(query).1);
-        // Near the critical angle the reflectance and its rounding error change with the root of the distance to it.
-        let tolerance = 1e-5 + 4e-6 / margin.abs().sqrt().max(1e-3);
-        let near = |value: f64| (f64::from(yours) - value).abs() <= tolerance;
-        // At the critical angle rounding decides. Equal indices at cos θ = 0 are such a case: the formula is 0 / 0.
-        let critical = margin.abs() < 1e-5;
-        if near(expected) || (critical && (0.0..=1.0).contains(&yours)) {
+    let near = |query: &FresnelQuery, yours: f32, value: f64| {
+        (f64::from(yours) - value).abs() <= tolerance(query) || (is_critical(query) && !value.is_nan())
+    };
+    let judge = |query: &FresnelQuery, yours: f32| {
+        let expected = reference(query);
+        let critical = is_critical(query);
+        let right = (f64::from(yours) - expected).abs() <= tolerance(query);
+        if right || (critical && (0.0..=1.0).contains(&yours)) {
             return Ok(());
         }
-        let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
         let zero_by_zero = critical && query.n1 == query.n2 && yours.is_nan();
         let beyond = behind(query).0.is_none();
-        let known = [
+        let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
+        Err(Broken::new(input, yours, expected as f32, "double precision").explained_by([
             (zero_by_zero, "you divide 0 by 0 for equal indices at cos θ = 0: return a value in 0..=1"),
             (beyond && yours.is_nan(), "you return NaN: beyond the critical angle the reflectance is 1"),
             (
                 zero_by_zero || (beyond && yours.is_nan()),
                 "you return NaN: mind 0 / 0 at equal indices, and the root of a negative number",
             ),
-            (near(swapped), "you exchange n1 and n2"),
-            (near(1.0 - expected), "you return the transmitted fraction: return the reflected one"),
+            (beyond, "beyond the critical angle all light is reflected: the reflectance is 1"),
+        ]))
+    };
+    compare_formulas(queries, answers, judge, |query, yours| {
+        let swapped = reference(&FresnelQuery { n1: query.n2, n2: query.n1, ..*query });
+        let known = [
+            (swapped, "you exchange n1 and n2"),
+            (1.0 - reference(query), "you return the transmitted fraction: return the reflected one"),
+            (
+                if behind(query).0.is_none() { 1.0 } else { 1.0 - reference(query) },
+                "you return the transmitted fraction: return the reflected one",
+            ),
         ];
-        let formulas = mistakes(query).into_iter().map(|(value, text)| (near(value), text));
-        let last = [(beyond, "beyond the critical angle all light is reflected: the reflectance is 1")];
-        let input = call(name, &[&query.cos_theta, &query.n1, &query.n2]);
-        Err(Broken::new(input, yours, expected as f32, "double precision")
-            .explained_by(known.into_iter().chain(formulas).chain(last)))
+        known
+            .into_iter()
+            .chain(mistakes(query))
+            .map(|(value, text)| (near(query, *yours, value), text))
+            .collect()
     })
 }
 
@@ -97,6 +118,14 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     // Beyond the critical angle a formula may be asked first or not at all.
     let total = |value: f64| if beyond { 1.0 } else { value };
     vec![
+        (
+            total(formula(r0, behind, 5)),
+            "you use the cosine of the wrong side: behind the surface, also if n1 < n2",
+        ),
+        (
+            total(formula(r0, cosine, 5)),
+            "you use cos θ1 on both sides: if n1 > n2, use that of the refracted ray",
+        ),
         (
             total(formula(r0, wrong, 5)),
             "you use the cosine of the wrong side: use that in the less dense medium",
@@ -117,13 +146,16 @@ fn schlick_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
 /// What Fresnel's equations give with one mistake.
 fn exact_mistakes(query: &FresnelQuery) -> Vec<(f64, &'static str)> {
     let [cos_1, n1, n2] = [query.cos_theta, query.n1, query.n2].map(f64::from);
-    let Some(cos_2) = behind(query).0 else { return Vec::new() };
     let ratio = |p: f64, q: f64| if p + q > 0.0 { (p - q) / (p + q) } else { 1.0 };
-    let (s, p) = (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
+    // Beyond the critical angle these formulas are not reached.
+    let cos_2 = behind(query).0;
+    let of_angle = |cos_2: f64| (ratio(n1 * cos_1, n2 * cos_2), ratio(n1 * cos_2, n2 * cos_1));
+    let (s, p) = cos_2.map_or((1.0, 1.0), of_angle);
+    let both = |s: f64, p: f64| if cos_2.is_none() { 1.0 } else { s + p };
     vec![
         (s * s, "you return one polarisation, the one perpendicular to the plane: return the mean of both"),
         (p * p, "you return one polarisation, the one parallel to the plane: return the mean of both"),
-        (s * s + p * p, "you return the sum of both polarisations: return their mean"),
+        (both(s * s, p * p), "you return the sum of both polarisations: return their mean"),
         (0.5 * (s.abs() + p.abs()), "you do not square the ratios"),
         (0.5 * (s + p), "you do not square the ratios"),
     ]

@@ -123,7 +123,7 @@ pub(super) fn scatter_weighs_rays_by_the_material(trial: &Trial<'_>) -> CheckRes
     // Another check judges total internal reflection and angles close to it.
     let below =
         queries().prop_filter("below the critical angle", |query| snell(&refract_query(query)).1 > 1e-3);
-    trial.forall_and(&drawn(), 3000, below, |queries| {
+    trial.forall_and(&drawn(), 1000, below, |queries| {
         let own = own_functions(trial, queries);
         let answers = trial.kit.scatter(queries);
         let judge = |((query, own), yours)| judge_weights(query, own, yours);
@@ -261,7 +261,7 @@ pub(super) fn scatter_swaps_indices_when_leaving_glass(trial: &Trial<'_>) -> Che
         let direction = vec3(0.6, -0.8, 0.0);
         ScatterQuery { direction, entering, ..slanted.clone() }
     });
-    trial.forall_and(&chosen, 1000, inputs, |queries| {
+    trial.forall_and(&chosen, 300, inputs, |queries| {
         let own = own_functions(trial, queries);
         let answers = trial.kit.scatter(queries);
         let judge = |((query, own), yours)| judge_directions(query, own, yours);
@@ -332,7 +332,7 @@ pub(super) fn scatter_refracts_nothing_in_total_reflection(trial: &Trial<'_>) ->
     });
     let beyond =
         queries().prop_filter("beyond the critical angle", |query| snell(&refract_query(query)).1 < -1e-3);
-    trial.forall_and(&chosen, 500, beyond, |queries| {
+    trial.forall_and(&chosen, 150, beyond, |queries| {
         compare(queries, trial.kit.scatter(queries), judge_total_reflection)
     })
 }

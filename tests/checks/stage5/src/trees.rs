@@ -2,6 +2,7 @@
 
 use super::scatter::{FAR, paste};
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
 use checks::{Trial, golden};
 use glam::{Vec3, vec3};
 use raykata::kit::{Bounce, Limits, ScatterQuery};
@@ -45,9 +46,10 @@ type Room = (f32, f32, Limits);
 /// When a secondary ray is traced, by its depth and the weights of the incoming ray and of itself.
 type Rule = fn(depth: u32, parent: f32, own: f32, limits: &Limits) -> bool;
 
-/// The rule of the doc comment, then rules with a known mistake each.
+/// The rule of the doc comment.
 const RIGHT: Rule =
     |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 && own >= limits.min_contribution;
+/// Rules with a known mistake each.
 const MISTAKES: [(Rule, &str); 8] = [
     (
         |depth, _, own, limits| depth <= limits.max_depth + 1 && own > 0.0 && own >= limits.min_contribution,
@@ -79,7 +81,7 @@ const MISTAKES: [(Rule, &str); 8] = [
         "you test the weight of the incoming ray: test the secondary ray's own weight",
     ),
     (
-        |depth, _, own, limits| depth <= limits.max_depth && own > 0.0 && limits.min_contribution >= 0.0,
+        |depth, _, own, limits| depth <= limits.max_depth && own > 0.0,
         "you leave out limits.min_contribution: only the depth ends the tree",
     ),
 ];
@@ -103,31 +105,36 @@ fn count((mirror, transmission, limits): &Room, rule: Rule) -> usize {
 fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> bool) -> CheckResult {
     let describe =
         |rays: usize| if rays < TOO_MANY { format!("{rays} rays") } else { "an infinite tree".into() };
-    let judge = |room: &Room| {
+    let grow = |room: &Room| {
         let material = Material {
             mirror: Vec3::splat(room.0),
             transmission: Vec3::splat(room.1),
             ..Material::default()
         };
-        let (rays, first) = rays_in_a_room(trial, &material, room.2);
+        rays_in_a_room(trial, &material, room.2)
+    };
+    let judge = |room: &Room, (rays, first): (usize, ScatterQuery)| {
         let expected = count(room, RIGHT);
         if rays == expected || allows(room, rays) {
             return Ok(());
         }
         let input = format!("a closed room, with every secondary ray traced, from\n{}", paste(&first));
-        // A tree that exceeds the limit is infinite by any of the rules that exceed it.
-        let gives = |rule: Rule| count(room, rule).min(TOO_MANY) == rays.min(TOO_MANY);
-        Err(Broken::with_texts(input, describe(rays), describe(expected), "counted")
-            .explained_by(MISTAKES.map(|(rule, text)| (gives(rule), text))))
+        Err(Broken::with_texts(input, describe(rays), describe(expected), "counted").explained_by([]))
     };
-    all_hold(rooms.iter().map(judge).collect())
+    let answers = rooms.iter().map(grow).collect();
+    all_hold(compare_formulas(rooms, answers, judge, |room, (rays, _)| {
+        // A tree that exceeds the limit is infinite by any of the rules that exceed it.
+        MISTAKES.map(|(rule, text)| (count(room, rule).min(TOO_MANY) == (*rays).min(TOO_MANY), text)).into()
+    }))
 }
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
     let deep = |max_depth: u32| (0.5, 0.5, Limits { max_depth, ..FAR });
     // R8: surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
     let dull = (0.0, 0.0, Limits { max_depth: 10, ..FAR });
-    judge(trial, &[deep(0), deep(1), deep(2), deep(5), deep(10), dull], |_, _| false)
+    // Here the weight ends the tree before the depth does.
+    let dim = (0.5, 0.5, Limits { max_depth: 4, min_contribution: 0.2 });
+    judge(trial, &[deep(0), deep(1), deep(2), deep(5), deep(10), dull, dim], |_, _| false)
 }
 
 pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult {
@@ -138,8 +145,15 @@ pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult
     };
     judge(
         trial,
-        &[halving(0.5, 0.0, 20), halving(0.5, 0.5, 100), halving(0.5, 0.0, 100), halving(0.25, 0.7, 30)],
-        |_, _| false,
+        &[
+            halving(0.5, 0.0, 20),
+            halving(0.5, 0.5, 100),
+            halving(0.5, 0.0, 100),
+            halving(0.25, 0.7, 30),
+            // Here the depth ends the tree before the weight does. Another check counts the depth exactly.
+            halving(1.0, 0.0, 5),
+        ],
+        |room, rays| room.0 == 1.0 && (5..=7).contains(&rays),
     )
 }
 

@@ -3,7 +3,7 @@
 use super::scatter::{FAR, drawn, find, paste, queries};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::compare;
+use checks::judge::compare_formulas;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::kit::{Bounce, Limits, ScatterQuery, SecondaryRay};
@@ -35,76 +35,93 @@ pub(super) fn scatter_tests_the_weight_of_each_ray(trial: &Trial<'_>) -> CheckRe
     };
     let drawn =
         [at(0.25, 0.125, 0.5), at(0.75, 0.25, 0.5), at(0.25, 0.5, 0.5), at(0.5, 0.0, 0.0), at(0.0, 0.5, 0.0)];
-    trial.forall_and(&drawn, 2000, queries, |queries| {
-        compare(queries, trial.kit.scatter(queries), judge_own_weight)
+    trial.forall_and(&drawn, 1000, queries, |queries| {
+        compare_formulas(queries, trial.kit.scatter(queries), judge_own_weight, |query, yours| {
+            formulas(query, yours)
+        })
     })
+}
+
+/// The weights of the reflected and of the refracted ray.
+fn weights(query: &ScatterQuery) -> [Vec3; 2] {
+    [query.weight * query.material.mirror, query.weight * query.material.transmission]
+}
+
+fn found(yours: &[SecondaryRay]) -> [bool; 2] {
+    [Bounce::Reflection, Bounce::Transmission].map(|bounce| find(yours, bounce).is_some())
 }
 
 fn judge_own_weight(query: &ScatterQuery, yours: Vec<SecondaryRay>) -> CheckResult {
     let least = query.limits.min_contribution;
-    let [parent, mirror, transmission] = [query.weight, query.material.mirror, query.material.transmission];
-    let own = [parent * mirror, parent * transmission];
+    let own = weights(query);
     let counts = own.map(|weight| weight.max_element() > 0.0 && weight.max_element() >= least);
-    let found = [Bounce::Reflection, Bounce::Transmission].map(|bounce| find(&yours, bounce).is_some());
+    let found = found(&yours);
     if found == counts {
         return Ok(());
     }
-    // What other rules trace. Each rule gets the own weight and the weight of the other ray, and may test that the own one
-    // is above 0 as well.
-    let traces = |rule: &dyn Fn(Vec3, Vec3) -> bool| {
-        let all = [rule(own[0], own[1]), rule(own[1], own[0])];
-        let above = [0, 1].map(|i| all[i] && own[i].max_element() > 0.0);
-        found == all || found == above
-    };
-    let largest = |weight: Vec3| weight.max_element();
     let off = usize::from(found[0] == counts[0]);
     let verdict = |traced: bool| {
         let (kind, weight) = (["Reflection", "Transmission"][off], own[off]);
         format!("{kind} of weight {weight} {}", if traced { "traced" } else { "not traced" })
     };
     let (yours, expected) = (verdict(found[off]), verdict(counts[off]));
-    Err(Broken::with_texts(paste(query), yours, expected, "its own weight and the limit").explained_by([
+    Err(Broken::with_texts(paste(query), yours, expected, "its own weight and the limit").explained_by([]))
+}
+
+/// What other rules trace. Each rule gets the own weight of a ray and that of the other ray, and may also test that the own
+/// one is above 0.
+fn formulas(query: &ScatterQuery, yours: &[SecondaryRay]) -> Vec<(bool, &'static str)> {
+    let (least, parent, own, found) =
+        (query.limits.min_contribution, query.weight, weights(query), found(yours));
+    let largest = |weight: Vec3| weight.max_element();
+    let plain = |rule: &dyn Fn(Vec3, Vec3) -> bool| found == [rule(own[0], own[1]), rule(own[1], own[0])];
+    let above = |rule: &dyn Fn(Vec3, Vec3) -> bool| {
+        found == [0, 1].map(|i| rule(own[i], own[1 - i]) && largest(own[i]) > 0.0)
+    };
+    let counts = |weight: Vec3| largest(weight) > 0.0 && largest(weight) >= least;
+    const PARENT: &str = "you test the weight of the incoming ray: test the secondary ray's own weight";
+    vec![
         (
-            traces(&|own, _| largest(own) > least),
+            above(&|own, _| largest(own) > least),
             "you leave out a ray whose weight is equal to min_contribution: trace it",
         ),
-        (traces(&|own, _| largest(own) >= 0.0), "you leave out min_contribution"),
+        (above(&|_, _| true), "you leave out min_contribution"),
+        (plain(&|own, _| largest(own) >= least), "you trace a secondary ray of weight 0, which adds nothing"),
+        (plain(&|_, _| counts(parent)), PARENT),
+        (above(&|_, _| largest(parent) >= least), PARENT),
+        (above(&|_, _| largest(parent) > least), PARENT),
         (
-            found == [0, 1].map(|i| largest(own[i]) >= least),
-            "you trace a secondary ray of weight 0, which adds nothing",
-        ),
-        (
-            traces(&|_, _| largest(parent) >= least) || traces(&|_, _| largest(parent) > least),
-            "you test the weight of the incoming ray: test the secondary ray's own weight",
-        ),
-        (
-            traces(&|own, other| largest(own).max(largest(other)) >= least),
+            plain(&|own, other| counts(own) || counts(other)),
             "you trace both rays if one is large enough: test each ray's own weight",
         ),
         (
-            traces(&|own, other| largest(own).min(largest(other)) >= least),
+            above(&|own, other| counts(own) || counts(other)),
+            "you trace both rays if one is large enough: test each ray's own weight",
+        ),
+        (
+            plain(&|own, other| counts(own) && counts(other)),
             "you trace both rays or none: test each ray's own weight",
         ),
         (
-            traces(&|own, other| largest(own + other) >= least),
+            above(&|own, other| largest(own + other) >= least),
             "you test the sum of both weights: test each ray's own weight",
         ),
-        (traces(&|own, _| own.min_element() >= least), "you test the smallest channel: test the largest one"),
+        (above(&|own, _| own.min_element() >= least), "you test the smallest channel: test the largest one"),
         (
-            traces(&|own, _| own.element_sum() / 3.0 >= least),
+            plain(&|own, _| own.min_element() > 0.0 && own.min_element() >= least),
+            "you test the smallest channel: test the largest one",
+        ),
+        (
+            above(&|own, _| own.element_sum() / 3.0 >= least),
             "you test the mean of the channels: test the largest one",
         ),
         (
-            traces(&|own, _| own.element_sum() >= least),
+            above(&|own, _| own.element_sum() >= least),
             "you test the sum of the channels: test the largest one",
         ),
         (
-            traces(&|own, _| own.length() >= least),
+            above(&|own, _| own.length() >= least),
             "you test the length of the weight: test the largest channel",
         ),
-        (
-            traces(&|own, _| largest(own) * largest(parent) >= least),
-            "you multiply by the weight of the incoming ray twice",
-        ),
-    ]))
+    ]
 }

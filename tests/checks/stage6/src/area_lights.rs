@@ -117,12 +117,12 @@ pub(super) fn places_on_a_round_light_are_even(trial: &Trial<'_>) -> CheckResult
     all_hold(queries.iter().zip(&answers).map(judge).collect())?;
     let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
     covers_evenly("sample_light_disk(…, u)", &shares, ["radius²", "angle"], |counts| {
-        let mut mistakes = unused_number(|u| {
+        let mut mistakes = is_polar(&u, &places);
+        mistakes.extend(unused_number(|u| {
             let queries: Vec<(Disk, Vec2)> = u.iter().map(|u| (disks[0], *u)).collect();
             trial.kit.sample_light_disk(&queries)
-        });
-        mistakes.extend(uneven_disk(counts, is_polar(&u, &places)));
-        mistakes
+        }));
+        uneven_disk(counts, mistakes)
     })
 }
 
@@ -134,23 +134,26 @@ fn judge_disk_point((disk, u): &(Disk, Vec2), point: Vec3, places: &mut Vec<Vec2
     // A few roundings of the coordinates.
     let slack = 1e-6 * (disk.center.as_dvec3().length() + radius);
     let height = offset.dot(normal);
-    if height.abs() <= slack && offset.length() <= radius + slack {
+    // A rotation from z to the normal by the library is off by up to 7e-4, because it takes almost parallel vectors as
+    // parallel. A wrong plane is much farther off for most disks.
+    if height.abs() <= 1e-3 * radius + slack && offset.length() <= radius + slack {
         let (x, y) = normal.any_orthonormal_pair();
         places.push(Vec2::new((offset.dot(x) / radius) as f32, (offset.dot(y) / radius) as f32));
         return Ok(());
     }
     let flat = [DVec3::X, DVec3::Y, DVec3::Z].iter().any(|axis| offset.dot(*axis) == 0.0);
-    let beside = !(height.abs() <= slack);
+    let beside = !(height.abs() <= 1e-3 * radius + slack);
+    let far = offset.length() > radius + slack;
     let input = format!("sample_light_disk({}, {})", disk.paste(), u.paste());
     Err(Broken::new(input, point, "a point of the disk", "the definition").explained_by([
         (point.is_nan(), "you return NaN: your two axes do not exist for this normal"),
         (beside && flat, "you leave out the normal: your disk is parallel to a coordinate plane"),
         (
-            beside && (disk.normal.length() - 1.0).abs() > 1e-3,
+            beside && !flat && (disk.normal.length() - 1.0).abs() > 1e-3,
             "your point is outside the plane of the disk where disk.normal is not a unit vector: normalize it",
         ),
+        (far, "your point is farther from the centre than the radius"),
         (beside, "your point is outside the plane of the disk"),
-        (!beside, "your point is farther from the centre than the radius"),
     ]))
 }
 
@@ -215,12 +218,19 @@ fn seen(trial: &Trial<'_>, spheres: &[(Sphere, Vec3)]) -> Result<Seen, Broken> {
     let queries: Vec<SphereSampleQuery> = u.iter().enumerate().map(query).collect();
     let mut seen = Seen { u, shares: Vec::new(), rims: Vec::new(), local: Vec::new() };
     let answers = trial.kit.sample_sphere(&queries);
-    let judge = |(query, direction)| judge_direction(query, direction, &mut seen);
+    let all_nan = answers.iter().all(|direction| direction.is_nan());
+    let judge = |(query, direction)| judge_direction(query, direction, all_nan, &mut seen);
     all_hold(queries.iter().zip(answers).map(judge).collect())?;
     Ok(seen)
 }
 
-fn judge_direction(query: &SphereSampleQuery, direction: Vec3, seen: &mut Seen) -> CheckResult {
+/// `all_nan` says whether the directions to all spheres are NaN.
+fn judge_direction(
+    query: &SphereSampleQuery,
+    direction: Vec3,
+    all_nan: bool,
+    seen: &mut Seen,
+) -> CheckResult {
     let SphereSampleQuery { sphere, from, .. } = query;
     let to_center = sphere.center.as_dvec3() - from.as_dvec3();
     let sin_squared = f64::from(sphere.radius).powi(2) / to_center.length_squared();
@@ -246,7 +256,7 @@ fn judge_direction(query: &SphereSampleQuery, direction: Vec3, seen: &mut Seen) 
     let broken =
         Broken::new(sphere_call(query), direction, "a unit direction to the sphere", "the definition");
     Err(broken.explained_by([
-        (inside && direction.is_nan(), "you return NaN: from inside the sphere 1 - sin² is negative"),
+        (inside && all_nan, "you return NaN: from inside the sphere 1 - sin² is negative"),
         (direction.is_nan(), "you return NaN"),
         (!unit, "your direction does not have unit length"),
         (cosine < 0.0, "your direction misses the sphere: it goes away from it"),
@@ -310,11 +320,10 @@ pub(super) fn a_far_sphere_is_still_a_sphere(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn from_inside_a_sphere_it_is_everywhere(trial: &Trial<'_>) -> CheckResult {
     let spheres = spheres(0.4, &HERE);
     let seen = seen(trial, &spheres)?;
-    covers_evenly("sample_sphere from inside", &seen.shares, AXES, |counts| {
-        let rings = columns(counts);
+    covers_evenly("sample_sphere from inside", &seen.shares, AXES, |_| {
         let mut mistakes = unused(trial, spheres[0]);
         mistakes.push((
-            rings[4..].iter().sum::<u64>() == 0,
+            seen.local.iter().all(|direction| direction.x > -1e-6),
             "your directions fill one hemisphere: from inside use all directions",
         ));
         mistakes

@@ -69,9 +69,9 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
     all_hold(u.iter().zip(&places).map(judge).collect())?;
     let shares: Vec<(f64, f64)> = places.iter().map(|place| polar(*place)).collect();
     covers_evenly("sample_disk(u)", &shares, ["radius²", "angle"], |counts| {
-        let mut mistakes = unused_number(|u| trial.kit.sample_disk(u));
-        mistakes.extend(uneven_disk(counts, is_polar(&u, &places)));
-        mistakes
+        let mut mistakes = is_polar(&u, &places);
+        mistakes.extend(unused_number(|u| trial.kit.sample_disk(u)));
+        uneven_disk(counts, mistakes)
     })?;
     let radii: Vec<f64> = shares.iter().map(|(squared, _)| squared.sqrt()).collect();
     has_mean("the length of sample_disk(u)", &radii, 2.0 / 3.0, |_| Vec::new())
@@ -218,7 +218,8 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
     // The tolerance covers a few roundings of the direction, relative to the distance, and of the origin, whose coordinates
     // are up to 4. A wide lens enlarges them.
     let off = (found - expected).length() / expected.length();
-    if off < 2e-5 {
+    let pinhole = yours == query.pinhole && offset(query) != DVec3::ZERO;
+    if off < 2e-5 && !pinhole {
         return Ok(());
     }
     let distance = f64::from(query.lens.focal_distance);
@@ -232,6 +233,7 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
         "the focal plane",
     );
     Err(broken.explained_by([
+        (pinhole, "you return the pinhole ray for a lens that has a width"),
         (yours.origin.is_nan() || yours.direction.is_nan(), "you return NaN"),
         (
             aims(distance * direction - start),
@@ -246,7 +248,6 @@ fn judge_focus(query: &LensQuery, yours: Ray) -> CheckResult {
             "you aim every ray at the centre of the focal plane: aim where its pinhole ray meets it",
         ),
         (aims(expected + start), "you add the offset to the focus: subtract it"),
-        (aims(expected), "you leave out the offset: the ray goes from its start to the focus"),
         (aims(direction), "your ray is parallel to the pinhole ray: aim where that meets the focal plane"),
     ]))
 }

@@ -57,7 +57,7 @@ pub(super) fn jittered_samples_stay_in_their_cells(trial: &Trial<'_>) -> CheckRe
                 (near((cell + u) / grid.y), "divide x by the columns of the grid and y by its rows"),
                 (near((cell + u.xx()) / grid), "you use one random number for both axes: use u.x and u.y"),
                 (near((cell + u.yy()) / grid), "you use one random number for both axes: use u.x and u.y"),
-                (near((cell.yx() + u) / grid), "you exchange column and row of the cell"),
+                (near(((cell.yx() + u) / grid).min(DVec2::ONE)), "you exchange column and row of the cell"),
             ]))
         })
     })
@@ -233,10 +233,10 @@ fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> CheckResult {
     Err(Broken::new(paste_samples(samples), yours, expected.as_vec3(), "double precision").explained_by([
         (near(plain / n), "you do not use the weights"),
         (near(sum / n), "you divide by the number of samples: divide by the sum of their weights"),
+        (near(sum / weight.max(1.0)), "you divide by 1 if the weights sum to less: divide by their sum"),
         (near(sum), "you return the sum: divide it by the sum of the weights"),
         (near(plain / weight), "you do not weight the colours: multiply each colour by its weight"),
         (near(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
-        (near(sum / weight.max(1.0)), "you divide by 1 if the weights sum to less: divide by their sum"),
     ]))
 }
 

@@ -43,6 +43,7 @@ pub(super) fn smooth_surfaces_stay_sharp(trial: &Trial<'_>) -> CheckResult {
                     "you recompute ideal, which adds a rounding error: with roughness 0 return ideal itself",
                 ),
                 (!yours.is_nan(), "you change the direction: with roughness 0 return ideal itself"),
+                (!rough, "your result is not ideal, and some results are NaN: with roughness 0 return ideal itself"),
             ]))
         })
     })
@@ -91,7 +92,7 @@ fn lobe(trial: &Trial<'_>, roughness: f32) -> Result<Lobe, Broken> {
         if !((around.length() - 1.0).abs() < 1e-5) {
             let broken = Broken::new(paste(query), direction, "a unit direction", "the definition");
             return Err(broken.explained_by([
-                (direction.is_nan(), "you return NaN: do you take the root of a negative number?"),
+                (direction.is_nan(), "you return NaN"),
                 (!direction.is_nan(), "your direction does not have unit length"),
             ]));
         }
@@ -210,7 +211,11 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
                 return Ok(());
             }
             let source = "reflected back to the side of the normal";
-            let through = above < 0.0;
+            // Rounding may put a ray along the surface on either side.
+            let through = above < 1e-6;
+            // A student who reflects every ray has reflected the free sample along ideal.
+            let unreflected = *drawn - 2.0 * drawn.dot(query.ideal) * query.ideal;
+            let mirrored = unreflected - 2.0 * unreflected.dot(query.normal) * query.normal;
             Err(Broken::new(paste(query), yours, expected, source).explained_by([
                 (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
                 (
@@ -222,7 +227,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
                     "you subtract the part along the normal once: subtract it twice",
                 ),
                 (
-                    through && near(query.ideal),
+                    (through && near(query.ideal)) || *drawn == query.ideal,
                     "you return ideal, which changes the distribution: reflect the ray back by the normal",
                 ),
                 (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),
@@ -230,6 +235,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
                     !through && near(*drawn - 2.0 * above * query.normal),
                     "you reflect rays that are on the right side: reflect only those below the surface",
                 ),
+                (near(mirrored), "you reflect every ray: reflect only those below the surface"),
                 (
                     yours.dot(query.normal) < 0.0,
                     "your ray goes through the surface: reflect it back by the normal",

@@ -1,0 +1,298 @@
+//! Functions that do not look at their arguments earn no points: a kit whose functions all return a constant, or one of
+//! their arguments unchanged, must fail every check. A check that asks for `None` or 0 in some cases needs other cases in
+//! which the answer is something else.
+
+use all_checks::STAGES;
+use checks::{Check, Verdict, rubric};
+use raykata::kit::types::*;
+use raykata::kit::{GramScalars, Kit, Linked, SolidHit, StudentFunctions, StudentKit, TriangleHit};
+use std::collections::BTreeSet;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// Checks that some constant passes. Each of them needs a case with another answer; then remove it from this list.
+const KNOWN: &[(u8, &str)] = &[
+    (1, "plane_is_missed_by_rays_along_it"),
+    (1, "sphere_algebraic_survives_invalid_numbers"),
+    (1, "sphere_geometric_survives_invalid_numbers"),
+    (2, "triangle_choice_has_no_smallest_size"),
+    (2, "triangle_choice_misses_degenerate_triangles"),
+    (2, "triangle_cramer_has_no_smallest_size"),
+    (2, "triangle_cramer_misses_degenerate_triangles"),
+    (2, "triangle_gram_has_no_smallest_size"),
+    (2, "triangle_gram_misses_degenerate_triangles"),
+    (3, "any_hit_stops_at_the_first"),
+    (3, "closest_hit_both_enters_only_boxes_it_meets"),
+    (3, "closest_hit_skips_what_lies_behind"),
+    (3, "each_split_strategy_is_worth_its_cost"),
+    (3, "slab_hits_the_corners_it_is_aimed_at"),
+    (3, "slab_misses_the_empty_box"),
+    (3, "spatial_median_never_leaves_a_side_empty"),
+    (3, "surface_area_heuristic_survives_zero_area"),
+    (7, "images_survive_invalid_numbers"),
+    (8, "cone_normals_point_outwards"),
+    (8, "cuboid_normals_point_outwards"),
+    (8, "cylinder_normals_point_outwards"),
+    (8, "sphere_is_small"),
+    (9, "bsp_build_ends"),
+    (9, "bsp_cuts_along_polygons"),
+    (9, "bsp_lists_what_reaches_into_leaves"),
+    (9, "bsp_search_visits_what_the_ray_enters_before_its_hit"),
+    (9, "kd_search_visits_what_the_ray_enters_before_its_hit"),
+    (9, "octree_visits_what_the_ray_enters_before_its_hit"),
+    (9, "packet_opens_a_node_once"),
+    (10, "double_of_special_numbers_is_finite"),
+    (10, "double_sphere_has_the_nearest_t"),
+    (10, "double_triangle_has_the_nearest_t"),
+    (10, "offsets_are_as_small_as_they_can_be"),
+    (10, "slab_is_entered_before_what_it_holds"),
+    (10, "slab_meets_no_box_that_is_passed"),
+    (10, "slab_misses_no_box_that_is_met"),
+    (10, "slab_of_special_numbers_is_finite"),
+    (10, "watertight_has_a_good_t"),
+    (10, "watertight_meshes_do_not_leak"),
+    (10, "watertight_of_special_numbers_is_finite"),
+    (10, "watertight_sees_size_alike"),
+    (10, "zero_has_no_direction"),
+];
+
+/// The constants: `None`, 0, empty, `false` and the first; 1, `true` and the last; the vertical axis; an argument of the
+/// right type unchanged; NaN.
+const ZERO: u8 = 0;
+const ONE: u8 = 1;
+const UP: u8 = 2;
+const UNCHANGED: u8 = 3;
+const NAN: u8 = 4;
+
+/// A type of which this test knows constants.
+trait Constant: Sized {
+    fn constant(kind: u8) -> Self;
+}
+
+impl Constant for f32 {
+    fn constant(kind: u8) -> f32 {
+        match kind {
+            ONE | UP => 1.0,
+            NAN => f32::NAN,
+            _ => 0.0,
+        }
+    }
+}
+
+impl Constant for f64 {
+    fn constant(kind: u8) -> f64 {
+        f64::from(f32::constant(kind))
+    }
+}
+
+impl Constant for Vec3 {
+    fn constant(kind: u8) -> Vec3 {
+        if kind == UP { Vec3::Y } else { Vec3::splat(f32::constant(kind)) }
+    }
+}
+
+impl Constant for Vec2 {
+    fn constant(kind: u8) -> Vec2 {
+        if kind == UP { Vec2::splat(0.5) } else { Vec2::splat(f32::constant(kind)) }
+    }
+}
+
+/// Whole numbers and truth values: 1 and `true` for every constant other than 0.
+macro_rules! whole {
+    ($($Type:ty: $one:expr, $zero:expr;)*) => {
+        $(impl Constant for $Type {
+            fn constant(kind: u8) -> $Type {
+                if kind == ONE || kind == UP { $one } else { $zero }
+            }
+        })*
+    };
+}
+
+whole! {
+    bool: true, false;
+    u8: 255, 0;
+    u32: 1, 0;
+    u64: 1, 0;
+    usize: 1, 0;
+    UVec3: UVec3::ONE, UVec3::ZERO;
+}
+
+impl<T: Constant> Constant for Option<T> {
+    fn constant(kind: u8) -> Option<T> {
+        (kind != ZERO && kind != UNCHANGED).then(|| T::constant(kind))
+    }
+}
+
+impl<T: Constant> Constant for Vec<T> {
+    fn constant(kind: u8) -> Vec<T> {
+        if kind == ZERO || kind == UNCHANGED { Vec::new() } else { vec![T::constant(kind)] }
+    }
+}
+
+impl<T: Constant, U: Constant> Constant for (T, U) {
+    fn constant(kind: u8) -> (T, U) {
+        (T::constant(kind), U::constant(kind))
+    }
+}
+
+impl<T: Constant, const N: usize> Constant for [T; N] {
+    fn constant(kind: u8) -> [T; N] {
+        std::array::from_fn(|_| T::constant(kind))
+    }
+}
+
+/// Structures whose fields are constants.
+macro_rules! fields {
+    ($($Type:ident { $($field:ident),* })*) => {
+        $(impl Constant for $Type {
+            fn constant(kind: u8) -> $Type {
+                $Type { $($field: Constant::constant(kind)),* }
+            }
+        })*
+    };
+}
+
+fields! {
+    Aabb { min, max }
+    PrimitiveHit { t, primitive }
+    TriangleHit { t, beta, gamma }
+    GramScalars { uu, uv, vv, d }
+    SolidHit { t, normal }
+    Sphere { center, radius }
+    SecondaryRay { bounce, direction, weight }
+    RayCounts { primary, shadow, reflection, transmission }
+    Ray { origin, direction, t_min, t_max, time }
+}
+
+impl Constant for Bounce {
+    fn constant(_: u8) -> Bounce {
+        Bounce::Reflection
+    }
+}
+
+/// Structures that have one constant: the empty one.
+macro_rules! empty {
+    ($($Type:ty => $value:expr;)*) => {
+        $(impl Constant for $Type {
+            fn constant(_: u8) -> $Type {
+                $value
+            }
+        })*
+    };
+}
+
+empty! {
+    Bvh => Bvh::default();
+    Bsp => Bsp::default();
+    KdTree => KdTree::new(Aabb::EMPTY);
+    Octree => Octree::empty();
+    Grid => Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };
+    Mesh => Mesh::default();
+    Effects => Effects::default();
+    LightEffects => LightEffects::default();
+    MaterialEffects => MaterialEffects::default();
+    Placement => Placement { to_world: Affine3A::IDENTITY, to_object: Affine3A::IDENTITY };
+}
+
+/// An argument of type `T` of a function that returns `R`.
+struct Argument<'a, T, R>(&'a T, PhantomData<R>);
+
+/// The argument as the result, if it has its type.
+trait Same<R> {
+    fn same(&self) -> Option<R>;
+}
+
+impl<R: Clone> Same<R> for Argument<'_, R, R> {
+    fn same(&self) -> Option<R> {
+        Some(self.0.clone())
+    }
+}
+
+impl<R: Clone> Same<R> for Argument<'_, &R, R> {
+    fn same(&self) -> Option<R> {
+        Some((*self.0).clone())
+    }
+}
+
+impl<R: Clone> Same<Option<R>> for Argument<'_, R, Option<R>> {
+    fn same(&self) -> Option<Option<R>> {
+        Some(Some(self.0.clone()))
+    }
+}
+
+/// Every other argument. A call `(&argument).same()` finds this only if none of the above fits, because it needs one more
+/// reference.
+trait Other<R> {
+    fn same(&self) -> Option<R>;
+}
+
+impl<T, R> Other<R> for &Argument<'_, T, R> {
+    fn same(&self) -> Option<R> {
+        None
+    }
+}
+
+/// A kit of constants of one kind.
+#[derive(Clone, Copy)]
+struct Constants<const KIND: u8>;
+
+macro_rules! constants {
+    ($($(#[$trait_doc:meta])* $stage:literal trait $Trait:ident {
+        $($(#[$doc:meta])* $Message:ident fn $name:ident $([$($generics:tt)*])? ($($argument:ident: $Type:ty),* $(,)?)
+            -> $Return:ty = $file:ident::$function:ident; |$query:tt: $Query:ty| -> $Answer:ty $adapter:block)*
+    })*) => {
+        impl<const KIND: u8> StudentFunctions for Constants<KIND> {
+            $($(
+            fn $name $(<$($generics)*>)? ($($argument: $Type),*) -> $Return {
+                let arguments = [$((&Argument::<_, $Return>(&$argument, PhantomData)).same()),*];
+                let unchanged = arguments.into_iter().flatten().next().filter(|_| KIND == UNCHANGED);
+                unchanged.unwrap_or_else(|| <$Return as Constant>::constant(KIND))
+            }
+            )*)*
+        }
+    };
+}
+
+raykata::student_functions! { constants }
+
+impl<const KIND: u8> StudentKit for Constants<KIND> {
+    fn renderer() -> Option<&'static dyn raykata::kit::Frames> {
+        None
+    }
+}
+
+fn kit<const KIND: u8>() -> Arc<dyn Kit + Send + Sync> {
+    Arc::new(Linked(Constants::<KIND>))
+}
+
+#[test]
+fn constants_earn_no_points() {
+    let kits = [
+        ("zero", kit::<ZERO>()),
+        ("one", kit::<ONE>()),
+        ("up", kit::<UP>()),
+        ("unchanged", kit::<UNCHANGED>()),
+        ("NaN", kit::<NAN>()),
+    ];
+    let points = |check: &Check| rubric::entry(check.stage, check.name).points;
+    let mut passed: BTreeSet<(u8, &str)> = BTreeSet::new();
+    for (stage, checks) in STAGES {
+        let (mut earned, of) = (String::new(), checks.iter().map(points).sum::<u32>());
+        for (name, kit) in &kits {
+            let passes = |check: &&Check| checks::run(check, kit, 0) == Verdict::Passed;
+            let by_this: Vec<&Check> = checks.iter().filter(passes).collect();
+            earned += &format!(", {} with {name}", by_this.iter().map(|check| points(check)).sum::<u32>());
+            passed.extend(by_this.iter().map(|check| (*stage, check.name)));
+        }
+        println!("stage {stage}: of {of} points constants earn{}", &earned[1..]);
+    }
+    for (stage, name) in &passed {
+        println!("stage {stage}: some constant passes `{name}`");
+    }
+    let known: BTreeSet<(u8, &str)> = KNOWN.iter().copied().collect();
+    for (stage, name) in known.difference(&passed) {
+        println!("stage {stage}: no constant passes `{name}` any more: remove it from the list");
+    }
+    let unknown: Vec<_> = passed.difference(&known).collect();
+    assert!(unknown.is_empty(), "some constant passes {unknown:?}");
+}
