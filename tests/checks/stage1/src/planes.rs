@@ -16,9 +16,12 @@ use raykata::shape::Plane;
 fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
     let answers = trial.kit.plane(queries);
     let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
+    let accepts = |query: &PlaneQuery, yours| double::plane(&query.ray, &query.plane).accepts(yours);
+    let loses_only =
+        queries.iter().zip(&answers).all(|(query, yours)| yours.is_none() || accepts(query, *yours));
     compare(queries, answers, |query, yours| {
         let expected = double::plane(&query.ray, &query.plane);
-        let outcome = judge_plane(query, yours, expected, "double precision");
+        let outcome = judge_plane(query, yours, expected, "double precision", loses_only);
         // Many mistakes give None to many queries, but none gives it to all.
         if is_constant { outcome.map_err(|broken| broken.explained_by([])) } else { outcome }
     })
@@ -29,17 +32,19 @@ fn judge_plane(
     yours: Option<f32>,
     expected: Expected,
     source: &'static str,
+    loses_only: bool,
 ) -> CheckResult {
     if expected.accepts(yours) {
         return Ok(());
     }
     let broken = Broken::with_texts(query.call("plane"), format!("{yours:?}"), expected.words(), source);
-    Err(broken.explained_by(mistakes(query, yours)))
+    Err(broken.explained_by(mistakes(query, yours, loses_only)))
 }
 
 /// Fixed limits for `|n·d|`.
-const LIMITS: [(f64, &str); 5] = [
+const LIMITS: [(f64, &str); 6] = [
     (1e-8, "you compare n·d with a limit of 0.00000001, but a ray is parallel only if n·d = 0"),
+    (1.2e-7, "you compare n·d with f32::EPSILON, but a ray is parallel only if n·d = 0"),
     (1e-6, "you compare n·d with a limit of 0.000001, but a ray is parallel only if n·d = 0"),
     (1e-4, "you compare n·d with a limit of 0.0001, but a ray is parallel only if n·d = 0"),
     (1e-3, "you compare n·d with a limit of 0.001, but a ray is parallel only if n·d = 0"),
@@ -47,7 +52,8 @@ const LIMITS: [(f64, &str); 5] = [
 ];
 
 /// All known mistakes, each with whether it gives this answer.
-fn mistakes(query: &PlaneQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
+/// If `loses_only`, none of the student's answers is a wrong hit, so the sign of `t` is not the mistake.
+fn mistakes(query: &PlaneQuery, yours: Option<f32>, loses_only: bool) -> Vec<(bool, &'static str)> {
     let (ray, plane) = (&query.ray, &query.plane);
     let [o, d, p, n] = [ray.origin, ray.direction, plane.point, plane.normal].map(Vec3::as_dvec3);
     let slope = n.dot(d);
@@ -96,7 +102,7 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>) -> Vec<(bool, &'static str)>
                 || (is_lost && t <= of_coordinates),
             "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
-        (gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
+        (!loses_only && gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
     ]);
     all
 }
@@ -153,7 +159,7 @@ fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResu
         });
         let answers = trial.kit.plane(&cases.map(|case| case.0));
         let judged = cases.iter().zip(answers).map(|((query, expected), yours)| {
-            judge_plane(query, yours, *expected, "the t for the infinite ray")
+            judge_plane(query, yours, *expected, "the t for the infinite ray", true)
         });
         outcomes[i] = all_hold(judged.collect());
     }
@@ -179,7 +185,9 @@ pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult
     let judged = queries.iter().zip(trial.kit.plane(&queries)).zip(cases);
     all_hold(
         judged
-            .map(|((query, yours), (.., expected))| judge_plane(query, yours, expected, "the definition"))
+            .map(|((query, yours), (.., expected))| {
+                judge_plane(query, yours, expected, "the definition", true)
+            })
             .collect(),
     )
 }

@@ -50,6 +50,10 @@ impl SphereFunction {
         let answers = (self.ask)(trial.kit, queries);
         // Many mistakes give None to many queries, but none gives it to all.
         let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
+        let loses_only = queries
+            .iter()
+            .zip(&answers)
+            .all(|(query, yours)| yours.is_none() || accepts.expected(query).accepts(*yours));
         compare(queries, answers, |query, yours| {
             let expected = accepts.expected(query);
             if expected.accepts(yours) {
@@ -62,7 +66,11 @@ impl SphereFunction {
                 expected.words(),
                 "double precision",
             );
-            Err(broken.explained_by(if is_constant { Vec::new() } else { mistakes(query, yours, accepts) }))
+            Err(broken.explained_by(if is_constant {
+                Vec::new()
+            } else {
+                mistakes(query, yours, accepts, loses_only)
+            }))
         })
     }
 
@@ -75,7 +83,7 @@ impl SphereFunction {
                 return Ok(());
             }
             let broken = Broken::new(query.call(self.name), yours, expected, "exact arithmetic");
-            Err(broken.explained_by(mistakes(query, yours, Accepts::TheFormula)))
+            Err(broken.explained_by(mistakes(query, yours, Accepts::TheFormula, false)))
         }))
     }
 }

@@ -47,11 +47,13 @@ const EPSILONS: [(f64, &str); 5] = [
     (1e-2, "you drop hits with t below 0.01: compare with t_min, not with a fixed epsilon"),
 ];
 
-/// All known mistakes, each with whether it gives this answer.
+/// All known mistakes, each with whether it gives this answer. If `loses_only`, none of the student's answers is a wrong hit,
+/// so the sign of the roots is not the mistake.
 pub(super) fn mistakes(
     query: &SphereQuery,
     yours: Option<f32>,
     accepts: Accepts,
+    loses_only: bool,
 ) -> Vec<(bool, &'static str)> {
     let quadratic = match accepts {
         Accepts::TheFormula => Quadratic::of(query),
@@ -61,7 +63,7 @@ pub(super) fn mistakes(
     if accepts == Accepts::FewRoundings {
         all.extend(of_cancellation(query, yours));
     }
-    all.extend(of_choices(query, yours, &quadratic));
+    all.extend(of_choices(query, yours, &quadratic, loses_only));
     all.extend(of_formulas(query, yours, &quadratic));
     all
 }
@@ -97,6 +99,11 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static 
             || is(squared / a, &|t_hc| [t_ca - t_hc, t_ca + t_hc])
             || is(squared, &|t_hc| [c / a / far(t_hc), far(t_hc)])
     });
+    // The same for a direction that is normalized first, with t divided by its length.
+    let length = d.length();
+    let t_ca = -f.dot(d / length);
+    let squared = r_squared - (f.dot(f) - t_ca * t_ca);
+    let geometric = geometric || is(squared, &|t_hc| [(t_ca - t_hc) / length, (t_ca + t_hc) / length]);
     [
         (algebraic, "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²"),
         (geometric, "L·L - t_ca² cancels for a distant or small sphere: use |L - t_ca d|²"),
@@ -128,7 +135,12 @@ fn of_values(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'static str
 }
 
 /// Right roots of which the wrong one is returned.
-fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -> Vec<(bool, &'static str)> {
+fn of_choices(
+    query: &SphereQuery,
+    yours: Option<f32>,
+    quadratic: &Quadratic,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
     let Quadratic { a, b, .. } = *quadratic;
     let roots = |root: f64| [(b - root) / a, (b + root) / a];
     let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
@@ -162,7 +174,7 @@ fn of_choices(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) ->
             "you return t_max for a hit beyond it: that is a miss",
         ),
         (
-            is(&|[near, far]| range.first([-near, -far])),
+            !loses_only && is(&|[near, far]| range.first([-near, -far])),
             "the sign of b (or of t_ca) is wrong: both roots are negated",
         ),
         (

@@ -27,11 +27,11 @@ fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str
     let stopped = tests < all.len() as u64;
     [
         (
-            is(best(&hits(without_last))) && !is(best(&counting)),
+            is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
             "the last primitive is left out: their numbers are 0..n_primitives",
         ),
         (
-            is(best(&hits(without_first))) && !is(best(&counting)),
+            is(best(&hits(without_first))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
             "the first primitive is left out: their numbers are 0..n_primitives",
         ),
         (

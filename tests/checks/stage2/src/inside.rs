@@ -86,7 +86,13 @@ fn mistakes((query, weights, _): &Case, yours: bool) -> Vec<(bool, &'static str)
         let normal = (from.as_dvec3() - o).cross(to.as_dvec3() - o);
         normal.dot(p - o) - normal.dot(o)
     };
+    let is_line = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o) == DVec3::ZERO;
+    let on_the_line = is_line(a, b) || is_line(b, c) || is_line(c, a);
     vec![
+        (
+            on_the_line && !yours && inside,
+            "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
+        ),
         (
             yours == (inside && faces < 0.0) || yours == (inside && faces > 0.0),
             "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0",
@@ -103,10 +109,6 @@ fn mistakes((query, weights, _): &Case, yours: bool) -> Vec<(bool, &'static str)
         (
             yours == all(&[twice(a, b), twice(b, c), twice(c, a)]),
             "is P0 subtracted twice? the plane goes through P0 = o, so the distance is n·(P - o)",
-        ),
-        (
-            weights.contains(&0.0) && !yours && inside,
-            "a point on an edge, or an origin on the line of a side, gives a 0: accept it, and do not normalize (0/0)",
         ),
     ]
 }

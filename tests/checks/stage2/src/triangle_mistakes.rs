@@ -102,14 +102,19 @@ const EPSILONS: [(f64, &str); 4] = [
 ];
 
 /// All known mistakes, each with whether it gives this answer.
-pub(super) fn mistakes(query: &TriangleQuery, yours: Option<TriangleHit>) -> Vec<(bool, &'static str)> {
+/// If `loses_only`, none of the student's answers is a wrong hit, so values with a wrong sign are not the mistake.
+pub(super) fn mistakes(
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
     let line = Line::of(query);
     // A wrong method may round in another way, so allow twice the tolerance of a right one.
     let tolerance = 2.0 * line.tolerance;
     let answer = Answer { query, yours, tolerance, t_tolerance: tolerance * line.t_per_tolerance };
     let mut all = of_special_values(query, yours, &line);
     all.extend(of_tests(&answer, &line));
-    all.extend(of_values(&answer, &line));
+    all.extend(of_values(&answer, &line, loses_only));
     all
 }
 
@@ -124,10 +129,9 @@ fn of_special_values(
     let on_an_edge = line.alpha.min(line.beta).min(line.gamma) == 0.0;
     vec![
         (
-            yours.is_some() && (line.determinant == 0.0 || line.determinant.abs() < 1e-30),
-            "a triangle without area, or a ray along its plane, divides by 0: that is a miss",
+            yours.is_some() && (line.determinant == 0.0 || input_is_nan),
+            "a triangle without area, or a ray along its plane, divides by 0: that is a miss, and so is a NaN",
         ),
-        (yours.is_some() && input_is_nan, "NaN is never a hit: compare so that NaN fails"),
         (
             yours.is_some_and(|hit| !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite())),
             "you return NaN or infinity: compare so that NaN fails",
@@ -185,7 +189,7 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
 }
 
 /// Wrong values of `t`, β and γ.
-fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
+fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &'static str)> {
     let &Line { t, alpha, beta, gamma, .. } = line;
     let least = alpha.min(beta).min(gamma);
     let sum = alpha.abs() + beta.abs() + gamma.abs();
@@ -205,7 +209,7 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
             }),
             "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)",
         ),
-        (answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
+        (!loses_only && answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
         (
             answer.is_inside([t, alpha, gamma], least)
                 || answer.is_inside([t, beta, alpha], least)
@@ -213,11 +217,11 @@ fn of_values(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
                 || answer.is_inside([t, gamma, alpha], least),
             "you return α, a weight of corner a: β belongs to b and γ to c",
         ),
-        (answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
         (
-            answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
+            !loses_only && answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
             "the right side a - o is turned around: t, β and γ have the wrong sign",
         ),
+        (!loses_only && answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
         (
             (length - 1.0).abs() > 1e-3 && answer.is_inside([t * length, beta, gamma], least),
             "your t counts world units; it must count lengths of direction",

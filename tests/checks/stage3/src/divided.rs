@@ -96,11 +96,14 @@ pub(super) fn judge_splits(
     })
 }
 
-/// Whether, along `axis`, no centroid before `middle` is above a centroid from `middle` on.
+/// Whether `middle` divides the centroids along `axis`: none before it is beyond one behind it, in either direction.
 pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
-    let left = ordered[..middle].iter().map(|p| p.centroid[axis]).fold(f32::NEG_INFINITY, f32::max);
-    let right = ordered[middle..].iter().map(|p| p.centroid[axis]).fold(f32::INFINITY, f32::min);
-    left <= right
+    let range = |part: &[PrimitiveRef]| {
+        let at = part.iter().map(|p| p.centroid[axis]);
+        at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let (left, right) = (range(&ordered[..middle]), range(&ordered[middle..]));
+    left.1 <= right.0 || right.1 <= left.0
 }
 
 /// Axes along which a median split may cut: the longest axes of the box around all boxes, and of the box around all
