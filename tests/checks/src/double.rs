@@ -89,8 +89,9 @@ pub fn sphere(ray: &Ray, sphere: &Sphere) -> Expected {
     }
 }
 
-/// The first of ascending roots that lies in the range of the ray.
-fn first_in_range(ray: &Ray, roots: &[f64], tolerance: f64) -> Expected {
+/// The first of ascending roots that lies in the range of the ray; open if one of them is nearer to an end of the range than
+/// the tolerance.
+pub fn first_in_range(ray: &Ray, roots: &[f64], tolerance: f64) -> Expected {
     let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
     for &t in roots {
         if (t - t_min).abs() <= tolerance || (t - t_max).abs() <= tolerance {

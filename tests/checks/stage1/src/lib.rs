@@ -1,11 +1,12 @@
 //! Stage 1: spheres and planes.
 //!
-//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers) · `planes` · `picture`
+//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers, `sphere_mistakes` names mistakes) · `planes` · `picture`
 
 mod picture;
 mod planes;
 mod roots;
 mod sphere_method;
+mod sphere_mistakes;
 mod spheres;
 
 use picture::picture_of_a_sphere_on_a_plane;

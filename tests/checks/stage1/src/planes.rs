@@ -1,93 +1,195 @@
 //! Ray-plane intersection, and the normal on the side that the ray comes from.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::{self, Expected};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double::{self, Expected, U};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Arguments, Paste};
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::PlaneQuery;
 use raykata::ray::Ray;
 use raykata::shape::Plane;
 
-pub(super) fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.plane(queries), |query, yours| {
+fn judge_planes(trial: &Trial<'_>, queries: &[PlaneQuery]) -> Vec<CheckResult> {
+    let answers = trial.kit.plane(queries);
+    let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
+    let accepts = |query: &PlaneQuery, yours| double::plane(&query.ray, &query.plane).accepts(yours);
+    let loses_only =
+        queries.iter().zip(&answers).all(|(query, yours)| yours.is_none() || accepts(query, *yours));
+    compare(queries, answers, |query, yours| {
         let expected = double::plane(&query.ray, &query.plane);
-        if expected.accepts(yours) {
-            return Ok(());
-        }
-        let length = query.ray.direction.length();
-        let infinite = Ray { t_min: f32::NEG_INFINITY, ..query.ray };
-        let mirrored = |t: f32| double::plane(&infinite, &query.plane).accepts(Some(-t));
-        let diagnosis = match (yours, expected) {
-            (Some(t), _) if t.is_nan() => "you return NaN: compare so that NaN fails",
-            (Some(t), _) if !query.ray.contains(t) => "you return a t that ray.contains(t) refuses",
-            (Some(t), _) if t != 0.0 && mirrored(t) => "the sign of t is wrong: compute p0 - o, not o - p0",
-            (Some(t), Expected::Hit { t: exact, tolerance })
-                if (f64::from(t / length) - exact).abs() <= tolerance =>
-            {
-                "your t counts world units; it must count lengths of direction"
-            }
-            (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal).abs() < 0.01 => {
-                "you compare n·d with a fixed limit, but a ray is parallel only if n·d = 0"
-            }
-            (None, Expected::Hit { .. }) if query.ray.direction.dot(query.plane.normal) > 0.0 => {
-                "the plane can be hit from behind, too: do not test the sign of n·d"
-            }
-            _ => "",
-        };
-        let broken = Broken::with_texts(
-            query.call("plane"),
-            format!("{yours:?}"),
-            expected.words(),
-            "double precision",
-        );
-        Err(broken.looks_like(known(diagnosis)))
+        let outcome = judge_plane(query, yours, expected, "double precision", loses_only);
+        // Many mistakes give None to many queries, but none gives it to all.
+        if is_constant { outcome.map_err(|broken| broken.explained_by([])) } else { outcome }
     })
 }
 
+fn judge_plane(
+    query: &PlaneQuery,
+    yours: Option<f32>,
+    expected: Expected,
+    source: &'static str,
+    loses_only: bool,
+) -> CheckResult {
+    if expected.accepts(yours) {
+        return Ok(());
+    }
+    let broken = Broken::with_texts(query.call("plane"), format!("{yours:?}"), expected.words(), source);
+    Err(broken.explained_by(mistakes(query, yours, loses_only)))
+}
+
+/// Fixed limits for `|n·d|`.
+const LIMITS: [(f64, &str); 6] = [
+    (1e-8, "you compare n·d with a limit of 0.00000001, but a ray is parallel only if n·d = 0"),
+    (1.2e-7, "you compare n·d with f32::EPSILON, but a ray is parallel only if n·d = 0"),
+    (1e-6, "you compare n·d with a limit of 0.000001, but a ray is parallel only if n·d = 0"),
+    (1e-4, "you compare n·d with a limit of 0.0001, but a ray is parallel only if n·d = 0"),
+    (1e-3, "you compare n·d with a limit of 0.001, but a ray is parallel only if n·d = 0"),
+    (1e-2, "you compare n·d with a limit of 0.01, but a ray is parallel only if n·d = 0"),
+];
+
+/// All known mistakes, each with whether it gives this answer.
+/// If `loses_only`, none of the student's answers is a wrong hit, so the sign of `t` is not the mistake.
+fn mistakes(query: &PlaneQuery, yours: Option<f32>, loses_only: bool) -> Vec<(bool, &'static str)> {
+    let (ray, plane) = (&query.ray, &query.plane);
+    let [o, d, p, n] = [ray.origin, ray.direction, plane.point, plane.normal].map(Vec3::as_dvec3);
+    let slope = n.dot(d);
+    let t = n.dot(p - o) / slope;
+    // The rounding errors of t, which are large for a ray that is almost parallel to the plane.
+    let line = Ray { t_min: f32::NEG_INFINITY, t_max: f32::INFINITY, ..*ray };
+    let relative = match double::plane(&line, plane) {
+        Expected::Hit { t, tolerance } if t != 0.0 => 4.0 * tolerance / t.abs(),
+        _ => 1e-5,
+    };
+    // The answer of a method that computes `t` and accepts it in this range.
+    let gives = |t: f64, (low, high): (f64, f64)| match yours {
+        Some(yours) => f64::from(yours) == t || (f64::from(yours) - t).abs() <= relative * t.abs(),
+        None => !(low < t && t < high),
+    };
+    let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let anywhere = (f64::NEG_INFINITY, f64::INFINITY);
+    let is_no_unit = (d.length() - 1.0).abs() > 1e-6;
+    // The terms of the plane's equation are rounded at the size of the coordinates.
+    let of_coordinates = 8.0 * U * n.abs().dot(o.abs() + p.abs()) / slope.abs();
+    let is_lost = yours.is_none();
+    let mut all = vec![
+        (
+            yours.is_some_and(|t| !t.is_finite()),
+            "n·d = 0 makes t infinite or NaN (as a NaN in the input does), and neither counts: ask ray.contains(t)",
+        ),
+        (
+            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
+            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
+        ),
+        (
+            yours.is_some_and(|t| !ray.contains(t)) && gives(t, anywhere),
+            "you return a t that ray.contains(t) refuses",
+        ),
+        (
+            is_no_unit && gives(t * d.length(), range),
+            "your t counts world units; it must count lengths of direction",
+        ),
+    ];
+    all.extend(LIMITS.map(|(limit, text)| (slope.abs() < limit && is_lost, text)));
+    all.extend([
+        (slope > 0.0 && is_lost, "the plane can be hit from behind, too: do not demand n·d < 0"),
+        (slope < 0.0 && is_lost, "the plane can be hit from its front, too: do not demand n·d > 0"),
+        (
+            yours.is_some_and(|yours| (f64::from(yours) - t).abs() <= of_coordinates)
+                || (is_lost && t <= of_coordinates),
+            "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
+        ),
+        (!loses_only && gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
+    ]);
+    all
+}
+
 pub(super) fn plane_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    let inputs =
+    let plain =
         (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, point, normal)| {
             PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
         });
-    trial.forall(4000, inputs, |queries| judge_planes(trial, queries))?;
+    // Any sizes of the scene, of the direction and of the normal, and rays that are almost parallel to the plane.
+    let scales = (nasty::scale(-40..=40), nasty::scale(-40..=40), nasty::scale(-40..=40));
+    let slanted = (point(8), point(8), nasty::unit(), nasty::tilt(), any::<bool>()).prop_map(
+        |(origin, point, normal, (angle, turn), behind)| {
+            let direction = nasty::tilted(if behind { normal } else { -normal }, angle, turn);
+            PlaneQuery { ray: Ray::new(origin, direction), plane: Plane { point, normal } }
+        },
+    );
+    let sized =
+        (prop_oneof![plain.clone(), slanted], scales).prop_map(|(query, (size, length, of_normal))| {
+            let PlaneQuery { ray, plane } = query;
+            let ray = Ray { origin: size * ray.origin, direction: length * ray.direction, ..ray };
+            PlaneQuery { ray, plane: Plane { point: size * plane.point, normal: of_normal * plane.normal } }
+        });
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
-    let flat = PlaneQuery { ray: Ray::new(Vec3::Y, Vec3::new(1.0, -2f32.powi(-14), 0.0)), plane: floor };
-    let short = PlaneQuery {
-        ray: Ray::new(Vec3::new(0.0, 2.0, 0.0), Vec3::NEG_Y).with_range(0.0, 1.0),
-        plane: floor,
+    let down = |x: f32, y: f32| Ray::new(2.0 * Vec3::Y, vec3(x, y, 0.0));
+    let on_floor = |ray| PlaneQuery { ray, plane: floor };
+    let drawn = [
+        on_floor(down(1.0, -2f32.powi(-14))),
+        on_floor(down(0.0, -1.0).with_range(0.0, 1.0)),
+        on_floor(down(0.0, -1.0).with_range(3.0, 5.0)),
+        on_floor(Ray::new(-2.0 * Vec3::Y, 0.5 * Vec3::Y)),
+        on_floor(Ray::new(2.0 * Vec3::Y, Vec3::Y)),
+    ];
+    trial.forall_and(&drawn, 4000, prop_oneof![plain, sized], |queries| judge_planes(trial, queries))?;
+    trial.forall(500, (point(8), direction(), direction()), |inputs| judge_ends(trial, inputs))
+}
+
+/// Asks again with ranges that end exactly at the answer, one float before it and one float behind it.
+fn judge_ends(trial: &Trial<'_>, inputs: &[(Vec3, Vec3, Vec3)]) -> Vec<CheckResult> {
+    let query = |(origin, direction, normal): &(Vec3, Vec3, Vec3)| PlaneQuery {
+        ray: Ray::new(*origin, *direction),
+        plane: Plane { point: Vec3::ONE, normal: *normal },
     };
-    judge_planes(trial, &[flat, short]).into_iter().collect()
+    let queries: Vec<PlaneQuery> = inputs.iter().map(query).collect();
+    let mut outcomes = vec![Ok(()); queries.len()];
+    for (i, (query, t)) in queries.iter().zip(trial.kit.plane(&queries)).enumerate() {
+        let Some(t) = t.filter(|&t| query.ray.contains(t)) else { continue };
+        let cases = nasty::ranges(t).map(|((t_min, t_max), counts)| {
+            let expected = match counts {
+                true => Expected::Hit { t: f64::from(t), tolerance: 0.0 },
+                false => Expected::Miss,
+            };
+            (PlaneQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, expected)
+        });
+        let answers = trial.kit.plane(&cases.map(|case| case.0));
+        let judged = cases.iter().zip(answers).map(|((query, expected), yours)| {
+            judge_plane(query, yours, *expected, "the t for the infinite ray", true)
+        });
+        outcomes[i] = all_hold(judged.collect());
+    }
+    outcomes
 }
 
 pub(super) fn plane_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
     let plane = Plane { point: Vec3::ZERO, normal: Vec3::Y };
+    let slanted = Plane { point: vec3(0.0, 1.0, 0.0), normal: vec3(1.0, 2.0, -1.0) };
+    let hit = |t| Expected::Hit { t, tolerance: 0.0 };
     let cases = [
-        (Ray::new(Vec3::Y, Vec3::X), plane),
-        (Ray::new(Vec3::ZERO, Vec3::X), plane),
-        (Ray::new(Vec3::NEG_Y, Vec3::new(1.0, -0.0, 1.0)), plane),
-        (Ray::new(Vec3::ZERO, Vec3::NEG_Y), plane),
-        (Ray::new(Vec3::Y, Vec3::NAN), plane),
-        (Ray::new(Vec3::Y, Vec3::NEG_Y), Plane { normal: Vec3::ZERO, ..plane }),
+        (Ray::new(Vec3::Y, Vec3::X), plane, Expected::Miss),
+        (Ray::new(Vec3::ZERO, Vec3::X), plane, Expected::Miss),
+        (Ray::new(Vec3::NEG_Y, Vec3::new(1.0, -0.0, 1.0)), plane, Expected::Miss),
+        (Ray::new(Vec3::ONE, vec3(1.0, 1.0, 3.0)), slanted, Expected::Miss),
+        (Ray::new(Vec3::ZERO, Vec3::NEG_Y), plane, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NAN), plane, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NEG_Y), Plane { normal: Vec3::ZERO, ..plane }, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NEG_Y), plane, hit(1.0)),
+        (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), plane, hit(4.0)),
     ];
-    let queries = cases.map(|(ray, plane)| PlaneQuery { ray, plane });
-    for (query, yours) in queries.iter().zip(trial.kit.plane(&queries)) {
-        if yours.is_some() {
-            let diagnosis =
-                "n·d = 0 makes t infinite or NaN; an origin in the plane makes t = 0: none of these counts";
-            return Err(Broken::with_texts(
-                query.call("plane"),
-                format!("{yours:?}"),
-                "None",
-                "the definition",
-            )
-            .looks_like(Some(diagnosis)));
-        }
-    }
-    Ok(())
+    let queries = cases.map(|(ray, plane, _)| PlaneQuery { ray, plane });
+    let judged = queries.iter().zip(trial.kit.plane(&queries)).zip(cases);
+    all_hold(
+        judged
+            .map(|((query, yours), (.., expected))| {
+                judge_plane(query, yours, expected, "the definition", true)
+            })
+            .collect(),
+    )
 }
 
 pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
@@ -96,25 +198,37 @@ pub(super) fn plane_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
         let point = Vec3::new(148_376.0, 1_234.0, -223_423.0);
         PlaneQuery { ray: Ray::new(point + offset, direction), plane: Plane { point, normal } }
     });
-    let cancels = "-(D + n·o) cancels far from the origin; (p0 - o)·n does not";
-    trial
-        .forall(2000, inputs, |queries| judge_planes(trial, queries))
-        .map_err(|broken| if broken.diagnosis.is_some() { broken } else { broken.looks_like(Some(cancels)) })
+    trial.forall(2000, inputs, |queries| judge_planes(trial, queries))
 }
 
 pub(super) fn face_forward_turns_the_normal_to_the_ray(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, (direction(), direction()), |queries| {
+    let plain = (direction(), direction());
+    let sized = (nasty::unit(), nasty::tilt(), any::<bool>(), nasty::scale(-40..=40), nasty::scale(-40..=40));
+    let sized = sized.prop_map(|(normal, (angle, turn), behind, of_normal, length)| {
+        let axis = if behind { normal } else { -normal };
+        (of_normal * normal, length * nasty::tilted(axis, angle, turn))
+    });
+    let drawn = [(2.0 * Vec3::Z, vec3(1.0, 0.0, 0.5)), (Vec3::Y, vec3(1.0, -3.0, 0.0))];
+    trial.forall_and(&drawn, 1500, prop_oneof![plain, sized], |queries| {
         compare(queries, trial.kit.face_forward(queries), |(normal, direction), yours| {
-            let expected = if normal.dot(*direction) > 0.0 { -*normal } else { *normal };
-            // At a right angle both sides are accepted.
-            let right = yours == expected || (normal.dot(*direction) == 0.0 && yours == -expected);
-            let diagnosis = (yours == -expected).then_some("your normal points away from the viewer");
-            let input = format!("face_forward({}, {})", normal.paste(), direction.paste());
-            if right {
-                Ok(())
-            } else {
-                Err(Broken::new(input, yours, expected, "the definition").looks_like(diagnosis))
+            let [n, d] = [normal, direction].map(|v| v.as_dvec3());
+            let expected = if n.dot(d) > 0.0 { -*normal } else { *normal };
+            // Where the rounding of the dot product decides, and at a right angle, both sides are accepted.
+            let open = n.dot(d).abs() <= 4.0 * U * n.abs().dot(d.abs());
+            if yours == expected || (open && yours == -expected) {
+                return Ok(());
             }
+            let input = format!("face_forward({}, {})", normal.paste(), direction.paste());
+            Err(Broken::new(input, yours, expected, "the definition").explained_by([
+                (yours == *normal, "you return the normal as it is, also if it points away from the viewer"),
+                (yours == -*normal && *normal == expected, "your normal points away from the viewer"),
+                (yours == -expected, "your normal points away from the viewer"),
+                (
+                    yours != expected
+                        && (yours.normalize_or_zero() - expected.normalize_or_zero()).length() < 1e-6,
+                    "the length of the normal must not change: do not normalize it",
+                ),
+            ]))
         })
     })
 }

@@ -1,83 +1,117 @@
 //! `nearest_root`: which of two roots is the hit.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::kit::RootQuery;
 use raykata::ray::Ray;
 
-pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> CheckResult {
-    // First test roots that are clearly out of range, because random roots shrink to an end of the range.
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let behind = "you return a root behind the ray, which ray.contains(t) refuses";
-    let beyond = "you return a root beyond t_max, which ray.contains(t) refuses";
-    for (roots, ray, diagnosis) in
-        [([-2.0, -1.0], ray, behind), ([2.0, 3.0], ray.with_range(0.0, 1.0), beyond)]
-    {
-        let query = RootQuery { roots, ray };
-        let yours = trial.kit.nearest_root(&[query])[0];
-        if yours.is_some() {
-            let broken = Broken::new(query.call("nearest_root"), yours, None::<f32>, "the definition");
-            return Err(broken.looks_like(Some(diagnosis)));
-        }
+fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
+    let ([first, second], ray) = (query.roots, query.ray);
+    let counting = |t: f32| ray.contains(t);
+    let expected = [first, second].into_iter().filter(|&t| counting(t)).reduce(f32::min);
+    if yours == expected {
+        return Ok(());
     }
+    let (near, far) = (first.min(second), first.max(second));
+    let among = |counts: &dyn Fn(f32) -> bool| [near, far].into_iter().find(|&t| counts(t));
+    // An if-else that sorts keeps this order for a NaN, because each comparison with it is false.
+    let sorts = |swap: bool| {
+        let sorted = if swap { [second, first] } else { [first, second] };
+        yours == Some(sorted[0]).filter(|&t| counting(t))
+            || yours == sorted.into_iter().find(|&t| counting(t))
+    };
+    let has_nan = first.is_nan() || second.is_nan();
+    let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
+    Err(broken.explained_by([
+        (yours.is_some_and(f32::is_nan), "you return NaN, which ray.contains(t) refuses"),
+        (yours.is_some_and(f32::is_infinite), "you return infinity, which ray.contains(t) refuses"),
+        (
+            yours == among(&|t| ray.t_min <= t && t <= ray.t_max),
+            "you return an end of the range; the range is open: t_min and t_max do not count",
+        ),
+        (
+            yours == among(&|t| ray.t_min < t && t <= ray.t_max) || yours == among(&|t| ray.t_min <= t && t < ray.t_max),
+            "you return an end of the range, but the range is open at both ends",
+        ),
+        (yours == among(&|t| t > ray.t_min), "you return a root beyond t_max, which ray.contains(t) refuses"),
+        (yours == among(&|t| t < ray.t_max), "you return a root before t_min, which ray.contains(t) refuses"),
+        (
+            yours == among(&|t| t > 0.0) && ray.t_min != 0.0,
+            "you ask t > 0 and not ray.contains(t): t_min and t_max count",
+        ),
+        (yours == Some(near), "you return the smaller root, also if ray.contains(t) refuses it"),
+        (
+            yours == Some(near).filter(|&t| counting(t)),
+            "you return None if the smaller root does not count, but the larger one may",
+        ),
+        (
+            !has_nan && yours == Some(first).filter(|&t| counting(t)),
+            "you only look at the first root, but they come in any order",
+        ),
+        (
+            !has_nan && yours == [first, second].into_iter().find(|&t| counting(t)),
+            "you take the first root that counts for the smaller one, but they come in any order",
+        ),
+        (
+            yours == Some(far).filter(|&t| counting(t)),
+            "you return the larger root, also if the smaller one counts",
+        ),
+        (
+            has_nan && (sorts(false) || sorts(true)),
+            "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max",
+        ),
+        (has_nan && yours.is_none(), "one root is NaN, but the other one may still count"),
+    ]))
+}
+
+pub(super) fn nearest_root_is_the_smaller_one_that_counts(trial: &Trial<'_>) -> CheckResult {
+    // Begin with roots that are clearly out of range, and with both orders: random roots shrink to an end of the range.
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    let drawn = [
+        RootQuery { roots: [-2.0, -1.0], ray },
+        RootQuery { roots: [2.0, 3.0], ray: ray.with_range(0.0, 1.0) },
+        RootQuery { roots: [3.0, 2.0], ray },
+        RootQuery { roots: [2.0, 3.0], ray },
+        RootQuery { roots: [0.5, 3.0], ray: ray.with_range(1.0, 4.0) },
+        RootQuery { roots: [3.0, 0.5], ray: ray.with_range(1.0, 4.0) },
+    ];
     let root = || (-24..=24i32).prop_map(|eighths| eighths as f32 / 8.0);
-    let inputs = (root(), root(), 0..=8i32, 0..=24i32).prop_map(|(first, second, start, length)| {
+    let coarse = (root(), root(), 0..=8i32, 0..=24i32).prop_map(|(first, second, start, length)| {
         let (t_min, length) = (start as f32 / 8.0, length as f32 / 8.0);
-        RootQuery {
-            roots: [first, second],
-            ray: Ray::new(Vec3::ZERO, Vec3::X).with_range(t_min, t_min + length),
-        }
+        RootQuery { roots: [first, second], ray: ray.with_range(t_min, t_min + length) }
     });
-    trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.nearest_root(queries), |query, yours| {
-            let [first, second] = query.roots;
-            let counting = [first, second].into_iter().filter(|&t| query.ray.contains(t));
-            let expected = counting.reduce(f32::min);
-            if yours == expected {
-                return Ok(());
-            }
-            let diagnosis = match (yours, expected) {
-                (Some(t), _) if t == query.ray.t_min || t == query.ray.t_max => {
-                    "you return an end of the range; the range is open: t_min and t_max do not count"
-                }
-                (Some(t), _) if !query.ray.contains(t) => "you return a root that ray.contains(t) refuses",
-                (None, Some(_)) if !query.ray.contains(first.min(second)) => {
-                    "you return None: the smaller root does not count, but the larger one does"
-                }
-                (Some(_), Some(_)) => {
-                    "you return the larger root (the roots are not sorted: they come in any order)"
-                }
-                _ => "",
+    // Roots of any size, and ranges that end at a root, one float before it or one float behind it.
+    let fine = (root(), root(), nasty::any_scale(), 0..7usize, 0..2usize).prop_map(
+        move |(first, second, scale, end, which)| {
+            let roots = [scale * first, scale * second];
+            let (range, _) = match end {
+                6 => ((0.0, f32::INFINITY), true),
+                end => nasty::ranges(roots[which])[end],
             };
-            Err(Broken::new(query.call("nearest_root"), yours, expected, "the definition")
-                .looks_like(known(diagnosis)))
-        })
+            RootQuery { roots, ray: ray.with_range(range.0, range.1) }
+        },
+    );
+    trial.forall_and(&drawn, 3000, prop_oneof![coarse, fine], |queries| {
+        compare(queries, trial.kit.nearest_root(queries), judge)
     })
 }
 
 pub(super) fn nearest_root_of_nan_is_the_other_one(trial: &Trial<'_>) -> CheckResult {
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    let cases = [
-        ([f32::NAN, f32::NAN], None),
-        ([f32::NAN, 2.0], Some(2.0)),
-        ([2.0, f32::NAN], Some(2.0)),
-        ([f32::NAN, -2.0], None),
-        ([f32::INFINITY, f32::NEG_INFINITY], None),
+    let roots = [
+        [f32::NAN, f32::NAN],
+        [f32::NAN, 2.0],
+        [2.0, f32::NAN],
+        [f32::NAN, -2.0],
+        [f32::INFINITY, f32::NEG_INFINITY],
+        [f32::NEG_INFINITY, 2.0],
+        [f32::INFINITY, 2.0],
     ];
-    let queries = cases.map(|(roots, _)| RootQuery { roots, ray });
-    for ((query, yours), (_, expected)) in queries.iter().zip(trial.kit.nearest_root(&queries)).zip(cases) {
-        if yours != expected {
-            let diagnosis = match yours {
-                Some(t) if !t.is_finite() => "you return NaN or infinity, which ray.contains(t) refuses",
-                _ => "comparisons with NaN are false: an if-else can put NaN in the place of the other root",
-            };
-            let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
-            return Err(broken.looks_like(Some(diagnosis)));
-        }
-    }
-    Ok(())
+    let queries = roots.map(|roots| RootQuery { roots, ray });
+    all_hold(compare(&queries, trial.kit.nearest_root(&queries), judge))
 }

@@ -1,12 +1,12 @@
-//! The two methods of intersecting a sphere: how the checks judge their answers, and the diagnosis of a wrong answer.
+//! The two methods of intersecting a sphere, and how the checks judge their answers.
 
+use crate::sphere_mistakes::mistakes;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::{self, Expected, Roots};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double::{self, Expected, U};
+use checks::judge::compare;
 use checks::paste::Arguments;
 use raykata::kit::{Kit, SphereQuery};
-use raykata::shape::Sphere;
 
 /// One of the two methods of intersecting a sphere.
 #[derive(Clone, Copy)]
@@ -21,101 +21,125 @@ pub(super) const ALGEBRAIC: SphereFunction =
 pub(super) const GEOMETRIC: SphereFunction =
     SphereFunction { name: "sphere_geometric", ask: |kit, queries| kit.sphere_geometric(queries) };
 
+/// The rounding errors that a check accepts.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Accepts {
+    /// Those of the formula on the slide in single precision, `b² - a c`, which cancels.
+    TheFormula,
+    /// A few roundings of the input, which a formula without cancellation keeps.
+    FewRoundings,
+}
+
+impl Accepts {
+    pub(super) fn expected(self, query: &SphereQuery) -> Expected {
+        match self {
+            Accepts::TheFormula => Quadratic::of(query).expected(query),
+            Accepts::FewRoundings => double::sphere(&query.ray, &query.sphere),
+        }
+    }
+}
+
 impl SphereFunction {
     /// Compares answers with the result in double precision.
-    pub(super) fn judge(self, trial: &Trial<'_>, queries: &[SphereQuery]) -> Vec<CheckResult> {
-        compare(queries, (self.ask)(trial.kit, queries), |query, yours| {
-            let expected = double::sphere(&query.ray, &query.sphere);
+    pub(super) fn judge(
+        self,
+        trial: &Trial<'_>,
+        queries: &[SphereQuery],
+        accepts: Accepts,
+    ) -> Vec<CheckResult> {
+        let answers = (self.ask)(trial.kit, queries);
+        // Many mistakes give None to many queries, but none gives it to all.
+        let is_constant = queries.len() > 1 && answers.iter().all(Option::is_none);
+        let loses_only = queries
+            .iter()
+            .zip(&answers)
+            .all(|(query, yours)| yours.is_none() || accepts.expected(query).accepts(*yours));
+        compare(queries, answers, |query, yours| {
+            let expected = accepts.expected(query);
             if expected.accepts(yours) {
                 return Ok(());
             }
+            let yours_in_words = format!("{yours:?}");
             let broken = Broken::with_texts(
                 query.call(self.name),
-                format!("{yours:?}"),
+                yours_in_words,
                 expected.words(),
                 "double precision",
             );
-            Err(broken.looks_like(sphere_diagnosis(query, yours, expected)))
+            Err(broken.explained_by(if is_constant {
+                Vec::new()
+            } else {
+                mistakes(query, yours, accepts, loses_only)
+            }))
         })
     }
 
     /// Compares answers with results that are known exactly.
-    pub(super) fn judge_exact(
-        self,
-        trial: &Trial<'_>,
-        cases: &[(SphereQuery, Option<f32>, &str)],
-    ) -> CheckResult {
+    pub(super) fn judge_exact(self, trial: &Trial<'_>, cases: &[(SphereQuery, Option<f32>)]) -> CheckResult {
         let queries: Vec<SphereQuery> = cases.iter().map(|case| case.0).collect();
-        for ((query, expected, diagnosis), yours) in cases.iter().zip((self.ask)(trial.kit, &queries)) {
-            if yours != *expected {
-                let broken = Broken::new(query.call(self.name), yours, expected, "exact arithmetic");
-                return Err(broken.looks_like(known(diagnosis)));
+        let answers = (self.ask)(trial.kit, &queries);
+        all_hold(compare(cases, answers, |(query, expected), yours| {
+            if yours == *expected {
+                return Ok(());
             }
-        }
-        Ok(())
+            let broken = Broken::new(query.call(self.name), yours, expected, "exact arithmetic");
+            Err(broken.explained_by(mistakes(query, yours, Accepts::TheFormula, false)))
+        }))
     }
 }
 
-/// Whether `t` is a root for a sphere whose radius is the square root of the true radius.
-fn takes_radius_for_its_square(query: &SphereQuery, t: f32) -> bool {
-    let sphere = Sphere { radius: query.sphere.radius.sqrt(), ..query.sphere };
-    double::sphere_roots(&query.ray, &sphere).is_ok_and(|roots| is_one_of(t, roots))
+/// The quadratic `a t² - 2 b t + c = 0` of a ray and a sphere.
+#[derive(Clone, Copy)]
+pub(super) struct Quadratic {
+    pub(super) a: f64,
+    pub(super) b: f64,
+    /// `b² - a c`.
+    pub(super) discriminant: f64,
+    /// The largest error of the discriminant in single precision: sixteen roundings of its largest terms.
+    pub(super) slack: f64,
 }
 
-fn is_one_of(t: f32, roots: Roots) -> bool {
-    [roots.near, roots.far].iter().any(|root| (f64::from(t) - root).abs() <= 1e-5 * root.abs())
-}
+impl Quadratic {
+    pub(super) fn of(query: &SphereQuery) -> Self {
+        Quadratic::with_radius(query, f64::from(query.sphere.radius))
+    }
 
-/// The diagnosis: a known mistake that gives this answer, if there is one.
-pub(super) fn sphere_diagnosis(
-    query: &SphereQuery,
-    yours: Option<f32>,
-    expected: Expected,
-) -> Option<&'static str> {
-    let roots = double::sphere_roots(&query.ray, &query.sphere).ok();
-    let length = f64::from(query.ray.direction.length());
-    let near = |t: f32, exact: f64, tolerance: f64| {
-        (f64::from(t) - exact).abs() <= 4.0 * tolerance + 1e-6 * exact.abs()
-    };
-    Some(match (yours, expected, roots) {
-        (Some(t), _, _) if t.is_nan() => "you return NaN: compare so that NaN fails",
-        (Some(t), _, _) if t <= query.ray.t_min => "you return a t at or before t_min: ask ray.contains(t)",
-        (Some(t), _, _) if t >= query.ray.t_max => "you return a t at or beyond t_max: ask ray.contains(t)",
-        (Some(t), Expected::Hit { t: exact, .. }, Some(roots))
-            if exact < roots.far && near(t, roots.far, roots.tolerance) =>
-        {
-            "you return the far root"
+    /// The same, with the errors of a formula that does not cancel.
+    pub(super) fn stable(query: &SphereQuery) -> Self {
+        let quadratic = Quadratic::of(query);
+        let distance = query.ray.origin.as_dvec3().distance(query.sphere.center.as_dvec3());
+        let radius = f64::from(query.sphere.radius);
+        // Sixteen roundings of the distance, which change r² - |f⊥|² near the rim by 2 r times as much.
+        let slack = 16.0 * U * (distance + radius);
+        Quadratic { slack: quadratic.a * (2.0 * radius + slack) * slack, ..quadratic }
+    }
+
+    pub(super) fn with_radius(query: &SphereQuery, radius: f64) -> Self {
+        let d = query.ray.direction.as_dvec3();
+        let f = query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3();
+        let (a, b, squared) = (d.length_squared(), -f.dot(d), radius * radius);
+        let discriminant = b * b - a * (f.length_squared() - squared);
+        let slack = 16.0 * U * (b * b + a * (f.length_squared() + squared));
+        Quadratic { a, b, discriminant, slack }
+    }
+
+    /// The largest error of a root in single precision.
+    pub(super) fn tolerance(&self) -> f64 {
+        let known = self.discriminant.max(0.0);
+        // The root of a discriminant that is too large by the slack, and the roundings of b.
+        (2.0 * ((known + self.slack).sqrt() - known.sqrt()) + 16.0 * U * self.b.abs()) / self.a
+    }
+
+    /// The answer for the range of the ray; open if single precision cannot decide.
+    fn expected(&self, query: &SphereQuery) -> Expected {
+        if self.discriminant.abs() <= self.slack {
+            return Expected::Open;
         }
-        (Some(t), Expected::Hit { t: exact, .. }, Some(roots))
-            if (length - 1.0).abs() > 1e-3 && near(t, exact * length, roots.tolerance) =>
-        {
-            "your t counts world units; it must count lengths of direction (which is no unit vector here)"
+        if self.discriminant < 0.0 {
+            return Expected::Miss;
         }
-        (Some(t), _, Some(roots))
-            if near(t, -roots.near, roots.tolerance) || near(t, -roots.far, roots.tolerance) =>
-        {
-            "the sign of t is wrong: you return the negative of a root"
-        }
-        (Some(t), _, _) if takes_radius_for_its_square(query, t) => "r stands where r² belongs",
-        (Some(t), _, Some(roots)) if near(t, 0.5 * (roots.near + roots.far), roots.tolerance) => {
-            "you return the t of the point nearest to the centre: half the chord is missing"
-        }
-        (None, Expected::Hit { .. }, Some(roots)) if roots.near < 0.0 => {
-            "the ray starts inside: the near root is behind it, and the far one counts (t_ca < 0 is not a miss)"
-        }
-        (_, Expected::Hit { .. }, _)
-            if f64::from((query.ray.origin - query.sphere.center).length())
-                > 100.0 * f64::from(query.sphere.radius) =>
-        {
-            "the sphere is small and far away: b² - a c (or L·L - t_ca²) cancels; use r² - |f⊥|²"
-        }
-        (Some(_), Expected::Hit { .. }, Some(_)) if (length - 1.0).abs() > 1e-3 => {
-            "direction is not a unit vector here: did you leave out a = d·d?"
-        }
-        (None, Expected::Hit { .. }, _) => {
-            "you return None for a ray that hits: is -r² left out, or the sign of b (or t_ca) wrong?"
-        }
-        (Some(_), Expected::Miss, _) => "you return a hit, but the ray misses the sphere",
-        _ => return None,
-    })
+        let (root, tolerance) = (self.discriminant.sqrt(), self.tolerance());
+        let [near, far] = [(self.b - root) / self.a, (self.b + root) / self.a];
+        double::first_in_range(&query.ray, &[near, far], tolerance)
+    }
 }

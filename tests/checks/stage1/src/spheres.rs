@@ -1,12 +1,13 @@
 //! Ray-sphere intersection: each check for both methods.
 
-use super::sphere_method::{ALGEBRAIC, GEOMETRIC, SphereFunction};
+use crate::sphere_method::{ALGEBRAIC, Accepts, GEOMETRIC, SphereFunction};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{direction, magnitude, point, ray, rough_point, sphere, unit};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Arguments, call};
-use glam::Vec3;
+use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
 use raykata::kit::SphereQuery;
 use raykata::ray::Ray;
@@ -34,15 +35,15 @@ for_both_methods! {
     sphere_algebraic_survives_invalid_numbers sphere_geometric_survives_invalid_numbers sphere_invalid_numbers;
 }
 
-pub(super) fn sphere_agrees(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    // First test the ray that the slide draws. Random rays that fail shrink to rays that start inside the sphere.
-    let drawn = SphereQuery {
-        ray: Ray::new(Vec3::new(-5.0, 1.0, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius: 2.0 },
-    };
-    method.judge(trial, &[drawn]).into_iter().collect::<CheckResult>()?;
-    let inputs = (ray(), sphere(), any::<bool>()).prop_map(|(ray, sphere, aim)| {
-        // Aim half of the rays at the sphere, because hardly any random ray hits it.
+fn query(origin: (f32, f32, f32), direction: Vec3, radius: f32) -> SphereQuery {
+    let ray = Ray::new(vec3(origin.0, origin.1, origin.2), direction);
+    SphereQuery { ray, sphere: Sphere { center: Vec3::ZERO, radius } }
+}
+
+/// Rays with unit directions from outside and inside of spheres near the origin; half of them are aimed at the sphere,
+/// because hardly any random ray hits it.
+fn ordinary() -> impl Strategy<Value = SphereQuery> + Clone {
+    (ray(), sphere(), any::<bool>()).prop_map(|(ray, sphere, aim)| {
         let to_center = sphere.center - ray.origin;
         let direction = if aim && to_center != Vec3::ZERO {
             (to_center.normalize() + 0.1 * ray.direction).normalize()
@@ -50,71 +51,128 @@ pub(super) fn sphere_agrees(trial: &Trial<'_>, method: SphereFunction) -> CheckR
             ray.direction
         };
         SphereQuery { ray: Ray::new(ray.origin, direction), sphere }
-    });
-    trial.forall(4000, inputs, |queries| method.judge(trial, queries))
-}
-
-pub(super) fn sphere_from_inside(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let inputs = (sphere(), unit(), unit(), 0..=7i32).prop_map(|(sphere, direction, out, eighths)| {
-        let origin = sphere.center + 0.9 * sphere.radius * eighths as f32 / 8.0 * out;
-        SphereQuery { ray: Ray::new(origin, direction), sphere }
-    });
-    trial.forall(2000, inputs, |queries| method.judge(trial, queries))
-}
-
-pub(super) fn sphere_scaled(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let inputs = (point(8), direction(), sphere())
-        .prop_map(|(origin, direction, sphere)| SphereQuery { ray: Ray::new(origin, direction), sphere });
-    trial.forall(2000, inputs.clone(), |queries| method.judge(trial, queries))?;
-
-    // A direction 1024 times as long makes t exactly 1024 times smaller, because powers of two change no rounding.
-    trial.forall(500, inputs, |queries| {
-        let longer = |query: &SphereQuery| SphereQuery {
-            ray: Ray::new(query.ray.origin, 1024.0 * query.ray.direction),
-            ..*query
-        };
-        let answers = (method.ask)(trial.kit, queries);
-        let queries: Vec<SphereQuery> = queries.iter().map(longer).collect();
-        let scaled = (method.ask)(trial.kit, &queries);
-        let pairs: Vec<_> = answers.into_iter().zip(scaled).collect();
-        compare(&queries, pairs, |query, (answer, scaled)| match answer.map(|t| t / 1024.0) == scaled {
-            true => Ok(()),
-            false => {
-                let expected = answer.map(|t| t / 1024.0);
-                let lost = scaled
-                    .is_none()
-                    .then_some("a fixed epsilon rejects this hit: t is small because direction is long");
-                let source = "the t for direction / 1024, divided by 1024";
-                Err(Broken::new(query.call(method.name), scaled, expected, source).looks_like(lost))
-            }
-        })
     })
 }
 
-pub(super) fn sphere_in_range(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let query = |t_min, t_max| SphereQuery {
-        ray: Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X).with_range(t_min, t_max),
-        sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
+/// The same scene with sizes times `size`, and a direction times `length`.
+fn scaled(query: &SphereQuery, size: f32, length: f32) -> SphereQuery {
+    let SphereQuery { ray, sphere } = *query;
+    SphereQuery {
+        ray: Ray { origin: size * ray.origin, direction: length * ray.direction, ..ray },
+        sphere: Sphere { center: size * sphere.center, radius: size * sphere.radius },
+    }
+}
+
+fn sphere_agrees(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    // Begin with rays like the one on the slide: random rays that fail shrink to rays that start inside the sphere. The
+    // second passes through the centre, and the third passes beside the sphere.
+    let drawn = [
+        query((-5.0, 1.0, 0.0), Vec3::X, 2.0),
+        query((-5.0, 0.0, 0.0), Vec3::X, 2.0),
+        query((-5.0, 3.0, 0.0), Vec3::X, 2.0),
+        query((0.0, 5.0, 0.5), Vec3::NEG_Y, 0.75),
+    ];
+    let sized = (ordinary(), nasty::scale(-16..=16)).prop_map(|(query, size)| scaled(&query, size, 1.0));
+    let inputs = prop_oneof![3 => ordinary(), 1 => sized];
+    trial.forall_and(&drawn, 4000, inputs, |queries| method.judge(trial, queries, Accepts::TheFormula))
+}
+
+fn sphere_from_inside(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    // From the centre to just inside the surface.
+    let depth = prop_oneof![
+        (0..=7i32).prop_map(|eighths| 0.9 * eighths as f32 / 8.0),
+        (3..=10i32).prop_map(|halvings| 1.0 - 0.5f32.powi(halvings)),
+    ];
+    let inputs = (sphere(), nasty::unit(), unit(), depth, nasty::scale(-16..=16)).prop_map(
+        |(sphere, direction, out, depth, size)| {
+            let origin = sphere.center + depth * sphere.radius * out;
+            scaled(&SphereQuery { ray: Ray::new(origin, direction), sphere }, size, 1.0)
+        },
+    );
+    let drawn = [query((1.0, 0.0, 0.0), Vec3::X, 2.0), query((1.0, 0.0, 0.0), Vec3::NEG_X, 2.0)];
+    trial.forall_and(&drawn, 2000, inputs, |queries| method.judge(trial, queries, Accepts::TheFormula))
+}
+
+fn sphere_scaled(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    let scales = (nasty::scale(-16..=16), nasty::scale(-16..=16));
+    let inputs =
+        (point(8), direction(), sphere(), scales).prop_map(|(origin, direction, sphere, (size, length))| {
+            scaled(&SphereQuery { ray: Ray::new(origin, direction), sphere }, size, length)
+        });
+    let drawn = [
+        query((-5.0, 1.0, 0.0), 2.0 * Vec3::X, 2.0),
+        query((-5.0, 1.0, 0.0), 0.25 * Vec3::X, 2.0),
+        query((1.0, 0.5, 0.0), 3.0 * Vec3::Y, 2.0),
+    ];
+    trial.forall_and(&drawn, 3000, inputs, |queries| method.judge(trial, queries, Accepts::TheFormula))
+}
+
+fn sphere_in_range(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    let ranged = |t_min, t_max| {
+        let query = query((-5.0, 0.0, 0.0), Vec3::X, 1.0);
+        SphereQuery { ray: query.ray.with_range(t_min, t_max), ..query }
     };
-    let behind = SphereQuery { ray: Ray::new(Vec3::new(5.0, 0.0, 0.0), Vec3::X), ..query(0.0, 1.0) };
+    let behind = query((5.0, 0.0, 0.0), Vec3::X, 1.0);
+    let infinite = f32::INFINITY;
     method.judge_exact(
         trial,
         &[
-            (behind, None, "the sphere is behind the ray: a negative t does not count"),
-            (query(0.0, f32::INFINITY), Some(4.0), ""),
-            (query(4.5, f32::INFINITY), Some(6.0), "the near root lies before t_min, but the far one counts"),
-            (query(0.0, 3.5), None, "the hit lies beyond t_max"),
-            (query(4.0, f32::INFINITY), Some(6.0), "the range is open: a hit at t_min does not count"),
-            (query(0.0, 4.0), None, "the range is open: a hit at t_max does not count"),
-            (query(4.5, 5.5), None, "both roots lie outside of the range"),
-            (query(6.5, f32::INFINITY), None, "both roots lie before t_min"),
+            (behind, None),
+            (ranged(0.0, infinite), Some(4.0)),
+            (ranged(4.5, infinite), Some(6.0)),
+            (ranged(0.0, 3.5), None),
+            (ranged(4.0, infinite), Some(6.0)),
+            (ranged(0.0, 4.0), None),
+            (ranged(4.5, 5.5), None),
+            (ranged(6.5, infinite), None),
         ],
-    )
+    )?;
+    trial.forall(500, ordinary(), |queries| judge_ends(trial, method, queries))
+}
+
+/// Asks again with ranges that end exactly at the answer, one float before it and one float behind it.
+fn judge_ends(trial: &Trial<'_>, method: SphereFunction, queries: &[SphereQuery]) -> Vec<CheckResult> {
+    let answers = (method.ask)(trial.kit, queries);
+    let mut outcomes = vec![Ok(()); queries.len()];
+    let hits = queries.iter().zip(answers).enumerate().filter_map(|(i, (query, t))| Some((i, query, t?)));
+    let cases: Vec<_> = hits
+        .filter(|(_, query, t)| query.ray.contains(*t))
+        .flat_map(|(i, query, t)| {
+            nasty::ranges(t).map(|((t_min, t_max), counts)| {
+                (i, SphereQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, t, counts)
+            })
+        })
+        .collect();
+    let asked: Vec<SphereQuery> = cases.iter().map(|case| case.1).collect();
+    for ((i, query, t, counts), yours) in cases.into_iter().zip((method.ask)(trial.kit, &asked)) {
+        // A hit that does not count may be followed by the far root, but only before t_max.
+        let right = match counts {
+            true => yours == Some(t),
+            false => yours.is_none_or(|far| far > t && query.ray.contains(far)),
+        };
+        if right {
+            continue;
+        }
+        let expected =
+            if counts { format!("Some({t:?})") } else { format!("not {t:?}, which is out of range") };
+        let source = "the t for the infinite ray";
+        let broken = Broken::with_texts(query.call(method.name), format!("{yours:?}"), expected, source);
+        let given = yours == Some(t);
+        outcomes[i] = outcomes[i].clone().and(Err(broken.explained_by([
+            (
+                given && (t == query.ray.t_min || t == query.ray.t_max),
+                "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)",
+            ),
+            (given && t > query.ray.t_max, "you return a t beyond t_max: ask ray.contains(t)"),
+            (given && t < query.ray.t_min, "you return a t before t_min: ask ray.contains(t)"),
+        ])));
+    }
+    outcomes
 }
 
 /// S2, S4: spheres of radius 0.001 to 1 at distances of 10 to 100,000. Each ray is aimed at its sphere.
-pub(super) fn sphere_far(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let inputs = (unit(), rough_point(0.55), magnitude(1.0, 5.0), magnitude(-3.0, 0.0)).prop_map(
+fn distant() -> impl Strategy<Value = SphereQuery> + Clone {
+    (unit(), rough_point(0.55), magnitude(1.0, 5.0), magnitude(-3.0, 0.0)).prop_map(
         |(away, at, distance, radius)| {
             let origin = distance * away;
             SphereQuery {
@@ -122,118 +180,121 @@ pub(super) fn sphere_far(trial: &Trial<'_>, method: SphereFunction) -> CheckResu
                 sphere: Sphere { center: Vec3::ZERO, radius },
             }
         },
-    );
-    trial.forall(4000, inputs, |queries| method.judge(trial, queries))?;
-    // S6: the ground is a sphere of radius 100,000, about 100 below the origins. No formula in single precision keeps
-    // all digits there, but the error must stay within the rounding of the inputs.
-    let ground = (rough_point(100.0), unit()).prop_map(|(origin, direction)| {
+    )
+}
+
+/// S6: the ground is a sphere of radius 100,000, about 100 below the origins. No formula in single precision keeps all digits
+/// there, but the error must stay within the rounding of the inputs.
+fn ground() -> impl Strategy<Value = SphereQuery> + Clone {
+    (rough_point(100.0), unit()).prop_map(|(origin, direction)| {
         let origin = origin + Vec3::new(0.0, 110.0, 0.0);
         let direction = Vec3::new(direction.x, -direction.y.abs() - 0.2, direction.z).normalize();
         SphereQuery {
             ray: Ray::new(origin, direction),
             sphere: Sphere { center: Vec3::new(0.0, -1e5, 0.0), radius: 1e5 },
         }
-    });
-    trial.forall(1000, ground, |queries| method.judge(trial, queries))
+    })
 }
 
-pub(super) fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let at_height = |y: f32| SphereQuery {
-        ray: Ray::new(Vec3::new(-5.0, y, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
-    };
-    method.judge_exact(
-        trial,
-        &[(at_height(1.0), Some(5.0), "the ray touches the sphere: a discriminant of exactly 0 is a hit")],
-    )?;
-    // One float higher the ray misses, one float lower it hits. Neither answer may be NaN.
-    let (above, below) = (at_height(1.0f32.next_up()), at_height(1.0f32.next_down()));
-    for (query, yours) in [above, below].iter().zip((method.ask)(trial.kit, &[above, below])) {
-        // One float of height moves the root by sqrt(2u), which is 3.5e-4, to either side of 5.
-        if yours.is_some_and(|t| !((t - 5.0).abs() < 1e-3)) {
-            return Err(Broken::with_texts(
-                query.call(method.name),
-                format!("{yours:?}"),
-                "None, or 5 ± 0.001",
-                "closed form",
-            ));
-        }
-    }
-    Ok(())
+fn sphere_far(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    let inputs = prop_oneof![4 => distant(), 1 => ground(), 2 => ordinary()];
+    trial.forall(6000, inputs, |queries| method.judge(trial, queries, Accepts::FewRoundings))
 }
 
-pub(super) fn sphere_on_surface(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    // The origin is exactly on the sphere: a ray outwards misses, and a ray inwards hits the far side.
-    let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
-    let from = |origin: Vec3, direction: Vec3| SphereQuery { ray: Ray::new(origin, direction), sphere };
+fn sphere_tangent(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    let at_height = |y: f32| query((-5.0, y, 0.0), Vec3::X, 1.0);
+    // Rays along each axis, at coordinates whose squares are exact.
     method.judge_exact(
         trial,
         &[
-            (
-                from(Vec3::X, Vec3::X),
-                None,
-                "the ray starts on the sphere and leaves it: t = 0 does not count",
-            ),
-            (
-                from(Vec3::NEG_Y, Vec3::NEG_Y),
-                None,
-                "the ray starts on the sphere and leaves it: t = 0 does not count",
-            ),
-            (
-                from(Vec3::X, Vec3::Y),
-                None,
-                "the ray starts on the sphere and runs along it: t = 0 does not count",
-            ),
-            (from(Vec3::X, Vec3::NEG_X), Some(2.0), "the ray starts on the sphere and hits its far side"),
-            (from(Vec3::NEG_Z, Vec3::Z), Some(2.0), "the ray starts on the sphere and hits its far side"),
+            (at_height(1.0), Some(5.0)),
+            (at_height(-1.0), Some(5.0)),
+            (query((0.0, -5.0, 2.0), Vec3::Y, 2.0), Some(5.0)),
+            (query((0.5, 0.0, 8.0), 2.0 * Vec3::NEG_Z, 0.5), Some(4.0)),
+            (at_height(0.0), Some(4.0)),
+            (at_height(1.5), None),
+        ],
+    )?;
+    // One float higher the ray misses, one float lower it hits. Neither answer may be NaN.
+    let queries = [at_height(1.0f32.next_up()), at_height(1.0f32.next_down())];
+    all_hold(compare(&queries, (method.ask)(trial.kit, &queries), |query, yours| {
+        // One float of height moves the root by sqrt(2u), which is 3.5e-4, to either side of 5.
+        if yours.is_none_or(|t| (t - 5.0).abs() < 1e-3) {
+            return Ok(());
+        }
+        let yours_in_words = format!("{yours:?}");
+        Err(Broken::with_texts(query.call(method.name), yours_in_words, "None, or 5 ± 0.001", "closed form")
+            .explained_by([(yours.is_some_and(f32::is_nan), "you return NaN: compare so that NaN fails")]))
+    }))
+}
+
+fn sphere_on_surface(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    // The origin is exactly on the sphere: a ray outwards misses, and a ray inwards hits the far side.
+    let from = |origin: Vec3, direction: Vec3| query(origin.into(), direction, 1.0);
+    method.judge_exact(
+        trial,
+        &[
+            (from(Vec3::X, Vec3::X), None),
+            (from(Vec3::NEG_Y, Vec3::NEG_Y), None),
+            (from(Vec3::X, Vec3::Y), None),
+            (from(Vec3::X, Vec3::NEG_X), Some(2.0)),
+            (from(Vec3::NEG_Z, Vec3::Z), Some(2.0)),
         ],
     )
 }
 
-pub(super) fn sphere_invalid_numbers(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
-    let ray = Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X);
-    let unit = Sphere { center: Vec3::ZERO, radius: 1.0 };
-    let nothing =
-        "radius 0, a zero direction, NaN or infinity: the sphere cannot be hit; compare so that NaN fails";
+fn sphere_invalid_numbers(trial: &Trial<'_>, method: SphereFunction) -> CheckResult {
+    let unit = query((-5.0, 0.0, 0.0), Vec3::X, 1.0);
+    let ray = unit.ray;
+    let of_radius = |radius| query((-5.0, 0.0, 0.0), Vec3::X, radius);
     method.judge_exact(
         trial,
         &[
-            (SphereQuery { ray, sphere: Sphere { radius: 0.0, ..unit } }, None, nothing),
-            (SphereQuery { ray, sphere: Sphere { radius: f32::NAN, ..unit } }, None, nothing),
-            (SphereQuery { ray, sphere: Sphere { center: Vec3::NAN, ..unit } }, None, nothing),
-            (SphereQuery { ray: Ray { direction: Vec3::NAN, ..ray }, sphere: unit }, None, nothing),
-            (SphereQuery { ray: Ray { direction: Vec3::ZERO, ..ray }, sphere: unit }, None, nothing),
-            (SphereQuery { ray: Ray { origin: Vec3::INFINITY, ..ray }, sphere: unit }, None, nothing),
+            (unit, Some(4.0)),
+            (of_radius(0.0), None),
+            (of_radius(-1.0), None),
+            (of_radius(f32::NAN), None),
+            (SphereQuery { sphere: Sphere { center: Vec3::NAN, ..unit.sphere }, ..unit }, None),
+            (SphereQuery { ray: Ray { direction: Vec3::NAN, ..ray }, ..unit }, None),
+            (SphereQuery { ray: Ray { direction: Vec3::ZERO, ..ray }, ..unit }, None),
+            (SphereQuery { ray: Ray { origin: Vec3::INFINITY, ..ray }, ..unit }, None),
         ],
     )
 }
 
 pub(super) fn sphere_normal_points_outwards(trial: &Trial<'_>) -> CheckResult {
-    let inputs =
-        (sphere(), unit()).prop_map(|(sphere, out)| (sphere, sphere.center + sphere.radius * out, out));
-    trial.forall(1000, inputs, |cases| {
-        let queries: Vec<_> = cases.iter().map(|(sphere, point, _)| (*sphere, *point)).collect();
-        compare(cases, trial.kit.sphere_normal(&queries), |(sphere, point, out), yours| {
-            // The point is rounded at the size of centre plus radius, and this error turns the normal.
-            let tolerance = 8.0 * f32::EPSILON * (1.0 + sphere.center.length() / sphere.radius);
-            let right = (yours - *out).length() <= tolerance
-                && (yours.length() - 1.0).abs() <= 4.0 * f32::EPSILON + tolerance;
-            let diagnosis = match () {
-                () if (yours + *out).length() <= tolerance => "your normal points inwards",
-                () if (yours - point.normalize_or_zero()).length() <= tolerance => {
-                    "you return the direction from the world's origin: subtract the centre first"
-                }
-                () if (yours.normalize_or_zero() - *out).length() <= tolerance => {
-                    "your normal is not of unit length"
-                }
-                () => "",
+    // All sizes together times 2⁻¹⁶ to 2¹⁶, and centres that are far away in comparison with the radius.
+    let inputs = (sphere(), nasty::unit(), nasty::scale(-16..=16), nasty::scale(-8..=0)).prop_map(
+        |(sphere, out, size, small)| {
+            let radius = small * sphere.radius;
+            let point = sphere.center + radius * out;
+            (Sphere { center: size * sphere.center, radius: size * radius }, size * point)
+        },
+    );
+    let at_the_origin = (Sphere { center: Vec3::ZERO, radius: 2.0 }, vec3(0.0, 2.0, 0.0));
+    let beside = (Sphere { center: vec3(1.0, 2.0, 3.0), radius: 2.0 }, vec3(1.0, 2.0, 1.0));
+    trial.forall_and(&[beside, at_the_origin], 1500, inputs, |queries| {
+        compare(queries, trial.kit.sphere_normal(queries), |(sphere, point), yours| {
+            let outwards = point.as_dvec3() - sphere.center.as_dvec3();
+            let near = |exact: DVec3| {
+                // The difference of both points is rounded, and so are its length and the quotient.
+                (yours.as_dvec3() - exact).length() <= 8.0 * f64::from(f32::EPSILON) * exact.length()
             };
-            let input = call("sphere_normal", &[&sphere.center, point]);
-            if right {
-                Ok(())
-            } else {
-                Err(Broken::new(input, yours, out, "closed form").looks_like(known(diagnosis)))
+            let expected = outwards.normalize_or_zero();
+            // Every unit vector is right at the centre.
+            let anywhere = outwards == DVec3::ZERO && (yours.length() - 1.0).abs() < 1e-6;
+            if near(expected) || anywhere {
+                return Ok(());
             }
+            let input = call("sphere_normal", &[&sphere.center, point]);
+            Err(Broken::new(input, yours, expected.as_vec3(), "double precision").explained_by([
+                (near(-expected), "your normal points inwards"),
+                (
+                    near(point.as_dvec3().normalize_or_zero()),
+                    "you return the direction from the world's origin: subtract the centre first",
+                ),
+                (near(outwards), "your normal is not of unit length"),
+            ]))
         })
     })
 }

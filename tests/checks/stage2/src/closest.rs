@@ -2,71 +2,94 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use glam::Vec3;
 use proptest::prelude::*;
-use raykata::kit::{SearchQuery, Table};
+use raykata::kit::{SearchAnswer, SearchQuery, Table};
 use raykata::ray::Ray;
 
-pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckResult {
-    // First test small tables, on which each mistake gives another answer.
-    for (primitives, diagnosis) in [
-        (vec![5.0], "the last primitive is left out: their numbers are 0..n"),
+type Hit = Option<(u32, f32)>;
+
+/// The answers of wrong searches to a table of primitives.
+fn mistakes(query: &SearchQuery, yours: Hit, tests: u64) -> [(bool, &'static str); 8] {
+    let all: Vec<(u32, f32)> = (0..).zip(query.table.primitives.iter().copied()).collect();
+    let hits = |entries: &[(u32, f32)]| -> Vec<(u32, f32)> {
+        entries.iter().copied().filter(|(_, t)| query.ray.contains(*t)).collect()
+    };
+    let counting = hits(&all);
+    let best = |hits: &[(u32, f32)]| {
+        hits.iter().copied().reduce(|best, hit| if hit.1 < best.1 { hit } else { best })
+    };
+    let later = counting.iter().copied().reduce(|best, hit| if hit.1 <= best.1 { hit } else { best });
+    let farthest = counting.iter().copied().reduce(|best, hit| if hit.1 > best.1 { hit } else { best });
+    let is = |hit: Hit| yours == hit;
+    let (without_last, without_first) = (&all[..all.len().saturating_sub(1)], all.get(1..).unwrap_or(&[]));
+    let stopped = tests < all.len() as u64;
+    [
         (
-            vec![1.0, 3.0],
-            "the closest hit is not kept: a later hit replaces it (do you assign it to another variable?)",
+            is(best(&hits(without_last))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
+            "the last primitive is left out: their numbers are 0..n_primitives",
         ),
-        (vec![3.0, 1.0], "the closest hit is not kept: the first hit stays, or ends the search"),
-    ] {
-        let ray = Ray::new(Vec3::ZERO, Vec3::X);
-        let table = Table { boxes: Vec::new(), primitives };
-        let query = SearchQuery { bvh: Default::default(), ray, table };
-        let expected = checks::tree::closest_in_table(&query);
-        let yours = trial.kit.brute_force(std::slice::from_ref(&query))[0].hit;
-        let yours = yours.map(|hit| (hit.primitive, hit.t));
-        if yours != expected {
-            let input = format!("primitives at t = {:?}", query.table.primitives);
-            return Err(Broken::new(input, yours, expected, "the smallest t in the table")
-                .looks_like(Some(diagnosis)));
-        }
+        (
+            is(best(&hits(without_first))) && (!is(best(&counting)) || tests + 1 == all.len() as u64),
+            "the first primitive is left out: their numbers are 0..n_primitives",
+        ),
+        (
+            is(counting.first().copied()) && stopped,
+            "the closest hit is not kept: the first hit ends the search, but a later primitive may be nearer",
+        ),
+        (
+            is(counting.first().copied()),
+            "the closest hit is not kept: the first hit stays, but a later primitive may be nearer",
+        ),
+        (
+            is(counting.last().copied()),
+            "the closest hit is not kept: each hit replaces the one before (do you assign it to another variable?)",
+        ),
+        (is(later), "of two hits at the same t the primitive with the smaller number wins"),
+        (is(farthest), "you keep the farther one of two hits"),
+        (is(best(&counting).map(|(_, t)| (0, t))), "you return primitive 0 in any case"),
+    ]
+}
+
+fn judge(query: &SearchQuery, yours: &SearchAnswer) -> CheckResult {
+    let expected = checks::tree::closest_in_table(query);
+    let n = query.table.primitives.len() as u64;
+    let input = format!(
+        "primitives at t = {:?}, ray range {:?}..{:?}",
+        query.table.primitives, query.ray.t_min, query.ray.t_max
+    );
+    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+    let tests = yours.counts.primitive_tests;
+    if found != expected {
+        return Err(Broken::new(input, found, expected, "the smallest t in the table")
+            .explained_by(mistakes(query, found, tests)));
     }
+    if tests == n {
+        return Ok(());
+    }
+    let describe = |n: u64| format!("{n} primitive tests");
+    let broken = Broken::with_texts(input, describe(tests), describe(n), "each primitive once");
+    // The hit is right here, but the same search may return a wrong one for another input.
+    Err(broken.explained_by(mistakes(query, found, tests)))
+}
+
+pub(super) fn brute_force_finds_the_closest_of_all(trial: &Trial<'_>) -> CheckResult {
+    // Begin with small tables, on which each mistake gives another answer.
+    let ray = Ray::new(Vec3::ZERO, Vec3::X);
+    let query = |primitives: &[f32]| SearchQuery {
+        bvh: Default::default(),
+        ray,
+        table: Table { boxes: Vec::new(), primitives: primitives.to_vec() },
+    };
+    let drawn = [query(&[5.0]), query(&[3.0, 1.0, 2.0]), query(&[1.0, 3.0]), query(&[4.0, 2.0, 2.0])];
     let t = prop_oneof![Just(f32::INFINITY), (0..=20i32).prop_map(|t| t as f32 / 2.0 - 1.0)];
-    let inputs = (prop::collection::vec(t, 0..12), 0..=4i32).prop_map(|(primitives, t_min)| {
-        let ray = Ray::new(Vec3::ZERO, Vec3::X).with_range(t_min as f32 / 2.0, 8.0);
-        SearchQuery { bvh: Default::default(), ray, table: Table { boxes: Vec::new(), primitives } }
-    });
-    trial.forall(2000, inputs, |queries| {
-        compare(queries, trial.kit.brute_force(queries), |query, yours| {
-            let expected = checks::tree::closest_in_table(query);
-            let n = query.table.primitives.len() as u64;
-            let input = format!(
-                "primitives at t = {:?}, ray range {:?}..{:?}",
-                query.table.primitives, query.ray.t_min, query.ray.t_max
-            );
-            let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-            if found != expected {
-                let diagnosis = match (found, expected) {
-                    (_, Some((primitive, _))) if u64::from(primitive) + 1 == n => {
-                        "the last primitive is left out"
-                    }
-                    (Some((_, yours)), Some((_, expected))) if yours == expected => {
-                        "of two hits at the same t the primitive with the smaller number wins"
-                    }
-                    (Some((_, yours)), Some((_, expected))) if yours > expected => {
-                        "the closest hit is not kept (do you assign it to another variable?)"
-                    }
-                    _ => "",
-                };
-                return Err(Broken::new(input, found, expected, "the smallest t in the table")
-                    .looks_like(known(diagnosis)));
-            }
-            let tests = yours.counts.primitive_tests;
-            let describe = |n: u64| format!("{n} primitive tests");
-            if tests == n {
-                Ok(())
-            } else {
-                Err(Broken::with_texts(input, describe(tests), describe(n), "each primitive once"))
-            }
-        })
+    let inputs =
+        (prop::collection::vec(t, 0..12), 0..=4i32, 0..=3i32).prop_map(move |(primitives, t_min, long)| {
+            let t_max = if long == 0 { f32::INFINITY } else { 8.0 };
+            SearchQuery { ray: ray.with_range(t_min as f32 / 2.0, t_max), ..query(&primitives) }
+        });
+    trial.forall_and(&drawn, 2000, inputs, |queries| {
+        compare(queries, trial.kit.brute_force(queries), |query, yours| judge(query, &yours))
     })
 }

@@ -1,7 +1,7 @@
 //! A table of hits and a picture, both compared with references.
 
-use super::attributes::octahedron;
 use super::method::{CHOICE, CRAMER, GRAM};
+use super::vertex_normals::octahedron;
 use checks::broken::CheckResult;
 use checks::{Trial, golden, picture};
 use glam::{Vec3, vec3};

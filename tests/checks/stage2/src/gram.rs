@@ -2,13 +2,84 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::double::{self};
+use checks::double::U;
 use checks::generate::{direction, point, triangle};
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::call;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
+use raykata::kit::GramScalars;
 use raykata::shape::Triangle;
+
+/// The scalars and their largest rounding errors.
+struct Exact {
+    uv: f64,
+    vv: f64,
+    uu: f64,
+    d: f64,
+    /// A dot product has three products and two sums.
+    slack: [f64; 3],
+    d_slack: f64,
+}
+
+fn exact(triangle: &Triangle) -> Exact {
+    let (u, v) = ((triangle.b - triangle.a).as_dvec3(), (triangle.c - triangle.a).as_dvec3());
+    let d = -u.cross(v).length_squared();
+    // The cross product has an error of about |u| |v| roundings, and D is its square.
+    let of_cross = 16.0 * U * u.length() * v.length();
+    Exact {
+        uv: u.dot(v),
+        vv: v.dot(v),
+        uu: u.dot(u),
+        d,
+        slack: [u.length() * v.length(), v.dot(v), u.dot(u)].map(|size| 8.0 * U * size),
+        d_slack: 2.0 * of_cross * d.abs().sqrt() + of_cross * of_cross,
+    }
+}
+
+fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
+    let exact = exact(triangle);
+    let near = |yours: f32, exact: f64, slack: f64| (f64::from(yours) - exact).abs() <= slack;
+    let [uv_slack, vv_slack, uu_slack] = exact.slack;
+    let products = |uv: f64, vv: f64, uu: f64| {
+        near(yours.uv, uv, uv_slack)
+            && near(yours.vv, vv, vv_slack.max(uu_slack))
+            && near(yours.uu, uu, uu_slack.max(vv_slack))
+    };
+    let products_are_right = near(yours.uv, exact.uv, uv_slack)
+        && near(yours.vv, exact.vv, vv_slack)
+        && near(yours.uu, exact.uu, uu_slack);
+    let d_is_right = yours.d <= 0.0 && near(yours.d, exact.d, exact.d_slack);
+    if products_are_right && d_is_right {
+        return Ok(());
+    }
+    let describe =
+        |uv: f64, vv: f64, uu: f64, d: f64| format!("u·v = {uv:?}, v·v = {vv:?}, u·u = {uu:?}, D = {d:e}");
+    let [uv, vv, uu, d] = [yours.uv, yours.vv, yours.uu, yours.d].map(f64::from);
+    let yours_in_words = describe(uv, vv, uu, d);
+    let expected = describe(exact.uv, exact.vv, exact.uu, exact.d);
+    let input = call("gram_scalars", &[triangle]);
+    // UV² and UU·VV are rounded before they are subtracted.
+    let cancels = near(yours.d, exact.d, 16.0 * U * (exact.uv * exact.uv + exact.uu * exact.vv));
+    let root = exact.d.abs().sqrt();
+    Err(Broken::with_texts(input, yours_in_words, expected, "double precision").explained_by([
+        (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
+        (
+            products(exact.uu, exact.vv, exact.uv) || products(exact.vv, exact.uv, exact.uu),
+            "u·v and another product look swapped",
+        ),
+        (
+            products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0,
+            "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²",
+        ),
+        (
+            products_are_right && near(yours.d, -root, 16.0 * U * root + exact.d_slack.sqrt()),
+            "D is -|u × v|², not squared in your answer",
+        ),
+        (products_are_right && cancels, "UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²"),
+    ]))
+}
 
 pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) -> CheckResult {
     let thin = (point(2), direction(), 1..=40i32).prop_map(|(a, u, thinness)| {
@@ -16,53 +87,15 @@ pub(super) fn gram_scalars_of_thin_triangles_keep_their_sign(trial: &Trial<'_>) 
         Triangle { a, b: a + u, c: a + (u + beside) }
     });
     // T3: the formula UV² - UU·VV gives 0 for the first triangle and +9.5e-7 for the second.
-    let slide_cases = [
+    let drawn = [
+        Triangle { a: Vec3::ONE, b: vec3(3.0, 1.0, 1.0), c: vec3(2.0, 4.0, 1.0) },
         Triangle { a: Vec3::ZERO, b: Vec3::X, c: vec3(2.0, 1e-4, 0.0) },
         Triangle { a: Vec3::ZERO, b: Vec3::ONE, c: vec3(1.0, 1.0, 1.0001) },
     ];
-    let judge = |triangles: &[Triangle]| {
-        compare(triangles, trial.kit.gram_scalars(triangles), |triangle, yours| {
-            let (u, v) = (triangle.b - triangle.a, triangle.c - triangle.a);
-            let exact = |p: Vec3, q: Vec3| p.as_dvec3().dot(q.as_dvec3());
-            let scalars = [
-                ("uv", yours.uv, exact(u, v), u.length() * v.length()),
-                ("vv", yours.vv, exact(v, v), v.dot(v)),
-                ("uu", yours.uu, exact(u, u), u.dot(u)),
-            ];
-            let input = call("gram_scalars", &[triangle]);
-            for (name, yours, exact, size) in scalars {
-                // A dot product has three products and two sums.
-                if (f64::from(yours) - exact).abs() > 8.0 * double::U * f64::from(size) {
-                    let (describe, expected) = (format!("{name} = {yours}"), format!("{name} = {exact}"));
-                    let other = scalars.iter().find(|(_, _, other, _)| {
-                        (f64::from(yours) - other).abs() <= 1e-6 * other.abs() && *other != exact
-                    });
-                    let swapped = other.map(|(other, ..)| format!("{name} and {other} look swapped"));
-                    return Err(
-                        Broken::with_texts(input, describe, expected, "double precision").looks_like(swapped)
-                    );
-                }
-            }
-            let d = -u.as_dvec3().cross(v.as_dvec3()).length_squared();
-            // The cross product has an error of about |u| |v| roundings, and D is its square.
-            let slack = 16.0 * double::U * f64::from(u.length() * v.length());
-            let tolerance = 2.0 * slack * d.abs().sqrt() + slack * slack;
-            if yours.d <= 0.0 && (f64::from(yours.d) - d).abs() <= tolerance {
-                return Ok(());
-            }
-            let broken = Broken::with_texts(
-                input,
-                format!("D = {:?}", yours.d),
-                format!("D = {d:e}"),
-                "double precision",
-            );
-            if (f64::from(yours.d) + d).abs() <= tolerance {
-                return Err(broken.looks_like(Some("the sign of D is wrong: it is UV² - UU·VV = -|u × v|²")));
-            }
-            Err(broken.looks_like(Some("UV² - UU·VV cancels for a thin triangle: compute D as -|u × v|²")))
-        })
-    };
-    judge(&slide_cases).into_iter().collect::<CheckResult>()?;
-    trial.forall(1000, triangle(), judge)?;
-    trial.forall(1000, thin, judge)
+    // D grows with the fourth power of the size, which must stay a normal number.
+    let sized = (prop_oneof![triangle(), thin], nasty::scale(-12..=24))
+        .prop_map(|(Triangle { a, b, c }, size)| Triangle { a: size * a, b: size * b, c: size * c });
+    trial.forall_and(&drawn, 2000, sized, |triangles| {
+        compare(triangles, trial.kit.gram_scalars(triangles), judge)
+    })
 }

@@ -2,10 +2,11 @@
 
 use super::method::aimed;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::{self};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double;
 use checks::generate::{point, triangle};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Arguments, call};
 use glam::{DVec3, Vec3, vec3};
 use proptest::prelude::*;
@@ -13,106 +14,251 @@ use raykata::kit::{InsideQuery, Kit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
-/// A point where a ray hits the plane of a triangle, with its barycentric coordinates `[α, β, γ]`.
-pub(super) fn plane_points() -> impl Strategy<Value = (InsideQuery, [f64; 3])> + Clone {
+/// A point in the plane of a triangle, with its barycentric coordinates `[α, β, γ]`, and whether they are exact.
+type Case = (InsideQuery, [f64; 3], bool);
+
+/// Points where a ray hits the plane of a triangle, rounded.
+fn plane_points() -> impl Strategy<Value = Case> + Clone {
     aimed(triangle(), point(8)).prop_map(|TriangleQuery { ray, triangle }| {
         let hit = double::triangle(&ray, &triangle);
         let point = double::triangle_point(&triangle, hit.beta, hit.gamma).as_vec3();
-        (InsideQuery { ray, point, triangle }, [1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma])
+        (InsideQuery { ray, point, triangle }, [1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma], false)
     })
+}
+
+/// Points exactly on an edge, at a corner, inside and outside: triangles whose sides are along two axes, or slanted within
+/// their plane, with coordinates that are small integers and with an area that is a power of two. All three tests compute
+/// such points without rounding.
+fn exact_points() -> impl Strategy<Value = Case> + Clone {
+    let slant = prop::sample::select(vec![0.0f32, 4.0, -4.0, 2.0]);
+    (nasty::lattice(3), 0..6usize, slant, -1..=5i32, -1..=5i32, nasty::lattice(6), nasty::scale(-8..=8))
+        .prop_map(|(a, order, slant, beta, gamma, origin, size)| {
+            let (x, y) = (order % 3, (order + 1) % 3);
+            let (mut u, mut v) = (Vec3::ZERO, Vec3::ZERO);
+            u[x] = 4.0;
+            (v[x], v[y]) = (slant, 4.0);
+            if order >= 3 {
+                std::mem::swap(&mut u, &mut v);
+            }
+            let (beta, gamma) = (beta as f32 / 4.0, gamma as f32 / 4.0);
+            let point = a + beta * u + gamma * v;
+            let triangle = Triangle { a: size * a, b: size * (a + u), c: size * (a + v) };
+            // The origin is beside the plane of the triangle.
+            let mut origin = origin;
+            origin[(order + 2) % 3] =
+                a[(order + 2) % 3] + if origin[(order + 2) % 3] < 0.0 { -4.0 } else { 4.0 };
+            let ray = Ray::new(size * origin, point - origin);
+            let [beta, gamma] = [beta, gamma].map(f64::from);
+            (InsideQuery { ray, point: size * point, triangle }, [1.0 - beta - gamma, beta, gamma], true)
+        })
 }
 
 /// Whether the point is inside. `None` if rounding may decide: the point is near a side, the triangle is thin, or
 /// the ray is nearly parallel to it.
-pub(super) fn clearly_inside(query: &InsideQuery, weights: [f64; 3]) -> Option<bool> {
+fn clearly_inside((query, weights, exact): &Case) -> Option<bool> {
     let Triangle { a, b, c } = query.triangle;
     let area = (b - a).cross(c - a).length();
     let thin = (b - a).length() * (c - a).length() / area;
     let facing = query.ray.direction.normalize().dot((b - a).cross(c - a) / area).abs();
-    let least = weights.into_iter().fold(f64::INFINITY, f64::min);
+    let least = weights.iter().copied().fold(f64::INFINITY, f64::min);
+    if *exact {
+        return Some(least >= 0.0);
+    }
     // A side and the ray's origin span no plane if the origin lies on the line of the side. For a grazing ray it nearly
     // does.
     let sharp = thin < 30.0 && facing > 0.05 && weights.iter().all(|w| w.is_finite());
     (sharp && least.abs() > 1e-3).then_some(least > 0.0)
 }
 
-pub(super) fn judge_inside(
+/// Known mistakes in inside tests I and II, each with whether it gives this answer.
+fn mistakes((query, weights, _): &Case, yours: bool) -> Vec<(bool, &'static str)> {
+    // The side opposite of corner a is b c, so the signs of α, β and γ are those of the sides bc, ca and ab.
+    let &[bc, ca, ab] = weights;
+    let Triangle { a, b, c } = query.triangle;
+    let ray = query.ray;
+    let faces = (b - a).as_dvec3().cross((c - a).as_dvec3()).dot(ray.direction.as_dvec3());
+    let all = |sides: &[f64]| sides.iter().all(|&s| s >= 0.0) || sides.iter().all(|&s| s <= 0.0);
+    let strictly = [bc, ca, ab].iter().all(|&s| s > 0.0);
+    let inside = all(&[bc, ca, ab]);
+    // SignedDistance(p, P - P0) for a plane through P0 = o: o is subtracted twice.
+    let [o, p] = [ray.origin, query.point].map(Vec3::as_dvec3);
+    let twice = |from: Vec3, to: Vec3| {
+        let normal = (from.as_dvec3() - o).cross(to.as_dvec3() - o);
+        normal.dot(p - o) - normal.dot(o)
+    };
+    let is_line = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o) == DVec3::ZERO;
+    let on_the_line = is_line(a, b) || is_line(b, c) || is_line(c, a);
+    vec![
+        (
+            on_the_line && !yours && inside,
+            "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
+        ),
+        (
+            yours == (inside && faces < 0.0) || yours == (inside && faces > 0.0),
+            "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0",
+        ),
+        (yours == strictly, "points on an edge are inside: compare with ≥ and ≤, not with > and <"),
+        (
+            yours == all(&[bc, ca]) || yours == all(&[ca, ab]) || yours == all(&[bc, ab]),
+            "a side left out: test all three sides",
+        ),
+        (
+            yours == all(&[-bc, ca, ab]) || yours == all(&[bc, -ca, ab]) || yours == all(&[bc, ca, -ab]),
+            "a side is turned around: go from a to b, from b to c and from c to a",
+        ),
+        (
+            yours == all(&[twice(a, b), twice(b, c), twice(c, a)]),
+            "is P0 subtracted twice? the plane goes through P0 = o, so the distance is n·(P - o)",
+        ),
+    ]
+}
+
+fn judge_inside(
     trial: &Trial<'_>,
     name: &'static str,
     ask: fn(&dyn Kit, &[InsideQuery]) -> Vec<bool>,
+    chosen: &[Case],
 ) -> CheckResult {
-    trial.forall(4000, plane_points(), |cases| {
+    let inputs = prop_oneof![3 => plane_points(), 1 => exact_points()];
+    trial.forall_and(chosen, 4000, inputs, |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
-        compare(cases, ask(trial.kit, &queries), |(query, weights), yours| {
-            match clearly_inside(query, *weights) {
-                Some(inside) if inside != yours => {
-                    let normal =
-                        (query.triangle.b - query.triangle.a).cross(query.triangle.c - query.triangle.a);
-                    let backwards = normal.dot(query.ray.direction) > 0.0;
-                    let diagnosis = match yours {
-                        false if backwards => {
-                            "seen from behind, all three signs change: accept all ≥ 0 or all ≤ 0"
-                        }
-                        false => "for a point inside, all three signs are equal: accept all ≥ 0 or all ≤ 0",
-                        true => "a point beyond a side: is P0 subtracted twice, or a side left out or turned around?",
-                    };
-                    Err(Broken::new(query.call(name), yours, inside, "double precision")
-                        .looks_like(Some(diagnosis)))
-                }
-                _ => Ok(()),
+        compare(cases, ask(trial.kit, &queries), |case, yours| match clearly_inside(case) {
+            Some(inside) if inside != yours => {
+                Err(Broken::new(case.0.call(name), yours, inside, "double precision")
+                    .explained_by(mistakes(case, yours)))
             }
+            _ => Ok(()),
         })
-    })
+    })?;
+    // A NaN gives `false`; the same query without it gives `true`.
+    let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
+    let inside =
+        InsideQuery { ray: Ray::new(vec3(1.0, 1.0, 2.0), Vec3::NEG_Z), point: vec3(1.0, 1.0, 0.0), triangle };
+    let queries = [
+        inside,
+        InsideQuery { point: Vec3::NAN, ..inside },
+        InsideQuery { triangle: Triangle { a: Vec3::NAN, ..triangle }, ..inside },
+        InsideQuery { triangle: Triangle { c: Vec3::NAN, ..triangle }, ..inside },
+    ];
+    let expected = [true, false, false, false];
+    let answers = ask(trial.kit, &queries);
+    let judged = queries.iter().zip(answers).zip(expected).map(|((query, yours), expected)| {
+        if yours == expected {
+            return Ok(());
+        }
+        Err(Broken::new(query.call(name), yours, expected, "the definition")
+            .explained_by([(yours, "a NaN is not inside: compare so that NaN fails")]))
+    });
+    all_hold(judged.collect())
 }
 
 pub(super) fn inside_by_planes_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    judge_inside(trial, "inside_by_planes", |kit, queries| kit.inside_by_planes(queries))?;
     // T10: the ray's origin lies on the line of a side, so that plane's normal is 0, and normalizing it gives NaN.
     let triangle = Triangle { a: Vec3::ZERO, b: vec3(4.0, 0.0, 0.0), c: vec3(0.0, 4.0, 0.0) };
-    let eye = vec3(-4.0, 0.0, 0.0);
-    let query = InsideQuery { ray: Ray::new(eye, vec3(5.0, 0.0, 0.0)), point: vec3(1.0, 0.0, 0.0), triangle };
-    match trial.kit.inside_by_planes(&[query])[..] {
-        [true] => Ok(()),
-        ref yours => Err(Broken::new(query.call("inside_by_planes"), yours, [true], "exact arithmetic")
-            .looks_like(Some(
-                "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
-            ))),
-    }
+    let ray = Ray::new(vec3(-4.0, 0.0, 0.0), vec3(5.0, 0.0, 0.0));
+    let on_the_line = (InsideQuery { ray, point: vec3(1.0, 0.0, 0.0), triangle }, [0.75, 0.25, 0.0], true);
+    judge_inside(trial, "inside_by_planes", |kit, queries| kit.inside_by_planes(queries), &[on_the_line])
 }
 
 pub(super) fn inside_by_direction_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    judge_inside(trial, "inside_by_direction", |kit, queries| kit.inside_by_direction(queries))
+    judge_inside(trial, "inside_by_direction", |kit, queries| kit.inside_by_direction(queries), &[])
+}
+
+/// Known mistakes in inside test III, each with whether it gives this answer.
+fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static str)> {
+    let exact = DVec3::from_array(*weights);
+    let DVec3 { x: alpha, y: beta, z: gamma } = exact;
+    let near =
+        |expected: DVec3| yours.is_some_and(|yours| (yours.as_dvec3() - expected).abs().max_element() < 1e-3);
+    let is = |values: DVec3, inside: bool| if inside { near(values) } else { yours.is_none() };
+    let inside = exact.min_element() >= 0.0;
+    let absolute = exact.abs();
+    let sum = absolute.element_sum();
+    vec![
+        (
+            is(0.5 * exact, inside) || is(2.0 * exact, inside),
+            "your coordinates do not add up to 1: |u × v| is twice the area of the triangle",
+        ),
+        (
+            is(DVec3::new(gamma, beta, alpha), inside)
+                || is(DVec3::new(beta, gamma, alpha), inside)
+                || is(DVec3::new(gamma, alpha, beta), inside)
+                || is(DVec3::new(alpha, gamma, beta), inside)
+                || is(DVec3::new(beta, alpha, gamma), inside),
+            "your values belong to other corners: α to a, β to b, γ to c (the slide differs)",
+        ),
+        (
+            is(absolute, absolute.x <= 1.0 && absolute.y <= 1.0 && absolute.x + absolute.y <= 1.0)
+                || is(absolute, absolute.max_element() <= 1.0)
+                || is(absolute, true)
+                || is(absolute / sum, true),
+            "areas without a sign cannot tell inside from outside: use signed areas",
+        ),
+        (is(exact, true), "you return coordinates for a point outside: None if one of them is negative"),
+        (is(exact, exact.min_element() > 0.0), "points on an edge are inside: compare with ≥, not with >"),
+        (
+            is(exact, beta >= 0.0 && gamma >= 0.0)
+                || is(exact, alpha >= 0.0 && beta >= 0.0)
+                || is(exact, alpha >= 0.0 && gamma >= 0.0),
+            "one of the three coordinates is not tested",
+        ),
+    ]
+}
+
+fn judge_areas((query, weights, exact): &Case, yours: Option<Vec3>) -> CheckResult {
+    let Some(inside) = clearly_inside(&(*query, *weights, *exact)) else { return Ok(()) };
+    let coordinates = DVec3::from_array(*weights);
+    // The point is rounded at its own size. A thin triangle magnifies this error, here up to 30 times.
+    let near = yours.is_none_or(|yours| (yours.as_dvec3() - coordinates).abs().max_element() < 1e-3);
+    if yours.is_some() == inside && near {
+        return Ok(());
+    }
+    let expected = inside.then_some(coordinates.as_vec3());
+    let input = call("inside_by_areas", &[&query.point, &query.triangle]);
+    Err(Broken::new(input, yours, expected, "double precision").explained_by(area_mistakes(weights, yours)))
 }
 
 pub(super) fn inside_by_areas_gives_barycentric_coordinates(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(4000, plane_points(), |cases| {
+    let inputs = prop_oneof![3 => plane_points(), 1 => exact_points()];
+    trial.forall(4000, inputs, |cases| {
         let queries: Vec<InsideQuery> = cases.iter().map(|case| case.0).collect();
-        compare(cases, trial.kit.inside_by_areas(&queries), |(query, weights), yours| {
-            let Some(inside) = clearly_inside(query, *weights) else { return Ok(()) };
-            let exact = DVec3::from_array(*weights);
-            // The point is rounded at its own size. A thin triangle magnifies this error, here up to 30 times.
-            let right = yours.is_none_or(|yours| (yours.as_dvec3() - exact).abs().max_element() < 1e-3);
-            if yours.is_some() == inside && right {
-                return Ok(());
-            }
-            let diagnosis = match yours {
-                Some(yours) if inside && (yours.element_sum() - 1.0).abs() > 1e-2 => {
-                    "your coordinates do not add up to 1: |u × v| is twice the area of the triangle"
-                }
-                Some(_) if !inside => {
-                    "areas without a sign cannot tell inside from outside: use signed areas"
-                }
-                Some(yours)
-                    if (yours.as_dvec3().truncate() - exact.truncate()).length() > 1e-3
-                        && (yours.as_dvec3() - DVec3::new(exact.z, exact.y, exact.x)).length() < 1e-3 =>
-                {
-                    "your values belong to other corners: α to a, β to b, γ to c (the slide differs)"
-                }
-                _ => "",
-            };
-            let expected = inside.then_some(exact.as_vec3());
-            let input = call("inside_by_areas", &[&query.point, &query.triangle]);
-            Err(Broken::new(input, yours, expected, "double precision").looks_like(known(diagnosis)))
-        })
-    })
+        compare(cases, trial.kit.inside_by_areas(&queries), judge_areas)
+    })?;
+    // A triangle without area and a NaN give None; the same query with an area does not.
+    let ray = Ray::new(Vec3::Z, Vec3::NEG_Z);
+    let query = |point, a, b, c| InsideQuery { ray, point, triangle: Triangle { a, b, c } };
+    let p = vec3(0.25, 0.5, 0.0);
+    // T15: both other coordinates are at least 0 and their sum is rounded to 1, but 1 - β - γ is -2⁻²⁵.
+    let beyond = vec3(0.75, 0.25f32.next_up(), 0.0);
+    let cases = [
+        (query(p, Vec3::ZERO, Vec3::X, Vec3::Y), true),
+        (query(p, p, p, p), false),
+        (query(p, Vec3::ZERO, p, 2.0 * p), false),
+        (query(Vec3::NAN, Vec3::ZERO, Vec3::X, Vec3::Y), false),
+        (query(p, Vec3::NAN, Vec3::X, Vec3::Y), false),
+        (query(p, Vec3::ZERO, Vec3::X, Vec3::NAN), false),
+        (query(beyond, Vec3::ZERO, Vec3::X, Vec3::Y), true),
+    ];
+    let answers = trial.kit.inside_by_areas(&cases.map(|case| case.0));
+    let judged = cases.iter().zip(answers).map(|((query, has_area), yours)| {
+        let negative = yours.is_some_and(|yours| !(yours.min_element() >= 0.0));
+        let right = match has_area {
+            // Rounding decides whether the point beyond the side is inside.
+            true => !negative && (yours.is_some() || query.point == beyond),
+            false => yours.is_none(),
+        };
+        if right {
+            return Ok(());
+        }
+        let input = call("inside_by_areas", &[&query.point, &query.triangle]);
+        let expected = if *has_area { "coordinates of at least 0" } else { "None" };
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+            (!has_area && yours.is_some(), "a triangle without area and a NaN give None: compare so that NaN fails"),
+            (
+                *has_area && yours.is_some_and(|yours| yours.min_element() < 0.0 && yours.min_element() > -1e-6),
+                "1 - β - γ may be slightly negative, although β + γ is rounded to 1: test it or clamp it to 0",
+            ),
+        ]))
+    });
+    all_hold(judged.collect())
 }

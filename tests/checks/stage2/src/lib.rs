@@ -1,6 +1,6 @@
 //! Stage 2: triangles and meshes.
 //!
-//! `meet` (checks for all three methods; `method` judges the answers) · `gram` · `inside` · `attributes` ·
+//! `meet` (checks for all three methods; `method` judges the answers, `triangle_mistakes` names mistakes) · `gram` · `inside` · `attributes` · `vertex_normals` ·
 //! `closest` · `golden`
 
 mod attributes;
@@ -10,11 +10,10 @@ mod gram;
 mod inside;
 mod meet;
 mod method;
+mod triangle_mistakes;
+mod vertex_normals;
 
-use attributes::{
-    face_normal_has_unit_length_at_any_size, interpolation_weighs_the_corners,
-    vertex_normals_average_their_faces, vertex_normals_that_cancel_are_still_normals,
-};
+use attributes::{face_normal_has_unit_length_at_any_size, interpolation_weighs_the_corners};
 use closest::brute_force_finds_the_closest_of_all;
 use golden::{hit_table_of_a_fan, picture_of_an_octahedron};
 use gram::gram_scalars_of_thin_triangles_keep_their_sign;
@@ -36,6 +35,7 @@ use meet::{
     triangle_gram_knows_inside_from_outside, triangle_gram_misses_degenerate_triangles,
     triangle_gram_owns_its_edges, triangle_gram_respects_the_range,
 };
+use vertex_normals::{vertex_normals_average_their_faces, vertex_normals_that_cancel_are_still_normals};
 
 checks::stage! { ($ crate) 2 [
     triangle_cramer_agrees_with_double_precision

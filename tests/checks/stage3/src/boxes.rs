@@ -1,33 +1,48 @@
 //! Boxes: bounds of triangles and spheres, union, centroid, surface area.
 
 use checks::broken::{Broken, CheckResult};
-use checks::double::{self};
+use checks::double;
 use checks::generate::{magnitude, point, rough_point, sphere, triangle};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Paste, call};
 use checks::{Trial, tree};
 use glam::Vec3;
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
-use raykata::shape::Sphere;
+use raykata::shape::{Sphere, Triangle};
 
 pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, triangle(), |triangles| {
+    let sized = (triangle(), nasty::any_scale()).prop_map(|(t, size)| Triangle {
+        a: size * t.a,
+        b: size * t.b,
+        c: size * t.c,
+    });
+    trial.forall(1000, sized, |triangles| {
         compare(triangles, trial.kit.triangle_bounds(triangles), |triangle, yours| {
             let corner = |p: Vec3| Aabb::new(p, p);
             let expected = tree::around(&[corner(triangle.a), corner(triangle.b), corner(triangle.c)]);
-            let diagnosis = match () {
-                () if yours.contains_box(&expected) => {
-                    "you return a padded box: boxes are closed, so even a flat box needs no padding"
-                }
-                () if expected.contains_box(&yours) => "your box leaves out a corner",
-                () => "",
-            };
             let input = call("triangle_bounds", &[triangle]);
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+                let two = |p: Vec3, q: Vec3| tree::around(&[corner(p), corner(q)]);
+                let Triangle { a, b, c } = *triangle;
+                Err(Broken::new(input, yours, expected, "closed form").explained_by([
+                    (
+                        [two(a, b), two(b, c), two(c, a)].contains(&yours),
+                        "your box leaves out a corner: it contains only two of them",
+                    ),
+                    (
+                        yours.contains_box(&expected) && !yours.is_empty(),
+                        "you return a padded box: boxes are closed, so even a flat box needs no padding",
+                    ),
+                    (
+                        yours == Aabb::new(expected.max, expected.min),
+                        "min and max are exchanged: min is the smaller one on each axis",
+                    ),
+                    (yours == Aabb::new(a, b) || yours == Aabb::new(a, c), "min and max are corners of the triangle in your box: take the smallest and the largest coordinate on each axis"),
+                ]))
             }
         })
     })
@@ -36,7 +51,9 @@ pub(super) fn bounds_of_a_triangle_are_tight(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
     let spheres =
         (rough_point(100.0), magnitude(-3.0, 3.0)).prop_map(|(center, radius)| Sphere { center, radius });
-    let spheres = prop_oneof![sphere(), spheres];
+    let sized = (sphere(), nasty::any_scale())
+        .prop_map(|(sphere, size)| Sphere { center: size * sphere.center, radius: size * sphere.radius });
+    let spheres = prop_oneof![sphere(), spheres, sized];
     trial.forall(1000, spheres, |spheres| {
         compare(spheres, trial.kit.sphere_bounds(spheres), |sphere, yours| {
             let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
@@ -50,19 +67,32 @@ pub(super) fn bounds_of_a_sphere_hold_it(trial: &Trial<'_>) -> CheckResult {
                 sphere.center.paste(),
                 sphere.radius.paste()
             );
-            let diagnosis = match yours.max - yours.min {
-                size if (size - 2.0 * sphere.radius).abs().max_element() < 1e-3 * sphere.radius => {
-                    "your box has the right size but the wrong place: go one radius from the centre"
-                }
-                size if size.max_element() < 2.0 * sphere.radius => {
-                    "your box is too small: go one whole radius from the centre to each side"
-                }
-                _ => "",
-            };
             if right {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+                let is = |low: glam::DVec3, high: glam::DVec3| near(yours.min, low) && near(yours.max, high);
+                Err(Broken::new(input, yours, expected, "closed form").explained_by([
+                    (
+                        is(glam::DVec3::splat(-radius), glam::DVec3::splat(radius)),
+                        "your box has the right size but the wrong place: go one radius from the centre",
+                    ),
+                    (
+                        is(center - 0.5 * radius, center + 0.5 * radius),
+                        "your box is too small: go one whole radius from the centre to each side",
+                    ),
+                    (
+                        is(center, center + radius),
+                        "your box begins at the centre: go one radius to each side",
+                    ),
+                    (
+                        is(center, center + 2.0 * radius),
+                        "your box begins at the centre: go one radius to each side of it",
+                    ),
+                    (
+                        is(center - 2.0 * radius, center + 2.0 * radius),
+                        "your box is too large: go one radius from the centre to each side, not the diameter",
+                    ),
+                ]))
             }
         })
     })
@@ -74,71 +104,89 @@ pub(super) fn aabb() -> impl Strategy<Value = Aabb> + Clone {
 }
 
 pub(super) fn union_holds_both_boxes(trial: &Trial<'_>) -> CheckResult {
-    let boxes = || prop_oneof![9 => aabb(), 1 => Just(Aabb::EMPTY)];
-    trial.forall(1000, (boxes(), boxes()), |pairs| {
+    let sized = || (aabb(), nasty::any_scale()).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
+    let boxes = || prop_oneof![9 => sized(), 1 => Just(Aabb::EMPTY)];
+    let (first, second) = (Aabb::new(Vec3::ONE, 2.0 * Vec3::ONE), Aabb::new(Vec3::ZERO, Vec3::splat(0.5)));
+    trial.forall_and(&[(first, second), (second, first)], 1000, (boxes(), boxes()), |pairs| {
         compare(pairs, trial.kit.union(pairs), |(first, second), yours| {
             let expected = tree::around([first, second]);
             let input = call("union", &[first, second]);
-            let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
-            let diagnosis = match () {
-                () if first.is_empty() != second.is_empty() => {
-                    "the empty box (inf, -inf) must change nothing"
-                }
-                () if yours == shared => {
-                    "you return what both boxes share: take the smaller min and the larger max"
-                }
-                () => "",
-            };
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+                let shared = Aabb::new(first.min.max(second.min), first.max.min(second.max));
+                let origin = Aabb::new(Vec3::ZERO, Vec3::ZERO);
+                let or_origin = |b: &Aabb| if b.is_empty() { origin } else { *b };
+                Err(Broken::new(input, yours, expected, "closed form").explained_by([
+                    (
+                        first.is_empty() != second.is_empty()
+                            && yours == tree::around([&or_origin(first), &or_origin(second)]),
+                        "the empty box (inf, -inf) must change nothing: you take it for a box at the origin",
+                    ),
+                    (first.is_empty() != second.is_empty(), "the empty box (inf, -inf) must change nothing"),
+                    (
+                        yours == shared,
+                        "you return what both boxes share: take the smaller min and the larger max",
+                    ),
+                    (yours == *first, "you return the first box"),
+                    (yours == *second, "you return the second box"),
+                ]))
             }
         })
     })
 }
 
 pub(super) fn centroid_is_the_middle(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(1000, aabb(), |boxes| {
+    let sized = (aabb(), nasty::any_scale()).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
+    trial.forall(1000, sized, |boxes| {
         compare(boxes, trial.kit.centroid(boxes), |bounds, yours| {
-            // Exact, because all coordinates are multiples of 1/8.
+            // Exact, because all coordinates are multiples of 1/8 times a power of two.
             let expected = 0.5 * (bounds.min + bounds.max);
             let input = call("centroid", &[bounds]);
-            let diagnosis = match () {
-                () if yours == bounds.min + bounds.max => "you return min + max, not halved",
-                () if yours == 0.5 * (bounds.max - bounds.min) => {
-                    "you return half the size of the box, not its middle"
-                }
-                () => "",
-            };
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+                Err(Broken::new(input, yours, expected, "closed form").explained_by([
+                    (yours == bounds.min + bounds.max, "you return min + max, not halved"),
+                    (
+                        yours == 0.5 * (bounds.max - bounds.min),
+                        "you return half the size of the box, not its middle",
+                    ),
+                    (yours == bounds.max - bounds.min, "you return the size of the box, not its middle"),
+                    (
+                        yours == bounds.min || yours == bounds.max,
+                        "you return a corner of the box, not its middle",
+                    ),
+                ]))
             }
         })
     })
 }
 
 pub(super) fn surface_area_counts_six_faces(trial: &Trial<'_>) -> CheckResult {
-    let boxes = prop_oneof![9 => aabb(), 1 => Just(Aabb::EMPTY)];
-    trial.forall(1000, boxes, |boxes| {
+    let sized = (aabb(), nasty::scale(-50..=50)).prop_map(|(b, size)| Aabb::new(size * b.min, size * b.max));
+    let cube = Aabb::new(Vec3::ZERO, Vec3::new(2.0, 3.0, 5.0));
+    let boxes = prop_oneof![9 => sized, 1 => Just(Aabb::EMPTY)];
+    trial.forall_and(&[cube], 1000, boxes, |boxes| {
         compare(boxes, trial.kit.surface_area(boxes), |bounds, yours| {
-            // Exact, because the products are multiples of 1/64.
+            // Exact, because the products are multiples of 1/64 times a power of two.
             let expected = 2.0 * tree::half_area(bounds) as f32;
-            let diagnosis = match yours {
-                _ if bounds.is_empty() => "an empty box has no faces: return 0 (its size max - min is -inf)",
-                _ if yours == (bounds.max - bounds.min).element_product() => {
-                    "you return the volume, not the area"
-                }
-                _ if 2.0 * yours == expected => "you return half of the area: each face counts twice",
-                _ => "",
-            };
             let input = call("surface_area", &[bounds]);
             if yours == expected {
                 Ok(())
             } else {
-                Err(Broken::new(input, yours, expected, "closed form").looks_like(known(diagnosis)))
+                let size = bounds.max - bounds.min;
+                let near = |area: f32| (yours - area).abs() <= 1e-6 * area.abs();
+                Err(Broken::new(input, yours, expected, "closed form").explained_by([
+                    (bounds.is_empty(), "an empty box has no faces: return 0 (its size max - min is -inf)"),
+                    (near(size.element_product()), "you return the volume, not the area"),
+                    (near(0.5 * expected), "you return half of the area: each face counts twice"),
+                    (
+                        near(2.0 * expected),
+                        "you return twice the area: each face counts twice, not four times",
+                    ),
+                    (near(size.length_squared()), "you return the squared diagonal, not the area"),
+                ]))
             }
         })
     })

@@ -3,7 +3,7 @@
 use super::divided::boxes;
 use super::slabs::UNIT_BOX;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::Arguments;
 use checks::{Trial, golden, tree};
 use glam::{Vec3, vec3};
@@ -18,31 +18,28 @@ pub(super) fn judge_builds(trial: &Trial<'_>, queries: &[BuildQuery]) -> Vec<Che
         match tree::fault(&yours, &query.bounds, query.leaf_size) {
             None => Ok(()),
             Some((yours, expected)) => {
-                let diagnosis = build_diagnosis(&yours);
+                let mistakes = build_mistakes(&yours);
                 let broken =
                     Broken::with_texts(query.call("build"), yours, expected, "the invariants of a hierarchy");
-                Err(broken.looks_like(known(diagnosis)))
+                Err(broken.explained_by(mistakes))
             }
         }
     })
 }
 
-/// The mistake that gives a tree this fault.
-fn build_diagnosis(fault: &str) -> &'static str {
-    match fault {
-        _ if fault.ends_with("in 0 leaves") => {
-            "a primitive was left out: both halves together must hold all of them"
-        }
-        _ if fault.ends_with("leaves") => {
-            "a primitive is in both halves: the right half begins where the left half ends"
-        }
-        _ if fault.contains(" holds ") => {
-            "a leaf must hold 1 to leaf_size primitives: stop only at n ≤ leaf_size"
-        }
-        _ if fault.contains("sticks out") => "the box of a node must contain everything below it",
-        _ if fault.ends_with("nodes") => "without primitives there is nothing to build: add no node",
-        _ => "",
-    }
+/// The faults of a tree in the words of a diagnosis.
+fn build_mistakes(fault: &str) -> [(bool, &'static str); 5] {
+    let missing = fault.ends_with("in 0 leaves");
+    [
+        (missing, "a primitive was left out: both halves together must hold all of them"),
+        (
+            fault.ends_with("leaves") && !missing,
+            "a primitive is in both halves: the right half begins where the left half ends",
+        ),
+        (fault.contains(" holds "), "a leaf must hold 1 to leaf_size primitives: stop only at n ≤ leaf_size"),
+        (fault.contains("sticks out"), "the box of a node must contain everything below it"),
+        (fault.ends_with("nodes"), "without primitives there is nothing to build: add no node"),
+    ]
 }
 
 pub(super) fn split() -> impl Strategy<Value = Split> + Clone {
@@ -66,20 +63,17 @@ pub(super) fn build_all_ways(trial: &Trial<'_>, bounds: &[Aabb]) -> CheckResult 
             match kit_error::catch(|| judge_builds(trial, std::slice::from_ref(&query))) {
                 Ok(outcomes) => outcomes.into_iter().collect::<CheckResult>()?,
                 Err(KitError::Panicked { message, place }) => {
-                    let diagnosis = match bounds.len() <= leaf_size {
-                        true => {
-                            "so few primitives fit into a leaf: stop at n ≤ leaf_size, not at n < leaf_size"
-                        }
-                        false => "did a split put everything on one side? fall back on one that does not",
-                    };
                     let panic = format!("a panic at {place}: {message}");
-                    let broken = Broken::with_texts(
-                        query.call("build"),
-                        panic,
-                        "a tree",
-                        "the invariants of a hierarchy",
-                    );
-                    return Err(broken.looks_like(Some(diagnosis)));
+                    let call = query.call("build");
+                    let broken = Broken::with_texts(call, panic, "a tree", "the invariants of a hierarchy");
+                    // With one more primitive per leaf the same code returns a tree.
+                    let larger = BuildQuery { leaf_size: leaf_size + 1, ..query };
+                    let fits = bounds.len() == leaf_size
+                        && kit_error::catch(|| trial.kit.build(std::slice::from_ref(&larger))).is_ok();
+                    return Err(broken.explained_by([(
+                        fits,
+                        "exactly leaf_size primitives fit into a leaf: stop at n ≤ leaf_size, not at n < leaf_size",
+                    )]));
                 }
                 Err(error) => kit_error::unwind(error),
             }
@@ -119,9 +113,10 @@ fn judge_depth(trial: &Trial<'_>, bounds: &[Aabb], what: &str) -> CheckResult {
             let input = format!("build of {what}, {split:?}, leaf_size 1");
             let [yours, expected] = [depth, most].map(|n| format!("{n} levels"));
             let broken = Broken::with_texts(input, yours, format!("at most {expected}"), "counted");
-            return Err(broken.looks_like(Some(
+            return Err(broken.explained_by([(
+                depth > most,
                 "each level splits off few primitives: from depth DEEPEST_SPLIT on use the object median",
-            )));
+            )]));
         }
     }
     Ok(())
@@ -142,10 +137,19 @@ pub(super) fn build_isolates_what_is_not_a_number(trial: &Trial<'_>) -> CheckRes
         (0..20).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
     bounds[7] = Aabb::new(Vec3::NAN, Vec3::NAN);
     bounds[13] = Aabb::new(Vec3::NAN, Vec3::NAN);
-    build_all_ways(trial, &bounds).map_err(|broken| {
-        broken.looks_like(Some(
-            "a NaN got into a box (use f32::min and f32::max on each axis) or into a sort (use total_cmp)",
-        ))
+    let outcome = build_all_ways(trial, &bounds);
+    // The same boxes without NaN, to prove that the NaN is the cause.
+    let ordinary: Vec<Aabb> = bounds.iter().filter(|b| !b.min.is_nan()).copied().collect();
+    let is_cause = outcome.is_err() && build_all_ways(trial, &ordinary).is_ok();
+    outcome.map_err(|broken| {
+        let panics = broken.yours.starts_with("a panic");
+        broken.explained_by([
+            (is_cause && panics, "a sort or a split panics because of a NaN: sort with total_cmp"),
+            (
+                is_cause && !panics,
+                "a NaN got into the box of a node, or changed a split: use f32::min and f32::max on each axis",
+            ),
+        ])
     })
 }
 

@@ -1,11 +1,11 @@
-//! The cheapest cut of the surface area heuristic, and the diagnosis of a more expensive one.
+//! The cheapest cut of the surface area heuristic, and the mistakes that give a more expensive one.
 
-use super::divided::{boxes, divided, judge_splits};
+use super::divided::{Fault, boxes, divided, judge_splits};
 use checks::broken::CheckResult;
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
-use raykata::bvh::PrimitiveRef;
+use raykata::bvh::{INTERSECTION_COST, PrimitiveRef, TRAVERSAL_COST};
 use raykata::scene::Split;
 
 pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -> CheckResult {
@@ -33,64 +33,120 @@ pub(super) fn surface_area_heuristic_finds_the_cheapest_cut(trial: &Trial<'_>) -
         (44.5, 1.25, 1.0, 1.0),
     ]);
     let judge = |sets: &[Vec<Aabb>]| judge_splits(trial, Split::SurfaceArea, sets, cheapest);
-    judge(&[scattered, row]).into_iter().collect::<CheckResult>()?;
-    trial.forall(500, boxes(16), judge)
+    // Three large boxes on top of each other, for which a leaf is cheaper than any cut.
+    let heap = cubes(&[(0.0, 0.0, 0.0, 9.0), (0.1, 0.2, 0.3, 9.0), (0.2, 0.1, 0.4, 9.0)]);
+    trial.forall_and(&[scattered, row, heap], 500, boxes(16), judge)
 }
 
 const AXES: [usize; 3] = [0, 1, 2];
 
-/// The error of a cut, if it has one: yours, expected, and the diagnosis. A `middle` of 0 is a leaf.
-fn cheapest(ordered: &[PrimitiveRef], middle: usize) -> Option<(String, String, &'static str)> {
+/// The fault of a cut, if it has one. A `middle` of 0 is a leaf.
+fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> Option<Fault> {
     let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
     let leaf = tree::leaf_is_cheaper(ordered, best);
+    let area = tree::half_area(&tree::around(ordered.iter().map(|p| &p.bounds)));
+    let n = ordered.len() as f64;
     if middle == 0 {
         let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
-        let too_soon =
-            "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)";
-        return (leaf == Some(false)).then(|| (String::new(), expected, too_soon));
+        let twice = 2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best;
+        let mistakes = vec![
+            (
+                twice >= f64::from(INTERSECTION_COST) * area * n,
+                "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
+            ),
+            (ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper"),
+        ];
+        return (leaf == Some(false)).then_some((String::new(), expected, mistakes));
     }
     if leaf == Some(true) {
         let yours = format!("a cut before {middle}");
-        let left_out = "TRAVERSAL_COST is left out, so a cut always looks cheaper";
-        return Some((yours, "None: a leaf is cheaper than any cut".into(), left_out));
+        let mistakes = vec![
+            (best < area * n, "TRAVERSAL_COST is left out, so a cut always looks cheaper"),
+            (true, "you return a cut in any case, but a leaf may be cheaper"),
+        ];
+        return Some((yours, "None: a leaf is cheaper than any cut".into(), mistakes));
     }
     let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
     // Equal centroids may be sorted in any order, which changes the cost of the cuts between them. So the check judges
     // the cost only if all centroids differ.
     (yours > best * 1.0001 + 1e-6 && centroids_differ(ordered)).then(|| {
         let describe = format!("cost {yours:.4} (cut before {middle})");
-        (describe, format!("cost {best:.4}"), cut_diagnosis(ordered, middle))
+        (describe, format!("cost {best:.4}"), cut_mistakes(given, ordered, middle))
     })
 }
 
-/// The mistake that makes this cut the best one.
-fn cut_diagnosis(ordered: &[PrimitiveRef], middle: usize) -> &'static str {
-    let area = |part: &[PrimitiveRef]| tree::half_area(&tree::around(part.iter().map(|p| &p.bounds)));
-    let areas = |left: &[PrimitiveRef], right: &[PrimitiveRef]| area(left) + area(right);
-    let counts = |left: &[PrimitiveRef], right: &[PrimitiveRef]| left.len().max(right.len()) as f64;
-    let is_least = |axes: &[usize], cost: &dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64| {
-        cost(&ordered[..middle], &ordered[middle..]) <= tree::least_cost(ordered, axes, cost) * 1.0001
+/// The mistakes that make this cut the best one.
+fn cut_mistakes(
+    given: &[PrimitiveRef],
+    ordered: &[PrimitiveRef],
+    middle: usize,
+) -> Vec<(bool, &'static str)> {
+    let bounds = |part: &[PrimitiveRef]| tree::around(part.iter().map(|p| &p.bounds));
+    let area = |part: &[PrimitiveRef]| tree::half_area(&bounds(part));
+    let volume = |part: &[PrimitiveRef]| {
+        let bounds = bounds(part);
+        (bounds.max - bounds.min).as_dvec3().element_product()
     };
-    let best = tree::least_cost(ordered, &AXES, &tree::cut_cost);
+    type Cost<'a> = &'a dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64;
+    let n = |part: &[PrimitiveRef]| part.len() as f64;
+    let right_cost: Cost<'_> = &tree::cut_cost;
+    // Whether this cut is the best one along these axes by this cost, among the cuts that leave so many on either side.
+    let is_least_of = |axes: &[usize], cost: Cost<'_>, fewest: [usize; 2]| {
+        let counts = |left: &[PrimitiveRef], right: &[PrimitiveRef]| {
+            if left.len() < fewest[0] || right.len() < fewest[1] { f64::INFINITY } else { cost(left, right) }
+        };
+        let yours = counts(&ordered[..middle], &ordered[middle..]);
+        yours <= tree::least_cost(ordered, axes, &counts) * 1.0001
+    };
+    let is_least = |cost: Cost<'_>| is_least_of(&AXES, cost, [1, 1]);
+    let is_best_along =
+        |axis: usize| divided(ordered, middle, axis) && is_least_of(&[axis], right_cost, [1, 1]);
+    let best = tree::least_cost(ordered, &AXES, right_cost);
     let is_best = |[left, right]: &[Vec<PrimitiveRef>; 2]| {
         left.len() == middle && tree::cut_cost(left, right) <= best * 1.0001
     };
-    match () {
-        () if !(0..3).any(|axis| divided(ordered, middle, axis)) => {
-            "the primitives are not sorted along any axis"
-        }
-        () if (0..3).any(|axis| divided(ordered, middle, axis) && is_least(&[axis], &tree::cut_cost)) => {
-            "only one axis is tried: the best cut is along another"
-        }
-        () if AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)) => {
-            "sorted along another axis than that of the best cut: sort again along that axis"
-        }
-        () if is_least(&AXES, &areas) => "your cut is the best by areas alone: the counts are left out",
-        () if ordered.len() > 3 && is_least(&AXES, &counts) => {
-            "your cut is the best by counts alone: the areas are left out"
-        }
-        () => "a cheaper cut exists: not every cut is tried, or the cost has a wrong term",
-    }
+    let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
+    let only_one = "only one axis is tried: the best cut is along another";
+    let all = bounds(ordered);
+    let longest = tree::longest_axes(&all);
+    vec![
+        (as_given, "the primitives are not sorted: you cut them as they come"),
+        (is_best_along(0), only_one),
+        (is_best_along(1), "only one axis is tried, y: the best cut is along another"),
+        (is_best_along(2), "only one axis is tried, z: the best cut is along another"),
+        (
+            longest.into_iter().any(is_best_along),
+            "only one axis is tried, the longest: the best cut is along another",
+        ),
+        (
+            AXES.iter().any(|&axis| tree::cuts(ordered, axis).iter().any(is_best)),
+            "sorted along another axis than that of the best cut: sort again along that axis",
+        ),
+        (
+            is_least(&|left, right| area(left) + area(right)),
+            "your cut is the best by areas alone: the counts are left out",
+        ),
+        (
+            ordered.len() > 3 && is_least(&|left, right| n(left).max(n(right))),
+            "your cut is the best by counts alone: the areas are left out",
+        ),
+        (
+            is_least_of(&AXES, right_cost, [2, 1]),
+            "not every cut is tried: the one behind the first primitive is left out",
+        ),
+        (
+            is_least_of(&AXES, right_cost, [1, 2]),
+            "not every cut is tried: the one before the last primitive is left out",
+        ),
+        (
+            is_least(&|left, right| volume(left) * n(left) + volume(right) * n(right)),
+            "your cut is the best by volumes: take the surface areas",
+        ),
+        (
+            is_least(&|left, right| area(left) * n(right) + area(right) * n(left)),
+            "each area is multiplied by the count of the other side",
+        ),
+    ]
 }
 
 fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {

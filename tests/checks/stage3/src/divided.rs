@@ -2,7 +2,7 @@
 
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, rough_point};
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::list;
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
@@ -12,25 +12,33 @@ use raykata::bvh::PrimitiveRef;
 use raykata::kit::{SplitAnswer, SplitQuery};
 use raykata::scene::Split;
 
-/// Sets of two boxes or more. Two of five sets are on a coarse grid or along a line, so that many centroids coincide.
+/// Sets of two boxes or more. Two of six sets are on a coarse grid or along a line, so that many centroids coincide. One of
+/// six sets has boxes that are long on one axis, while their centroids are far apart on another.
 pub(super) fn boxes(most: usize) -> impl Strategy<Value = Vec<Aabb>> + Clone {
     let small = (rough_point(8.0), point(1)).prop_map(|(p, size)| Aabb::new(p, p + size.abs()));
     let coarse = point(1).prop_map(|p| Aabb::new(p.round(), p.round() + 1.0));
     let flat = (0..9i32).prop_map(|i| Aabb::new(Vec3::ZERO, vec3(i as f32, 0.0, 0.0)));
+    let long = (rough_point(2.0), 0..4i32).prop_map(|(p, length)| {
+        Aabb::new(p - vec3(0.0, 0.0, 12.0 + length as f32), p + vec3(0.25, 0.25, 12.0))
+    });
     prop_oneof![
+        1 => prop::collection::vec(long, 2..most),
         3 => prop::collection::vec(small, 2..most),
         1 => prop::collection::vec(coarse, 2..most),
         1 => prop::collection::vec(flat, 2..most),
     ]
 }
 
+/// What is wrong with a split: yours, expected, and the known mistakes, each with whether it gives this split.
+pub(super) type Fault = (String, String, Vec<(bool, &'static str)>);
+
 /// Judges splits: every primitive is kept and neither side is empty. Then `law` judges the order and the middle, which
-/// is 0 for a leaf; it returns `(yours, expected, diagnosis)` if they are wrong.
+/// is 0 for a leaf. It gets the primitives as they were and in the new order, and returns a fault if they are wrong.
 pub(super) fn judge_splits(
     trial: &Trial<'_>,
     split: Split,
     sets: &[Vec<Aabb>],
-    law: impl Fn(&[PrimitiveRef], usize) -> Option<(String, String, &'static str)>,
+    law: impl Fn(&[PrimitiveRef], &[PrimitiveRef], usize) -> Option<Fault>,
 ) -> Vec<CheckResult> {
     let queries: Vec<SplitQuery> =
         sets.iter().map(|boxes| SplitQuery { split, primitives: tree::references(boxes) }).collect();
@@ -43,14 +51,18 @@ pub(super) fn judge_splits(
         if ids != (0..n as u32).collect::<Vec<_>>() {
             let all = format!("the primitives 0..{n} in some order");
             let broken = Broken::with_texts(input, format!("{order:?}"), all, "each primitive once");
-            return Err(broken.looks_like(Some("a primitive was overwritten: swap two primitives instead")));
+            let twice = ids.windows(2).any(|pair| pair[0] == pair[1]);
+            return Err(broken.explained_by([(
+                twice && ids.len() == n,
+                "a primitive was overwritten, and another one is there twice: swap two primitives instead",
+            )]));
         }
         let Some(middle) = middle else {
-            return match law(&query.primitives, 0) {
+            return match law(&query.primitives, &query.primitives, 0) {
                 None => Ok(()),
-                Some((_, expected, diagnosis)) => {
+                Some((_, expected, mistakes)) => {
                     Err(Broken::with_texts(input, "None, a leaf", expected, "brute force")
-                        .looks_like(known(diagnosis)))
+                        .explained_by(mistakes))
                 }
             };
         };
@@ -61,24 +73,37 @@ pub(super) fn judge_splits(
                 "at least one on each side",
                 "otherwise the build never ends",
             );
-            return Err(broken
-                .looks_like(Some("all centroids are on one side of the cut: fall back on another split")));
+            // Whether all centroids are on one side of the middle of the box, or on it.
+            let all = tree::around(query.primitives.iter().map(|p| &p.bounds));
+            let one_side = tree::longest_axes(&all).into_iter().any(|axis| {
+                let cut = 0.5 * (all.min[axis] + all.max[axis]);
+                let slack = 1e-5 * (all.max[axis] - all.min[axis]);
+                query.primitives.iter().all(|p| p.centroid[axis] <= cut + slack)
+                    || query.primitives.iter().all(|p| p.centroid[axis] >= cut - slack)
+            });
+            return Err(broken.explained_by([(
+                one_side,
+                "all centroids are on one side of the cut: fall back on another split",
+            )]));
         }
         let ordered: Vec<PrimitiveRef> = order.iter().map(|&id| query.primitives[id as usize]).collect();
-        match law(&ordered, middle) {
+        match law(&query.primitives, &ordered, middle) {
             None => Ok(()),
-            Some((yours, expected, diagnosis)) => {
-                Err(Broken::with_texts(input, yours, expected, "brute force").looks_like(known(diagnosis)))
+            Some((yours, expected, mistakes)) => {
+                Err(Broken::with_texts(input, yours, expected, "brute force").explained_by(mistakes))
             }
         }
     })
 }
 
-/// Whether, along `axis`, no centroid before `middle` is above a centroid from `middle` on.
+/// Whether `middle` divides the centroids along `axis`: none before it is beyond one behind it, in either direction.
 pub(super) fn divided(ordered: &[PrimitiveRef], middle: usize, axis: usize) -> bool {
-    let left = ordered[..middle].iter().map(|p| p.centroid[axis]).fold(f32::NEG_INFINITY, f32::max);
-    let right = ordered[middle..].iter().map(|p| p.centroid[axis]).fold(f32::INFINITY, f32::min);
-    left <= right
+    let range = |part: &[PrimitiveRef]| {
+        let at = part.iter().map(|p| p.centroid[axis]);
+        at.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+    };
+    let (left, right) = (range(&ordered[..middle]), range(&ordered[middle..]));
+    left.1 <= right.0 || right.1 <= left.0
 }
 
 /// Axes along which a median split may cut: the longest axes of the box around all boxes, and of the box around all

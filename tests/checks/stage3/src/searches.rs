@@ -1,8 +1,9 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
+use super::search_mistakes::{any_mistakes, every_node, mistakes};
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{point, unit};
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::tree::closest_in_table;
 use checks::{Trial, tree};
 use glam::Vec3;
@@ -74,23 +75,13 @@ pub(super) fn judge_search(query: &SearchQuery, yours: &SearchAnswer) -> CheckRe
     if found == expected {
         return Ok(());
     }
-    let diagnosis = match (found, expected) {
-        (Some((_, t)), _) if !query.ray.contains(t) => "you return a hit outside the ray's range",
-        (Some((_, yours)), Some((_, best))) if yours == best => {
-            "of two hits at the same t the smaller primitive number wins"
-        }
-        (Some(_), Some(_)) => {
-            "the search stopped before it had seen the nearer hit (in the same leaf? in the other child?)"
-        }
-        (None, Some(_)) => "a subtree or part of a leaf was left out",
-        _ => "",
-    };
     Err(Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)")
-        .looks_like(known(diagnosis)))
+        .explained_by(mistakes(query, found, &yours.counts)))
 }
 
-/// Two trees so small that the answer shows the mistake: a leaf of four primitives, and two boxes that overlap.
-fn drawn_searches() -> [SearchQuery; 2] {
+/// Trees so small that the answer shows the mistake: a leaf of four primitives, two boxes that overlap, and the same with a
+/// hit in one of them only.
+fn drawn_searches() -> [SearchQuery; 4] {
     let bounds = Aabb::new(Vec3::ZERO, Vec3::splat(9.0));
     let ids = tree::references(&[bounds; 4]);
     let ray = Ray::new(Vec3::NEG_X, Vec3::X);
@@ -103,40 +94,21 @@ fn drawn_searches() -> [SearchQuery; 2] {
     two.set_leaf(far, &ids[1..2]);
     two.set_children(root, near, far);
     let table = |boxes: Vec<(f32, f32)>, primitives: Vec<f32>| Table { boxes, primitives };
+    let two_boxes = |first: f32, second: f32| SearchQuery {
+        bvh: two.clone(),
+        ray,
+        table: table(vec![(1.0, 9.0), (1.0, 8.0), (2.0, 9.0)], vec![first, second]),
+    };
     [
         SearchQuery { bvh: leaf, ray, table: table(vec![(1.0, 9.0)], vec![3.0, 5.0, 4.0, 2.0]) },
-        SearchQuery { bvh: two, ray, table: table(vec![(1.0, 9.0), (1.0, 8.0), (2.0, 9.0)], vec![6.0, 4.0]) },
+        two_boxes(6.0, 4.0),
+        two_boxes(f32::INFINITY, 4.0),
+        two_boxes(6.0, f32::INFINITY),
     ]
 }
 
-fn judge_drawn_searches(yours: &[SearchAnswer]) -> CheckResult {
-    let queries = drawn_searches();
-    let diagnosis = |index: usize, yours: &SearchAnswer| match (index, yours.hit.map(|hit| hit.t)) {
-        (_, None) => "a subtree or part of a leaf was left out",
-        (0, _) if yours.counts.primitive_tests == 1 => {
-            "you take the first hit: ask all of a leaf's primitives"
-        }
-        (0, Some(5.0)) | (1, Some(6.0)) if yours.counts.primitive_tests >= 2 => {
-            "the farther of two hits is kept"
-        }
-        (0, _) => "part of a leaf was left out: its last primitive?",
-        _ => {
-            "boxes overlap: the search stopped before it had seen the nearer hit, which is in the other child"
-        }
-    };
-    for (index, (query, yours)) in queries.iter().zip(yours).enumerate() {
-        let (found, expected) = (yours.hit.map(|hit| (hit.primitive, hit.t)), closest_in_table(query));
-        if found != expected {
-            let broken = Broken::new(describe_search(query), found, expected, "brute force, (primitive, t)");
-            return Err(broken.looks_like(Some(diagnosis(index, yours))));
-        }
-    }
-    Ok(())
-}
-
 pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    judge_drawn_searches(&trial.kit.closest_hit_both(&drawn_searches()))?;
-    trial.forall(1500, searches(), |queries| {
+    trial.forall_and(&drawn_searches(), 1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| judge_search(query, &yours))
     })
 }
@@ -156,14 +128,16 @@ pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> 
                 format!("at most {met}: the ray meets no more boxes"),
                 "counted",
             )
-            .looks_like(Some("you open nodes whose box the ray misses: ask probe.enter first")))
+            .explained_by([(
+                visits == every_node(query),
+                "you open nodes whose box the ray misses: ask probe.enter first",
+            )]))
         })
     })
 }
 
 pub(super) fn closest_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
-    judge_drawn_searches(&trial.kit.closest_hit(&drawn_searches()))?;
-    trial.forall(1500, searches(), |queries| {
+    trial.forall_and(&drawn_searches(), 1500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit(queries), |query, yours| judge_search(query, &yours))
     })
 }
@@ -172,27 +146,19 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult 
     let judge = |queries: &[SearchQuery]| {
         compare(queries, trial.kit.any_hit(queries), |query, (yours, _)| {
             let expected = closest_in_table(query).is_some();
-            let nothing = !query.table.primitives.iter().any(|t| t.is_finite());
-            let diagnosis = if yours && nothing {
-                "no primitive is hit: to enter a box is not yet a hit"
-            } else if yours {
-                "you count a hit beyond t_max or before t_min"
-            } else {
-                "you return false: a hit was overlooked"
-            };
             if yours == expected {
                 Ok(())
             } else {
                 Err(Broken::new(describe_search(query), yours, expected, "brute force")
-                    .looks_like(Some(diagnosis)))
+                    .explained_by(any_mistakes(query, yours)))
             }
         })
     };
     // First test a leaf that the ray enters without hitting any of its primitives.
-    let [mut nothing, _] = drawn_searches();
+    let drawn = drawn_searches();
+    let mut nothing = drawn[0].clone();
     nothing.table.primitives.fill(f32::INFINITY);
-    judge(&[nothing]).into_iter().collect::<CheckResult>()?;
-    trial.forall(1500, searches(), judge)
+    trial.forall_and(&[nothing, drawn[1].clone()], 1500, searches(), judge)
 }
 
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
@@ -202,7 +168,7 @@ pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
             match answer.tests_after_hit {
                 0 => Ok(()),
                 n => Err(Broken::with_texts(describe_search(query), describe(n), describe(0), "counted")
-                    .looks_like(Some("the search goes on after a hit: return true at once"))),
+                    .explained_by([(n > 0, "the search goes on after a hit: return true at once")])),
             }
         })
     })

@@ -1,55 +1,82 @@
 //! The two median splits, and boxes with which every split must work.
 
-use super::divided::{boxes, divided, judge_splits, split_axes};
+use super::divided::{Fault, boxes, divided, judge_splits, split_axes};
 use super::slabs::UNIT_BOX;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use raykata::aabb::Aabb;
+use raykata::bvh::PrimitiveRef;
 use raykata::kit::{KitError, kit_error};
 use raykata::scene::Split;
 
+/// `None` where a median split always returns a cut.
+fn no_cut() -> Fault {
+    let always = "a median split always returns a cut";
+    (String::new(), format!("a cut: {always}"), vec![])
+}
+
 pub(super) fn object_median_makes_equal_halves(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
-        judge_splits(trial, Split::ObjectMedian, sets, |ordered, middle| {
+        judge_splits(trial, Split::ObjectMedian, sets, |given, ordered, middle| {
             let n = ordered.len();
             if middle == 0 {
-                return Some((String::new(), "a cut: a median split always returns one".into(), ""));
-            }
-            if middle != n / 2 && middle != n.div_ceil(2) {
-                return Some((
-                    format!("{middle} and {}", n - middle),
-                    format!("{} and {}", n / 2, n - n / 2),
-                    "the halves must hold equally many primitives",
-                ));
+                return Some(no_cut());
             }
             let axes = split_axes(ordered);
-            (!axes.iter().any(|&axis| divided(ordered, middle, axis))).then(|| {
+            let equal = middle == n / 2 || middle == n.div_ceil(2);
+            if equal && axes.iter().any(|&axis| divided(ordered, middle, axis)) {
+                return None;
+            }
+            let as_given = given.iter().map(|p| p.id).eq(ordered.iter().map(|p| p.id));
+            let shortest = |axis: usize| {
+                let all = tree::around(ordered.iter().map(|p| &p.bounds));
+                (all.max - all.min)[axis] <= (all.max - all.min).min_element()
+            };
+            let along = |axis: usize| divided(ordered, middle, axis);
+            let mistakes = vec![
+                (!equal, "the halves must hold equally many primitives"),
+                (as_given, "the primitives are not sorted: you cut them as they come"),
+                (along(0), "you always sort along x, not along the longest axis"),
+                (along(1), "you always sort along y, not along the longest axis"),
+                (along(2), "you always sort along z, not along the longest axis"),
                 (
-                    "the centroids of the halves overlap".into(),
-                    format!("halves separated along axis {axes:?} by centroid"),
-                    "the primitives are not sorted, or not along the longest axis",
-                )
-            })
+                    (0..3).any(|axis| shortest(axis) && along(axis)),
+                    "you sort along the shortest axis, not along the longest axis",
+                ),
+                ((0..3).any(along), "you sort along an axis that is not the longest axis"),
+            ];
+            let yours = match equal {
+                true => "the centroids of the halves overlap".into(),
+                false => format!("{middle} and {}", n - middle),
+            };
+            let expected = format!("{} and {}, separated along axis {axes:?} by centroid", n / 2, n - n / 2);
+            Some((yours, expected, mistakes))
         })
     })
 }
 
+/// Whether the centroids before `middle` are below the middle of this box and the others above it. A centroid that is on the
+/// cut, up to a rounding, may go to either side.
+fn is_cut_at(ordered: &[PrimitiveRef], middle: usize, axis: usize, cut: f32, size: f32) -> bool {
+    let slack = 1e-5 * size;
+    let left = ordered[..middle].iter().all(|p| p.centroid[axis] <= cut + slack);
+    let right = ordered[middle..].iter().all(|p| p.centroid[axis] >= cut - slack);
+    left && right
+}
+
 pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResult {
     trial.forall(600, boxes(20), |sets| {
-        judge_splits(trial, Split::SpatialMedian, sets, |ordered, middle| {
+        judge_splits(trial, Split::SpatialMedian, sets, |_, ordered, middle| {
             if middle == 0 {
-                return Some((String::new(), "a cut: a median split always returns one".into(), ""));
+                return Some(no_cut());
             }
             let all = tree::around(ordered.iter().map(|p| &p.bounds));
             let centroids: Vec<Aabb> = ordered.iter().map(|p| Aabb::new(p.centroid, p.centroid)).collect();
+            let of_centroids = tree::around(&centroids);
             let fits = |bounds: &Aabb, axis: usize| {
                 let cut = 0.5 * (bounds.min[axis] + bounds.max[axis]);
-                // A centroid that is on the cut, up to a rounding, may go to either side.
-                let slack = 1e-5 * (bounds.max[axis] - bounds.min[axis]);
-                let left = ordered[..middle].iter().all(|p| p.centroid[axis] <= cut + slack);
-                let right = ordered[middle..].iter().all(|p| p.centroid[axis] >= cut - slack);
-                left && right
+                is_cut_at(ordered, middle, axis, cut, bounds.max[axis] - bounds.min[axis])
             };
             let some_cut =
                 |bounds: &Aabb| tree::longest_axes(bounds).into_iter().any(|axis| fits(bounds, axis));
@@ -59,15 +86,32 @@ pub(super) fn spatial_median_cuts_in_the_middle(trial: &Trial<'_>) -> CheckResul
                 ordered.iter().any(|p| p.centroid[axis] < cut)
                     && ordered.iter().any(|p| p.centroid[axis] > cut)
             });
-            let right = !divides || some_cut(&all) || some_cut(&tree::around(&centroids));
-            (!right).then(|| {
-                let axes = tree::longest_axes(&all);
+            if !divides || some_cut(&all) || some_cut(&of_centroids) {
+                return None;
+            }
+            let axes = tree::longest_axes(&all);
+            let n = ordered.len();
+            let at_the_mean = |axis: usize| {
+                let mean = ordered.iter().map(|p| p.centroid[axis]).sum::<f32>() / n as f32;
+                is_cut_at(ordered, middle, axis, mean, all.max[axis] - all.min[axis])
+            };
+            let halves = middle == n / 2 || middle == n.div_ceil(2);
+            let mistakes = vec![
                 (
-                    "a cut elsewhere".into(),
-                    format!("centroids below and above the middle of axis {axes:?}"),
-                    "your cut is not in the middle of the longest axis",
-                )
-            })
+                    axes.iter().any(|&axis| at_the_mean(axis)),
+                    "you cut at the mean of the centroids, which is not in the middle of the box",
+                ),
+                (
+                    halves && axes.iter().any(|&axis| divided(ordered, middle, axis)),
+                    "you put half of the primitives on each side: your cut is not in the middle of the box",
+                ),
+                (fits(&all, 0), "you always cut along x, not along the longest axis"),
+                (fits(&all, 1), "you always cut along y, not along the longest axis"),
+                (fits(&all, 2), "you always cut along z, not along the longest axis"),
+                ((0..3).any(|axis| fits(&all, axis)), "you cut an axis that is not the longest axis"),
+            ];
+            let expected = format!("centroids below and above the middle of axis {axes:?}");
+            Some(("a cut elsewhere".into(), expected, mistakes))
         })
     })
 }
@@ -79,11 +123,11 @@ pub(super) fn spatial_median_never_leaves_a_side_empty(trial: &Trial<'_>) -> Che
         (1..=8).map(|i| Aabb::new(Vec3::splat(-i as f32), Vec3::splat(i as f32))).collect();
     let mut lopsided = vec![UNIT_BOX; 7];
     lopsided.push(Aabb::new(Vec3::ZERO, vec3(1000.0, 1.0, 1.0)));
-    judge_splits(trial, Split::SpatialMedian, &[equal, concentric, lopsided], |_, middle| {
-        (middle == 0).then(|| (String::new(), "a cut: a median split always returns one".into(), ""))
-    })
-    .into_iter()
-    .collect()
+    // And boxes that the middle divides.
+    let row: Vec<Aabb> =
+        (0..8).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
+    let sets = [row, equal, concentric, lopsided];
+    all_hold(judge_splits(trial, Split::SpatialMedian, &sets, |_, _, middle| (middle == 0).then(no_cut)))
 }
 
 pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> CheckResult {
@@ -92,15 +136,27 @@ pub(super) fn surface_area_heuristic_survives_zero_area(trial: &Trial<'_>) -> Ch
         (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 0.0, 0.0))).collect();
     let points = vec![Aabb::new(Vec3::ONE, Vec3::ONE); 5];
     let sets = [line, points, vec![UNIT_BOX; 6]];
-    match kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _| None)) {
-        Ok(outcomes) => outcomes.into_iter().collect(),
+    match kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &sets, |_, _, _| None)) {
+        Ok(outcomes) => all_hold(outcomes)?,
         Err(KitError::Panicked { message, place }) => {
             let input = "SurfaceArea of six boxes along a line, five in one point, six equal ones";
             let panic = format!("a panic at {place}: {message}");
-            Err(Broken::with_texts(input, panic, "an answer", "the definition").looks_like(Some(
-                "0/0 makes every cost NaN, so no cut is the best: compare costs without dividing by A(P)",
-            )))
+            // The same code answers for boxes that have an area.
+            let with_area: Vec<Aabb> =
+                (0..6).map(|i| Aabb::new(vec3(i as f32, 0.0, 0.0), vec3(i as f32 + 0.5, 1.0, 1.0))).collect();
+            let answers =
+                kit_error::catch(|| judge_splits(trial, Split::SurfaceArea, &[with_area], |_, _, _| None));
+            return Err(Broken::with_texts(input, panic, "an answer", "the definition").explained_by([(
+                answers.is_ok() && message.contains("None"),
+                "for boxes without area no cut is the best (0/0 makes every cost NaN): compare costs without dividing by A(P)",
+            )]));
         }
         Err(error) => kit_error::unwind(error),
     }
+    // A row of flat walls: each has an area, but no thickness. A cut is far cheaper than a leaf.
+    let walls: Vec<Aabb> =
+        (0..16).map(|i| Aabb::new(vec3(8.0 * i as f32, 0.0, 0.0), vec3(8.0 * i as f32, 1.0, 1.0))).collect();
+    all_hold(judge_splits(trial, Split::SurfaceArea, &[walls], |_, _, middle| {
+        (middle == 0).then(|| (String::new(), "a cut, cheaper than a leaf".into(), vec![]))
+    }))
 }

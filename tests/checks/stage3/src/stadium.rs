@@ -1,5 +1,6 @@
 //! A teapot in a stadium: the counted costs of trees and searches.
 
+use super::search_mistakes::order_mistakes;
 use checks::broken::{Broken, CheckResult};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
@@ -76,9 +77,8 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
     if yours <= 1.05 * best {
         return Ok(());
     }
-    let diagnosis = (yours > 0.8 * median).then_some(
-        "hardly better than an object median: do you always cut one axis, or leave out the areas?",
-    );
+    // Variants of an object median are within 5 % of each other.
+    let is_a_median = (yours - median).abs() <= 0.05 * median;
     let (yours, best) = (
         format!("expected cost {yours:.3} per ray"),
         format!("at most {:.3} (object median: {median:.3})", 1.05 * best),
@@ -89,7 +89,7 @@ pub(super) fn surface_area_heuristic_is_cheap_in_a_stadium(trial: &Trial<'_>) ->
         best,
         "the cheapest cut at every node",
     )
-    .looks_like(diagnosis))
+    .explained_by([(is_a_median, "your tree costs as much as one by object median")]))
 }
 
 /// The number of nodes and primitives that the rays through the stadium have to visit in this tree.
@@ -118,9 +118,7 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckR
                 format!("at most {}", describe(most)),
                 "the reference tree, plus a quarter",
             );
-            return Err(broken.looks_like(Some(
-                "the tree is valid but costs too much: do you apply the strategy at every node?",
-            )));
+            return Err(broken.explained_by([]));
         }
     }
     Ok(())
@@ -139,33 +137,22 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> CheckResult {
     if yours <= needed {
         return Ok(());
     }
-    let diagnosis = match yours {
-        visits if visits >= bvh.nodes.len() as u64 => {
-            "no node is skipped: let ray.t_max shrink with each hit, and enter the nearer child first"
-        }
-        _ => "the farther box is not tested again after a nearer hit was found",
-    };
     let input = "a ray along a row of 64 spheres, of which it hits the first";
     let most = format!("at most {}", describe(needed));
-    Err(Broken::with_texts(input, describe(yours), most, "counted").looks_like(Some(diagnosis)))
+    Err(Broken::with_texts(input, describe(yours), most, "counted")
+        .explained_by(order_mistakes(std::slice::from_ref(&query), yours)))
 }
 
 pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> CheckResult {
     nothing_behind_in_a_row(trial)?;
     let queries = stadium_searches();
     let yours = total(&trial.kit.closest_hit(&queries));
-    let all: u64 = queries.iter().map(|query| tree::overlapped(query).len() as u64).sum();
     // If a ray enters both children at the same t, either may come first. This changes the counts by less than a tenth.
     let (most_visits, most_tests) = (SEARCHED.0 * 11 / 10, SEARCHED.1 * 11 / 10);
     if yours.node_visits <= most_visits && yours.primitive_tests <= most_tests {
         return Ok(());
     }
-    let diagnosis = match yours.node_visits {
-        visits if visits >= all => {
-            "you also open boxes beyond the best hit: let ray.t_max shrink with each hit"
-        }
-        _ => "the farther child is entered first, or a box is not tested again after a nearer hit was found",
-    };
+    let mistakes = order_mistakes(&queries, yours.node_visits);
     let describe = |visits: u64, tests: u64| format!("{visits} nodes opened, {tests} primitives tested");
     let (yours, most) =
         (describe(yours.node_visits, yours.primitive_tests), describe(most_visits, most_tests));
@@ -175,5 +162,5 @@ pub(super) fn closest_hit_skips_what_lies_behind(trial: &Trial<'_>) -> CheckResu
         format!("at most {most}"),
         "the nearer child first",
     )
-    .looks_like(Some(diagnosis)))
+    .explained_by(mistakes))
 }

@@ -1,0 +1,86 @@
+//! A textbook solution of stages 1 to 3: plain formulas as books print them, in single precision, written by somebody who
+//! reads the doc comments and does no more than they ask. It must pass the basic checks, and it may lose points in the hard
+//! cases only.
+
+mod stage1_shapes;
+mod stage2_triangles;
+mod stage3_boxes;
+mod stage3_build;
+mod stage3_traversal;
+
+use solutions::{
+    stage4_shading, stage5_recursion, stage6_distribution, stage7_effects, stage8_scene_graph, stage8_solids,
+    stage8_surfaces, stage9_bsp, stage9_cells, stage9_coherence, stage9_grid, stage9_kd_tree, stage9_octree,
+    stage10_stability,
+};
+
+/// The textbook's functions; those of later stages are the reference's.
+#[derive(Clone, Copy)]
+pub struct Kit;
+
+mod functions {
+    #[allow(unused_imports)]
+    use raykata::kit::types::*;
+    raykata::student_functions! { raykata::implement_student_functions }
+}
+
+impl raykata::kit::StudentKit for Kit {
+    fn renderer() -> Option<&'static dyn raykata::kit::Frames> {
+        None
+    }
+}
+
+/// The points of a stage, and the names of the checks that fail.
+fn score(stage: u8) -> (u32, u32, Vec<&'static str>) {
+    let kit = checks::linked(Kit);
+    let (_, list) = all_checks::STAGES.iter().find(|(number, _)| *number == stage).expect("a stage");
+    let (mut points, mut all, mut failed) = (0, 0, Vec::new());
+    for check in *list {
+        let worth = checks::rubric::entry(stage, check.name).points;
+        all += worth;
+        match checks::run(check, &kit, 0) {
+            checks::Verdict::Passed => points += worth,
+            checks::Verdict::Failed(message) => {
+                println!("{message}");
+                failed.push(check.name);
+            }
+            checks::Verdict::NotWritten { task, .. } => panic!("not written: {task}"),
+        }
+    }
+    (points, all, failed)
+}
+
+/// A textbook solution fails exactly these checks, and earns at least 75 % of the points.
+#[track_caller]
+fn expect(stage: u8, points: u32, hard: &[&str]) {
+    let (yours, all, failed) = score(stage);
+    println!("stage {stage}: {yours} of {all} points");
+    assert_eq!(failed, hard);
+    assert_eq!(yours, points);
+    assert!(4 * yours >= 3 * all, "{yours} of {all} points");
+}
+
+#[test]
+fn stage_1_by_the_plain_quadratic_formula() {
+    expect(1, 78, &["sphere_algebraic_far_away_and_tiny", "sphere_geometric_far_away_and_tiny"]);
+}
+
+#[test]
+fn stage_2_by_moeller_trumbore_and_the_formulas_of_the_slides() {
+    let hard = [
+        "triangle_gram_far_from_the_origin",
+        "gram_scalars_of_thin_triangles_keep_their_sign",
+        "face_normal_has_unit_length_at_any_size",
+    ];
+    expect(2, 109, &hard);
+}
+
+#[test]
+fn stage_3_by_min_and_max_and_recursion() {
+    let hard = [
+        "slab_is_hit_by_rays_within_a_face",
+        "slab_hits_the_corners_it_is_aimed_at",
+        "build_isolates_what_is_not_a_number",
+    ];
+    expect(3, 103, &hard);
+}

@@ -1,0 +1,226 @@
+//! Known mistakes in the intersection of a ray and a sphere, each with the answer that it gives.
+
+use crate::sphere_method::{Accepts, Quadratic};
+use raykata::kit::SphereQuery;
+
+/// A part of the line along the ray, without its ends.
+#[derive(Clone, Copy)]
+struct Within(f64, f64);
+
+impl Within {
+    /// The first of these roots that lies in the range.
+    fn first(self, roots: [f64; 2]) -> Option<f64> {
+        let [near, far] = [roots[0].min(roots[1]), roots[0].max(roots[1])];
+        [near, far].into_iter().find(|&t| self.0 < t && t < self.1)
+    }
+}
+
+/// Whether a method gives this answer, up to the rounding of the formula on the slide. `roots` computes its roots from the
+/// square root of the discriminant, and `choose` returns one of them.
+fn gives(
+    yours: Option<f32>,
+    quadratic: &Quadratic,
+    roots: impl Fn(f64) -> [f64; 2],
+    choose: impl Fn([f64; 2]) -> Option<f64>,
+) -> bool {
+    let tolerance = quadratic.tolerance();
+    // The discriminant and each root may be off by their rounding errors. A discriminant of exactly 0 is exact.
+    let slack = if quadratic.discriminant == 0.0 { 0.0 } else { quadratic.slack };
+    let discriminants = [0.0, -slack, slack].map(|error| quadratic.discriminant + error);
+    let answers = discriminants.into_iter().flat_map(|discriminant| {
+        let at = (discriminant >= 0.0).then(|| roots(discriminant.sqrt()));
+        [0.0, -tolerance, tolerance].map(|shift| choose(at?.map(|root| root + shift)))
+    });
+    let mut answers = answers;
+    answers.any(|answer| match (yours, answer) {
+        (Some(yours), Some(t)) => (f64::from(yours) - t).abs() <= 4.0 * tolerance + 1e-6 * t.abs(),
+        (yours, answer) => yours.is_none() && answer.is_none(),
+    })
+}
+
+/// The mistakes that lose a hit at a small `t`.
+const EPSILONS: [(f64, &str); 5] = [
+    (1e-6, "you drop hits with t below 0.000001: compare with t_min, not with a fixed epsilon"),
+    (1e-5, "you drop hits with t below 0.00001: compare with t_min, not with a fixed epsilon"),
+    (1e-4, "you drop hits with t below 0.0001: compare with t_min, not with a fixed epsilon"),
+    (1e-3, "you drop hits with t below 0.001: compare with t_min, not with a fixed epsilon"),
+    (1e-2, "you drop hits with t below 0.01: compare with t_min, not with a fixed epsilon"),
+];
+
+/// All known mistakes, each with whether it gives this answer. If `loses_only`, none of the student's answers is a wrong hit,
+/// so the sign of the roots is not the mistake.
+pub(super) fn mistakes(
+    query: &SphereQuery,
+    yours: Option<f32>,
+    accepts: Accepts,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
+    let quadratic = match accepts {
+        Accepts::TheFormula => Quadratic::of(query),
+        Accepts::FewRoundings => Quadratic::stable(query),
+    };
+    let mut all = of_values(query, yours);
+    if accepts == Accepts::FewRoundings {
+        all.extend(of_cancellation(query, yours));
+    }
+    all.extend(of_choices(query, yours, &quadratic, loses_only));
+    all.extend(of_formulas(query, yours, &quadratic));
+    all
+}
+
+/// The formulas of the slides in single precision, which cancel for a distant or small sphere.
+fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static str); 2] {
+    let SphereQuery { ray, sphere } = query;
+    let (d, r_squared) = (ray.direction, sphere.radius * sphere.radius);
+    let f = ray.origin - sphere.center;
+    let (a, b, c) = (d.dot(d), -f.dot(d), f.dot(f) - r_squared);
+    let is = |discriminant: f32, roots: &dyn Fn(f32) -> [f32; 2]| {
+        let [first, second] = roots(discriminant.sqrt());
+        let found = [first.min(second), first.max(second)].into_iter().find(|&t| ray.contains(t));
+        match (yours, found.filter(|_| discriminant >= 0.0)) {
+            (Some(yours), Some(t)) => (yours - t).abs() <= 1e-6 * t.abs(),
+            (yours, found) => yours.is_none() && found.is_none(),
+        }
+    };
+    let twice = 2.0 * b;
+    let algebraic = is(b * b - a * c, &|root| [(b - root) / a, (b + root) / a])
+        || is(b * b - a * c, &|root| [c / (b + root.copysign(b)), (b + root.copysign(b)) / a])
+        || is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]);
+    let t_ca = b / a;
+    let geometric = [
+        r_squared - (f.dot(f) - t_ca * t_ca * a),
+        r_squared - (f.dot(f) - b * t_ca),
+        r_squared - (f.dot(f) - t_ca * t_ca),
+    ]
+    .into_iter()
+    .any(|squared| {
+        let far = |t_hc: f32| t_ca + (t_hc / a.sqrt()).copysign(t_ca);
+        is(squared, &|t_hc| [t_ca - t_hc / a.sqrt(), t_ca + t_hc / a.sqrt()])
+            || is(squared / a, &|t_hc| [t_ca - t_hc, t_ca + t_hc])
+            || is(squared, &|t_hc| [c / a / far(t_hc), far(t_hc)])
+    });
+    // The same for a direction that is normalized first, with t divided by its length.
+    let length = d.length();
+    let t_ca = -f.dot(d / length);
+    let squared = r_squared - (f.dot(f) - t_ca * t_ca);
+    let geometric = geometric || is(squared, &|t_hc| [(t_ca - t_hc) / length, (t_ca + t_hc) / length]);
+    [
+        (algebraic, "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²"),
+        (geometric, "L·L - t_ca² cancels for a distant or small sphere: use |L - t_ca d|²"),
+    ]
+}
+
+/// Mistakes that the answer alone shows.
+fn of_values(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
+    let ray = query.ray;
+    let touches = Quadratic::of(query).discriminant == 0.0 && query.sphere.radius > 0.0;
+    let absolute = Quadratic::of(query);
+    let right = |roots| Within(f64::from(ray.t_min), f64::from(ray.t_max)).first(roots);
+    let roots = |root| [(absolute.b - root) / absolute.a, (absolute.b + root) / absolute.a];
+    vec![
+        (yours.is_some_and(f32::is_nan), "you return NaN: compare so that NaN fails"),
+        (
+            query.sphere.radius <= 0.0 && yours.is_some() && gives(yours, &absolute, roots, right),
+            "a sphere of radius 0 or less cannot be hit: require radius > 0",
+        ),
+        (
+            yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
+            "the range is open: a hit at t_min or at t_max does not count (t = 0 for a ray that starts on the sphere)",
+        ),
+        (
+            yours.is_none() && touches,
+            "you return None for a ray that touches the sphere: a discriminant of exactly 0 is a hit",
+        ),
+    ]
+}
+
+/// Right roots of which the wrong one is returned.
+fn of_choices(
+    query: &SphereQuery,
+    yours: Option<f32>,
+    quadratic: &Quadratic,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
+    let Quadratic { a, b, .. } = *quadratic;
+    let roots = |root: f64| [(b - root) / a, (b + root) / a];
+    let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+    let range = Within(t_min, t_max);
+    let is = |choose: &dyn Fn([f64; 2]) -> Option<f64>| gives(yours, quadratic, roots, choose);
+    let one = |t: f64, range: Within| range.first([t, t]);
+    let forward = Within(0.0, f64::INFINITY);
+    let mut all = vec![
+        (is(&|[_, far]| one(far, range)), "you return the far root"),
+        (
+            is(&|roots| if b < 0.0 { None } else { range.first(roots) }),
+            "t_ca < 0 is not a miss: a ray that starts inside still hits the far side",
+        ),
+        (
+            is(&|[near, _]| one(near, range)),
+            "you only try the near root: if the ray starts inside, it is behind the ray, and the far one counts",
+        ),
+        (
+            is(&|roots| Within(t_min, f64::INFINITY).first(roots)),
+            "you return a t beyond t_max: ask ray.contains(t)",
+        ),
+        (is(&|roots| Within(0.0, t_max).first(roots)), "you return a t before t_min: ask ray.contains(t)"),
+        (is(&|roots| forward.first(roots)), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
+        (is(&|[near, _]| Some(near)), "you return the near root in any case: ask ray.contains(t)"),
+        (
+            is(&|[near, far]| forward.first([near, far]).filter(|&t| t_min < t && t < t_max)),
+            "you choose a root before you ask ray.contains(t): if the near root does not count, the far one may",
+        ),
+        (
+            is(&|[near, far]| range.first([near, far].map(|t| if t < t_max { t } else { t_max }))),
+            "you return t_max for a hit beyond it: that is a miss",
+        ),
+        (
+            !loses_only && is(&|[near, far]| range.first([-near, -far])),
+            "the sign of b (or of t_ca) is wrong: both roots are negated",
+        ),
+        (
+            is(&|_| one(b / a, range)),
+            "you return the t of the point nearest to the centre: half the chord is missing",
+        ),
+    ];
+    all.extend(
+        EPSILONS.map(|(epsilon, text)| (is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)), text)),
+    );
+    all
+}
+
+/// Wrong roots.
+fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -> Vec<(bool, &'static str)> {
+    let Quadratic { a, b, .. } = *quadratic;
+    let range = Within(f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+    let first = |roots| range.first(roots);
+    let of = |quadratic: &Quadratic, scale: f64| {
+        let Quadratic { a, b, .. } = *quadratic;
+        gives(yours, quadratic, |root| [scale * (b - root) / a, scale * (b + root) / a], first)
+    };
+    // Without a = d·d: in the quadratic, or in the vector from the centre to the ray's nearest point.
+    let f = query.ray.origin.as_dvec3() - query.sphere.center.as_dvec3();
+    let squared = f64::from(query.sphere.radius).powi(2);
+    let c = f.length_squared() - squared;
+    let a_is_one = Quadratic { a: 1.0, discriminant: b * b - c, ..*quadratic };
+    let nearest = (f + b * query.ray.direction.as_dvec3()).length_squared();
+    let chord = Quadratic { a: 1.0, discriminant: squared - nearest, ..*quadratic };
+    let by_product = |root: f64| {
+        let q = b + root.copysign(b);
+        [c / q, q]
+    };
+    let is_no_unit = (a - 1.0).abs() > 1e-3;
+    let radius = f64::from(query.sphere.radius);
+    vec![
+        (
+            is_no_unit && of(quadratic, a.sqrt()),
+            "your t counts world units; it must count lengths of direction (which is no unit vector here)",
+        ),
+        (is_no_unit && of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
+        (
+            is_no_unit && (of(&a_is_one, 1.0) || gives(yours, &chord, by_product, first)),
+            "direction is not a unit vector here: you take a = d·d for 1",
+        ),
+        (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
+        (of(&Quadratic::with_radius(query, 0.0), 1.0), "your answer is that for radius 0: is -r² left out?"),
+    ]
+}

@@ -1,0 +1,252 @@
+//! Known mistakes in the intersection of a ray and a triangle, each with the answer that it gives.
+
+use checks::double::U;
+use glam::{DVec3, Vec3};
+use raykata::kit::{TriangleHit, TriangleQuery};
+
+/// The intersection of the line along a ray with the plane of a triangle, in double precision.
+struct Line {
+    t: f64,
+    alpha: f64,
+    beta: f64,
+    gamma: f64,
+    /// The determinant of Cramer's rule, `-d·(u × v)`.
+    determinant: f64,
+    /// The largest error of the coordinates by the rounding of differences, and by the rounding of a point in the world.
+    tolerance: f64,
+    in_the_world: f64,
+    /// The largest error of `t` divided by that of the coordinates.
+    t_per_tolerance: f64,
+}
+
+impl Line {
+    fn of(query: &TriangleQuery) -> Line {
+        let (ray, triangle) = (&query.ray, &query.triangle);
+        let [a, b, c, o, d] =
+            [triangle.a, triangle.b, triangle.c, ray.origin, ray.direction].map(Vec3::as_dvec3);
+        let (u, v, s) = (b - a, c - a, o - a);
+        let normal = u.cross(v);
+        let determinant = -d.dot(normal);
+        let t = s.dot(normal) / determinant;
+        let beta = -d.dot(s.cross(v)) / determinant;
+        let gamma = -d.dot(u.cross(s)) / determinant;
+        // The same bound as that of `double::triangle`, with the size of the differences or of the coordinates.
+        let thin = u.length() * v.length() / normal.length();
+        let steep = d.length() * normal.length() / determinant.abs();
+        let reach = s.length().max(t.abs() * d.length()) + u.length().max(v.length());
+        let size = u.length().min(v.length());
+        let far = [a, b, c, o].map(|p| p.length()).into_iter().fold(0.0, f64::max);
+        let relative = |reach: f64| 64.0 * U * thin * thin * steep * (1.0 + reach / size);
+        Line {
+            t,
+            alpha: 1.0 - beta - gamma,
+            beta,
+            gamma,
+            determinant,
+            tolerance: relative(reach),
+            in_the_world: relative(far + reach),
+            t_per_tolerance: size / d.length(),
+        }
+    }
+}
+
+/// An answer, compared with those of wrong methods.
+struct Answer<'a> {
+    query: &'a TriangleQuery,
+    yours: Option<TriangleHit>,
+    tolerance: f64,
+    t_tolerance: f64,
+}
+
+impl Answer<'_> {
+    /// Whether a method gives this answer that computes `[t, β, γ]` and accepts it if `accepted`.
+    fn is(&self, [t, beta, gamma]: [f64; 3], accepted: bool) -> bool {
+        let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= self.tolerance;
+        match self.yours {
+            None => !accepted,
+            Some(hit) => {
+                let close = (f64::from(hit.t) - t).abs() <= self.t_tolerance + 1e-5 * t.abs();
+                accepted && close && near(hit.beta, beta) && near(hit.gamma, gamma)
+            }
+        }
+    }
+
+    /// The same for a method that accepts a hit in the range of the ray with these coordinates, each at least 0. If a
+    /// rounding error decides that, both answers are possible.
+    fn is_inside(&self, hit: [f64; 3], least: f64) -> bool {
+        let counts = self.counts(hit[0]);
+        let open = least.abs() <= self.tolerance;
+        (open && (self.is(hit, counts) || self.yours.is_none())) || self.is(hit, counts && least >= 0.0)
+    }
+
+    fn counts(&self, t: f64) -> bool {
+        f64::from(self.query.ray.t_min) < t && t < f64::from(self.query.ray.t_max)
+    }
+}
+
+/// Fixed limits for the determinant.
+const LIMITS: [(f64, &str); 5] = [
+    (1e-8, "you take |det| < 0.00000001 for 0, but a fixed limit rejects small triangles"),
+    (1.2e-7, "you take |det| < f32::EPSILON for 0, but a fixed limit rejects small triangles"),
+    (1e-6, "you take |det| < 0.000001 for 0, but a fixed limit rejects small triangles"),
+    (1e-5, "you take |det| < 0.00001 for 0, but a fixed limit rejects small triangles"),
+    (1e-4, "you take |det| < 0.0001 for 0, but a fixed limit rejects small triangles"),
+];
+
+/// Fixed limits for `t`.
+const EPSILONS: [(f64, &str); 4] = [
+    (1e-6, "you drop hits with t below 0.000001: ask ray.contains(t)"),
+    (1e-5, "you drop hits with t below 0.00001: ask ray.contains(t)"),
+    (1e-4, "you drop hits with t below 0.0001: ask ray.contains(t)"),
+    (1e-3, "you drop hits with t below 0.001: ask ray.contains(t)"),
+];
+
+/// All known mistakes, each with whether it gives this answer.
+/// If `loses_only`, none of the student's answers is a wrong hit, so values with a wrong sign are not the mistake.
+pub(super) fn mistakes(
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
+    let line = Line::of(query);
+    // A wrong method may round in another way, so allow twice the tolerance of a right one.
+    let tolerance = 2.0 * line.tolerance;
+    let answer = Answer { query, yours, tolerance, t_tolerance: tolerance * line.t_per_tolerance };
+    let mut all = of_special_values(query, yours, &line);
+    all.extend(of_tests(&answer, &line));
+    all.extend(of_values(&answer, &line, loses_only));
+    all
+}
+
+fn of_special_values(
+    query: &TriangleQuery,
+    yours: Option<TriangleHit>,
+    line: &Line,
+) -> Vec<(bool, &'static str)> {
+    let TriangleQuery { ray, triangle } = query;
+    let [a, b, c] = [triangle.a, triangle.b, triangle.c];
+    let input_is_nan = [a, b, c, ray.origin, ray.direction].iter().any(|v| v.is_nan());
+    let on_an_edge = line.alpha.min(line.beta).min(line.gamma) == 0.0;
+    vec![
+        (
+            yours.is_some() && (line.determinant == 0.0 || input_is_nan),
+            "a triangle without area, or a ray along its plane, divides by 0: that is a miss, and so is a NaN",
+        ),
+        (
+            yours.is_some_and(|hit| !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite())),
+            "you return NaN or infinity: compare so that NaN fails",
+        ),
+        (
+            yours.is_none() && on_an_edge && line.determinant != 0.0,
+            "points on an edge belong to the triangle: compare with ≥ and ≤, not with > and <",
+        ),
+    ]
+}
+
+/// Right coordinates with a wrong test.
+fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
+    let &Line { t, alpha, beta, gamma, determinant, .. } = line;
+    let ray = &answer.query.ray;
+    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let hit = [t, beta, gamma];
+    let inside = alpha >= -answer.tolerance && beta >= -answer.tolerance && gamma >= -answer.tolerance;
+    let tests = |least: f64| answer.is_inside(hit, least);
+    let within = |counts: bool| answer.is(hit, counts && inside);
+    let mut all = vec![
+        (
+            answer.yours.is_some_and(|hit| hit.t == ray.t_min || hit.t == ray.t_max) && within(true),
+            "the range is open: a hit at t_min or t_max does not count (t = 0 for a ray that starts in the triangle)",
+        ),
+        (within(t_min < t), "you return a hit beyond t_max: ask ray.contains(t)"),
+        (within(t < t_max), "you return a hit behind the ray or before t_min: ask ray.contains(t)"),
+        (within(0.0 < t), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
+        (within(true), "you do not ask ray.contains(t)"),
+        (
+            tests((beta + gamma).min(alpha)),
+            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well",
+        ),
+        (
+            tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)),
+            "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested",
+        ),
+        (tests(beta.min(gamma)), "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"),
+        (tests(beta.min(alpha)), "you accept a γ below 0: γ ≥ 0 is not tested"),
+        (tests(gamma.min(alpha)), "you accept a β below 0: β ≥ 0 is not tested"),
+        (tests(1.0), "you do not test whether the point is inside the triangle"),
+        (
+            determinant < 0.0 && answer.yours.is_none(),
+            "you test the triangle from one side only: it is hit from the back as well",
+        ),
+        (
+            determinant > 0.0 && answer.yours.is_none(),
+            "you test the triangle from one side only: it is hit from the front as well",
+        ),
+    ];
+    let is_lost = answer.yours.is_none();
+    all.extend(LIMITS.map(|(limit, text)| (is_lost && determinant.abs() < limit, text)));
+    all.extend(EPSILONS.map(|(epsilon, text)| (is_lost && 0.0 < t && t < epsilon, text)));
+    all
+}
+
+/// Wrong values of `t`, β and γ.
+fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &'static str)> {
+    let &Line { t, alpha, beta, gamma, .. } = line;
+    let least = alpha.min(beta).min(gamma);
+    let sum = alpha.abs() + beta.abs() + gamma.abs();
+    let length = answer.query.ray.direction.as_dvec3().length();
+    let in_the_world = line.in_the_world;
+    let of_a_point = answer.yours.map_or(least.abs() <= in_the_world, |hit| {
+        let near = |value: f32, exact: f64| (f64::from(value) - exact).abs() <= in_the_world;
+        // Gram's coordinates do not depend on t as long as the point is in the plane, but t may be off as well.
+        let t_error = (f64::from(hit.t) - t).abs();
+        near(hit.beta, beta) && near(hit.gamma, gamma) && t_error <= in_the_world * line.t_per_tolerance
+    });
+    vec![
+        (
+            slide_determinant(answer.query).is_some_and(|factor| {
+                let hit = [t, beta, gamma].map(|value| factor * value);
+                answer.is_inside(hit, hit[1].min(hit[2]).min(1.0 - hit[1] - hit[2]))
+            }),
+            "you use the determinant as the slide prints it; it must be a(fk - gj) + b(gi - ek) + c(ej - fi)",
+        ),
+        (!loses_only && answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
+        (
+            answer.is_inside([t, alpha, gamma], least)
+                || answer.is_inside([t, beta, alpha], least)
+                || answer.is_inside([t, alpha, beta], least)
+                || answer.is_inside([t, gamma, alpha], least),
+            "you return α, a weight of corner a: β belongs to b and γ to c",
+        ),
+        (
+            !loses_only && answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
+            "the right side a - o is turned around: t, β and γ have the wrong sign",
+        ),
+        (!loses_only && answer.is_inside([-t, beta, gamma], least), "the sign of t is wrong"),
+        (
+            (length - 1.0).abs() > 1e-3 && answer.is_inside([t * length, beta, gamma], least),
+            "your t counts world units; it must count lengths of direction",
+        ),
+        (
+            answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0)
+                || answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()),
+            "areas without a sign accept a β or γ below 0: measure them along the normal",
+        ),
+        (
+            of_a_point,
+            "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",
+        ),
+    ]
+}
+
+/// The factor by which the determinant that the slide prints changes `t`, β and γ; `None` if it is right for this query.
+fn slide_determinant(query: &TriangleQuery) -> Option<f64> {
+    let triangle = query.triangle;
+    let [a, b, c, o, z] =
+        [triangle.a, triangle.b, triangle.c, query.ray.origin, query.ray.direction].map(Vec3::as_dvec3);
+    let (x, y, s): (DVec3, DVec3, DVec3) = (a - b, a - c, a - o);
+    let slide = x.x * (y.y * z.z - z.y * y.z) + y.x * (z.y * s.z - s.y * z.z) + z.x * (s.y * y.z - y.y * s.z);
+    let right = x.dot(y.cross(z));
+    // A determinant of 0 gives infinity or NaN, which is a miss.
+    let factor = if slide == 0.0 { f64::NAN } else { right / slide };
+    ((factor - 1.0).abs() > 1e-3 || factor.is_nan()).then_some(factor)
+}

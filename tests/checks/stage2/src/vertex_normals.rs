@@ -1,0 +1,189 @@
+//! Normals of the vertices of a mesh.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::generate::point;
+use checks::judge::compare;
+use checks::paste::Paste;
+use glam::{DVec3, Vec3, vec3};
+use proptest::prelude::*;
+use raykata::mesh::Mesh;
+
+pub(super) fn octahedron() -> Mesh {
+    let corner = |i: u32| [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X, Vec3::NEG_Y, Vec3::NEG_Z][i as usize];
+    let triangles =
+        vec![[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]];
+    Mesh { positions: (0..6).map(corner).collect(), triangles, ..Mesh::default() }
+}
+
+/// The sums of all faces around a vertex, each weighted in another way.
+#[derive(Default)]
+struct Sums {
+    faces: Vec<DVec3>,
+    plain: DVec3,
+    by_area: DVec3,
+    by_angle: DVec3,
+}
+
+fn sums(mesh: &Mesh, vertex: usize) -> Sums {
+    let mut sums = Sums::default();
+    for corners in &mesh.triangles {
+        let Some(place) = corners.iter().position(|&corner| corner as usize == vertex) else { continue };
+        let at = |turn: usize| mesh.positions[corners[(place + turn) % 3] as usize].as_dvec3();
+        let (u, v) = (at(1) - at(0), at(2) - at(0));
+        let cross = u.cross(v);
+        let Some(normal) = cross.try_normalize() else { continue };
+        sums.faces.push(normal);
+        sums.plain += normal;
+        sums.by_area += cross;
+        sums.by_angle += u.angle_between(v) * normal;
+    }
+    sums
+}
+
+/// The normals of a mesh are judged per vertex. A sum that nearly cancels is judged by its length only.
+fn judge(what: &str, mesh: &Mesh, normals: &[Vec3]) -> CheckResult {
+    if normals.len() != mesh.positions.len() {
+        let [yours, expected] = [normals.len(), mesh.positions.len()].map(|n| format!("{n} normals"));
+        return Err(Broken::with_texts(what, yours, expected, "one per vertex").explained_by([(
+            normals.len() == 3 * mesh.triangles.len() || normals.len() == mesh.triangles.len(),
+            "the result has one normal per vertex, not per triangle or corner",
+        )]));
+    }
+    let outcomes = normals.iter().enumerate().map(|(vertex, &yours)| judge_one(what, mesh, vertex, yours));
+    all_hold(outcomes.collect())
+}
+
+fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult {
+    let sums = sums(mesh, vertex);
+    let near = |n: DVec3| (yours.as_dvec3() - n).length() < 1e-5;
+    let unit = (yours.length() - 1.0).abs() < 1e-5;
+    let cancels = sums.plain.length() < 1e-6;
+    let average = sums.plain.normalize_or_zero();
+    let right = match (sums.faces.is_empty(), cancels) {
+        (true, _) => unit,
+        (_, true) => sums.faces.iter().any(|&face| near(face)),
+        // The error of a sum of unit vectors grows as the sum becomes shorter.
+        _ => unit && (yours.as_dvec3() - average).length() < 1e-5 / sums.plain.length().min(1.0),
+    };
+    if right {
+        return Ok(());
+    }
+    let expected = match sums.faces.first() {
+        None => Vec3::Z,
+        Some(face) if cancels => face.as_vec3(),
+        Some(_) => average.as_vec3(),
+    };
+    let input = format!("{what}, vertex {vertex} at {}", mesh.positions[vertex].paste());
+    let is = |n: DVec3| near(n.normalize_or_zero());
+    let source = if cancels { "a face, because the sum is 0" } else { "double precision" };
+    Err(Broken::new(input, yours, expected, source).explained_by([
+        (
+            cancels && (yours.is_nan() || yours.length() < 1e-3),
+            "a sum of 0 has no direction (0/0 is NaN): take the normal of one face, or any unit vector if there is none",
+        ),
+        (yours.is_nan(), "you return NaN: a triangle without area has no normal and does not count"),
+        (
+            !sums.faces.is_empty()
+                && (near(sums.plain) || near(sums.plain / sums.faces.len() as f64))
+                && !unit,
+            "your normal is not of unit length: normalize the sum",
+        ),
+        (is(-sums.plain), "your normal points inwards: is the face normal u × v?"),
+        (
+            is(sums.by_area),
+            "you weight each face by its area: normalize the face normals before you add them",
+        ),
+        (is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
+        (
+            sums.faces.first().is_some_and(|&face| near(face))
+                || sums.faces.last().is_some_and(|&face| near(face)),
+            "you return the normal of one face: add up those of all faces around the vertex",
+        ),
+    ]))
+}
+
+fn judge_all(trial: &Trial<'_>, what: &str, meshes: &[Mesh]) -> Vec<CheckResult> {
+    compare(meshes, trial.kit.vertex_normals(meshes), |mesh, normals| judge(what, mesh, &normals))
+}
+
+/// Faces around vertex 0, with angles and areas that differ. Some of them do not have their neighbour as next one.
+fn fans() -> impl Strategy<Value = Mesh> + Clone {
+    let faces = prop::collection::vec((0..6u32, 0..6u32, any::<bool>()), 1..6);
+    (point(2), prop::collection::vec(point(2), 6), faces).prop_map(|(tip, around, faces)| {
+        let positions: Vec<Vec3> = std::iter::once(tip).chain(around).collect();
+        let triangles = faces
+            .into_iter()
+            .map(|(p, q, first)| if first { [0, p + 1, q + 1] } else { [q + 1, 0, p + 1] })
+            .collect();
+        Mesh { positions, triangles, ..Mesh::default() }
+    })
+}
+
+/// Whether rounding may decide: a thin triangle, whose normal may be lost, or a sum that almost cancels.
+fn is_open(mesh: &Mesh) -> bool {
+    let thin = mesh.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());
+        let (u, v) = (b - a, c - a);
+        let area = u.cross(v).length();
+        area < 0.02 * u.length() * v.length() && u.cross(v) != DVec3::ZERO
+    });
+    let cancels = |vertex| {
+        let sums = sums(mesh, vertex);
+        !sums.faces.is_empty() && sums.plain.length() < 0.02 && sums.plain != DVec3::ZERO
+    };
+    // Edges in the same line are not exactly parallel once each of them is scaled.
+    let flat = mesh.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize]);
+        (b - a).cross(c - a) == Vec3::ZERO && a != b && b != c && c != a
+    });
+    thin || flat || (0..mesh.positions.len()).any(cancels)
+}
+
+pub(super) fn vertex_normals_average_their_faces(trial: &Trial<'_>) -> CheckResult {
+    // The average counts each face once, whatever its area: one large face points up, one small face to the side.
+    let corner = Mesh {
+        positions: vec![Vec3::ZERO, 8.0 * Vec3::X, 8.0 * Vec3::Y, vec3(0.0, 0.0, 0.125), vec3(0.0, 4.0, 0.0)],
+        triangles: vec![[0, 1, 2], [0, 4, 3]],
+        ..Mesh::default()
+    };
+    all_hold(
+        [
+            judge_all(trial, "an octahedron", &[octahedron()]),
+            judge_all(trial, "a floor and a thin wall", &[corner]),
+        ]
+        .concat(),
+    )?;
+    trial.forall(600, fans(), |meshes| {
+        meshes
+            .iter()
+            .zip(trial.kit.vertex_normals(meshes))
+            .map(|(mesh, normals)| {
+                if is_open(mesh) {
+                    return Ok(());
+                }
+                let positions: Vec<String> = mesh.positions.iter().map(Paste::paste).collect();
+                let what = format!("positions [{}], triangles {:?}", positions.join(", "), mesh.triangles);
+                judge(&what, mesh, &normals)
+            })
+            .collect()
+    })
+}
+
+pub(super) fn vertex_normals_that_cancel_are_still_normals(trial: &Trial<'_>) -> CheckResult {
+    // T14: a sheet whose two sides are faces, a face without area, and a vertex without faces.
+    let sheet = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, vec3(5.0, 5.0, 5.0)],
+        triangles: vec![[0, 1, 2], [0, 2, 1], [0, 1, 1]],
+        ..Mesh::default()
+    };
+    let nothing = Mesh::default();
+    let flat = Mesh {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, 2.0 * Vec3::X],
+        triangles: vec![[0, 1, 3], [0, 1, 2], [3, 3, 3]],
+        ..Mesh::default()
+    };
+    let meshes =
+        [("a sheet with two sides", sheet), ("a mesh of nothing", nothing), ("a flat triangle", flat)];
+    all_hold(meshes.into_iter().flat_map(|(what, mesh)| judge_all(trial, what, &[mesh])).collect())
+}

@@ -1,0 +1,188 @@
+//! Slab tests in single precision with one mistake each.
+
+use checks::double::U;
+use raykata::kit::SlabQuery;
+use raykata::rounding::gamma;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Mistake {
+    None,
+    /// The planes are never swapped.
+    NotSwapped,
+    /// The planes are swapped if `d < 0`, which is false for -0.0.
+    SwappedByLess,
+    /// The two planes are sorted by min and max, which drop NaN.
+    MinMax,
+    /// A NaN replaces the entry or the exit.
+    NanTakenOver,
+    /// `b/d - o/d` in place of `(b - o)/d`.
+    FastForm,
+    /// The product with `1/d` where it overflows.
+    Overflow,
+    /// The interval must have a length.
+    Open,
+    /// The box is larger by this on each side, and the interval must have a length.
+    Padded(f32),
+    /// The entry must not lie before `t_min`.
+    NotFromInside,
+    /// The exit must lie behind `t_min`.
+    ExitBehindStart,
+    /// Entry or exit is not limited by the range.
+    StartIgnored,
+    EndIgnored,
+    RangeIgnored,
+    /// This axis is left out.
+    LeftOut(usize),
+    /// The smaller entry and the larger exit.
+    Widest,
+}
+
+const MISTAKES: [(Mistake, &str); 19] = [
+    (Mistake::NotSwapped, "for a negative direction component the ray enters at max: swap the two planes"),
+    (Mistake::SwappedByLess, "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d"),
+    (
+        Mistake::FastForm,
+        "1/d is ∞ for d = 0, and ∞ - ∞ is NaN: subtract first, (b - o) · 1/d and not b/d - o/d",
+    ),
+    (Mistake::MinMax, "0 · ∞ is NaN, and min and max drop NaN: a ray within a face hits the closed box"),
+    (
+        Mistake::NanTakenOver,
+        "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
+    ),
+    (Mistake::Overflow, "1/d overflows to ∞ for a tiny d: divide by d there"),
+    (Mistake::Open, "entry equals exit in a flat box or at an edge: compare with ≤, not with <"),
+    (
+        Mistake::Padded(1e-3),
+        "you pad the box by 0.001, which is rounded away far from the origin: use ≤ and no padding",
+    ),
+    (
+        Mistake::Padded(1e-4),
+        "you pad the box by 0.0001, which is rounded away far from the origin: use ≤ and no padding",
+    ),
+    (
+        Mistake::Padded(1e-5),
+        "you pad the box by 0.00001, which is rounded away far from the origin: use ≤ and no padding",
+    ),
+    (
+        Mistake::Padded(1e-6),
+        "you pad the box by 0.000001, which is rounded away far from the origin: use ≤ and no padding",
+    ),
+    (Mistake::ExitBehindStart, "the box is closed: an exit exactly at t_min is a hit"),
+    (
+        Mistake::NotFromInside,
+        "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
+    ),
+    (
+        Mistake::StartIgnored,
+        "your entry or your exit is before t_min: only the part within t_min..t_max counts",
+    ),
+    (
+        Mistake::EndIgnored,
+        "your entry or your exit is beyond t_max: only the part within t_min..t_max counts",
+    ),
+    (Mistake::RangeIgnored, "you do not limit the interval to t_min..t_max"),
+    (
+        Mistake::LeftOut(0),
+        "the axis x is left out: the ray must be between the planes of all three axes at once",
+    ),
+    (
+        Mistake::LeftOut(1),
+        "the axis y is left out: the ray must be between the planes of all three axes at once",
+    ),
+    (
+        Mistake::LeftOut(2),
+        "the axis z is left out: the ray must be between the planes of all three axes at once",
+    ),
+];
+
+/// The interval that the box of a wrong test has in common with the ray.
+fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &SlabQuery) -> Option<(f32, f32)> {
+    if bounds.is_empty() {
+        return None;
+    }
+    let (mut near, mut far) = (f32::NEG_INFINITY, f32::INFINITY);
+    let pad = if let Mistake::Padded(pad) = mistake { pad } else { 0.0 };
+    for axis in (0..3).filter(|&axis| mistake != Mistake::LeftOut(axis)) {
+        let (o, d) = (ray.origin[axis], ray.direction[axis]);
+        let inverse = 1.0 / d;
+        let t = |plane: f32| match mistake {
+            Mistake::FastForm => plane * inverse - o * inverse,
+            Mistake::Overflow => (plane - o) * inverse,
+            _ if inverse.is_infinite() && d != 0.0 => (plane - o) / d,
+            _ => (plane - o) * inverse,
+        };
+        let ends = [t(bounds.min[axis] - pad), t(bounds.max[axis] + pad)];
+        let swapped = match mistake {
+            Mistake::NotSwapped => false,
+            Mistake::SwappedByLess => d < 0.0,
+            _ => inverse.is_sign_negative(),
+        };
+        let (enter, leave) = match mistake {
+            Mistake::MinMax => (ends[0].min(ends[1]), ends[0].max(ends[1])),
+            _ if swapped => (ends[1], ends[0]),
+            _ => (ends[0], ends[1]),
+        };
+        if mistake == Mistake::NanTakenOver {
+            near = if enter <= near { near } else { enter };
+            far = if leave >= far { far } else { leave };
+        } else if mistake == Mistake::Widest {
+            near = if axis == 0 { enter } else { near.min(enter) };
+            far = if axis == 0 { leave } else { far.max(leave) };
+        } else {
+            near = if enter > near { enter } else { near };
+            far = if leave < far { leave } else { far };
+        }
+    }
+    if mistake == Mistake::NotFromInside && near < ray.t_min {
+        return None;
+    }
+    if is_widened {
+        let (less, more) = (1.0 - 2.0 * gamma(3), 1.0 + 2.0 * gamma(3));
+        (near, far) = ((near * less).min(near * more), (far * less).max(far * more));
+    }
+    if mistake == Mistake::ExitBehindStart && far <= ray.t_min {
+        return None;
+    }
+    let is_open = matches!(mistake, Mistake::Open | Mistake::Padded(_));
+    if !matches!(mistake, Mistake::StartIgnored | Mistake::RangeIgnored) {
+        near = if near < ray.t_min { ray.t_min } else { near };
+    }
+    if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
+        far = if far > ray.t_max { ray.t_max } else { far };
+    }
+    (if is_open { near < far } else { !(near > far) }).then_some((near, far))
+}
+
+/// Whether a test with this mistake gives this answer, up to a few roundings.
+fn gives(mistake: Mistake, query: &SlabQuery, yours: Option<(f32, f32)>) -> bool {
+    let same = |yours: f32, t: f32| {
+        let (yours, t) = (f64::from(yours), f64::from(t));
+        yours == t || (yours - t).abs() <= 32.0 * U * t.abs() || (yours.is_nan() && t.is_nan())
+    };
+    [false, true].into_iter().any(|is_widened| match (yours, slab(mistake, is_widened, query)) {
+        (Some((enter, leave)), Some((near, far))) => same(enter, near) && same(leave, far),
+        (yours, other) => yours.is_none() && other.is_none(),
+    })
+}
+
+/// All known mistakes, each with whether it gives this answer.
+pub(super) fn mistakes(query: &SlabQuery, yours: Option<(f32, f32)>) -> Vec<(bool, &'static str)> {
+    let is_lost_by_rounding = yours.is_none()
+        && slab(Mistake::None, false, query).is_none()
+        && slab(Mistake::None, true, query).is_some();
+    let mut all = vec![
+        (
+            query.bounds.is_empty() && yours.is_some(),
+            "the empty box (inf, -inf) has no point, but sorted planes make it infinite: test is_empty()",
+        ),
+        (
+            is_lost_by_rounding,
+            "1/d, the difference and the product are rounded, so far may be slightly below near: multiply far by 1 + 2 γ₃",
+        ),
+    ];
+    all.extend(MISTAKES.map(|(mistake, text)| (gives(mistake, query, yours), text)));
+    let is_nan = yours.is_some_and(|(enter, leave)| enter.is_nan() || leave.is_nan());
+    all.push((is_nan, "you return NaN: 0 · ∞ is NaN, so order the comparison so that it drops NaN"));
+    all.push((gives(Mistake::Widest, query, yours), "you unite the intervals of the axes: intersect them"));
+    all
+}
