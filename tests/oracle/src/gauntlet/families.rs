@@ -231,7 +231,7 @@ fn crown() -> Closed {
     const SIDES: u32 = 300;
     let rim = |i: u32| {
         let (sin, cos) = (TAU * (i % SIDES) as f32 / SIDES as f32).sin_cos();
-        vec3(cos, sin, if i % 2 == 0 { 0.05 } else { -0.05 })
+        vec3(cos, sin, if i.is_multiple_of(2) { 0.05 } else { -0.05 })
     };
     let mut builder = Builder::default();
     for i in 0..SIDES {
