@@ -188,7 +188,22 @@ fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
         Err(Broken::with_texts(input, "no hit", "a hit", "the mesh is closed")
             .explained_by(reasons_of_leak(trial, ray, mesh)))
     };
-    all_hold(rays.iter().map(judge).collect())
+    all_hold(rays.iter().map(judge).collect())?;
+    // In the opposite direction the ray misses these triangles, unless they lie around its origin.
+    let back: Vec<TriangleQuery> = near[..near.len().min(2000)]
+        .iter()
+        .map(|query| TriangleQuery { ray: Ray::new(query.ray.origin, -query.ray.direction), ..*query })
+        .collect();
+    let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
+        let body = Body::Triangle(query.triangle);
+        let missed = verdict(&query.ray, body).is_some_and(|verdict| !verdict.is_hit());
+        let clear = triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
+        if yours.is_none() || !missed || !clear {
+            return Ok(());
+        }
+        Err(Broken::new(query.call("watertight"), yours, "None", "exactly").explained_by([]))
+    };
+    all_hold(compare(&back, trial.kit.watertight(&back), judge))
 }
 
 pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {

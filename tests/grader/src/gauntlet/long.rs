@@ -25,7 +25,9 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// The number of rays of one piece of work.
+/// The number of rays of one piece of work in closed meshes, for which a structure over each mesh is built.
+const IN_MESHES: u64 = 50_000;
+/// The number of rays of another piece of work: those of a frame of secondary rays.
 const PIECE: u64 = secondary_rays::RAYS;
 /// Time limit for a piece in one mesh, with the build of the structure and without much optimisation.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -120,6 +122,14 @@ impl Trial {
         }
     }
 
+    /// The number of rays of one piece of work.
+    fn rays(self) -> u64 {
+        match self {
+            Trial::Mesh(..) => IN_MESHES,
+            Trial::Slab | Trial::SelfHit | Trial::Contact => PIECE,
+        }
+    }
+
     /// Counts the failures among the rays of piece `piece`.
     fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, piece: u64) -> Result<u64> {
         let mut random = Random::new(seed, piece);
@@ -142,7 +152,7 @@ impl Trial {
             }
             Trial::Mesh(structure, aim) => {
                 let mut rays: Vec<Vec<(Ray, u32)>> = vec![Vec::new(); meshes.len()];
-                for n in 0..PIECE as usize {
+                for n in 0..IN_MESHES as usize {
                     let mesh = n % meshes.len();
                     rays[mesh].push(aimed(&meshes[mesh], aim, &mut random));
                 }
@@ -164,13 +174,12 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
     }
     state.seed = seed;
     // List the pieces of work that are not done.
-    let pieces = rays.div_ceil(PIECE);
     let open = |trial: &Trial, piece: &u64| {
         state.done.get(&trial.name()).is_none_or(|done| !done.pieces.contains(piece))
     };
     let work: Vec<(Trial, u64)> = Trial::all()
         .into_iter()
-        .flat_map(|trial| (0..pieces).map(move |piece| (trial, piece)))
+        .flat_map(|trial| (0..rays.div_ceil(trial.rays())).map(move |piece| (trial, piece)))
         .filter(|(trial, piece)| open(trial, piece))
         .collect();
     // Run them on all cores and store the progress regularly.
@@ -186,7 +195,7 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
         let (state, kept) = &mut *guard;
         let done = state.done.entry(trial.name()).or_default();
         done.pieces.push(piece);
-        done.rays += PIECE;
+        done.rays += trial.rays();
         done.failures += failures;
         if kept.elapsed() > PAUSE {
             write(state, file)?;
