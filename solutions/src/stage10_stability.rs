@@ -227,7 +227,7 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
     // <solution>
     // Call the slab test of stage 3, which is conservative.
     slab(ray, inverse_direction, bounds)
-    // <stub> todo!("compare so that NaN changes nothing; make the exit a little later and the entry a little earlier, on both sides of 0")
+    // <stub> todo!("compare so that NaN changes nothing; then widen the interval at both ends, on both sides of 0")
     // </solution>
 }
 

@@ -37,7 +37,7 @@ fn tile(p: Vec3, u: Vec3, v: Vec3) -> Triangle {
     Triangle { a: p, b: p + u, c: p + v }
 }
 
-/// Thin triangles in all directions through the whole unit ball.
+/// Thin triangles in all directions through the whole unit sphere.
 fn needles(n: usize) -> Vec<Triangle> {
     let mut random = Random::new(1, 0);
     let needle = |_| {

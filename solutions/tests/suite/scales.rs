@@ -36,10 +36,10 @@ exponent = 20
 [materials.mirror]
 diffuse = 0.1
 mirror = 0.7
-[textures.ball]
-file = "images/ball.png"
+[textures.picture]
+file = "images/bricks.png"
 [materials.picture]
-texture = "ball"
+texture = "picture"
 mirror = 0.2
 [materials.glass]
 transmission = 0.9

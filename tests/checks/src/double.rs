@@ -109,7 +109,9 @@ pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     let (normal, direction) = (plane.normal.as_dvec3(), ray.direction.as_dvec3());
     let offset = plane.point.as_dvec3() - ray.origin.as_dvec3();
     let (distance, slope) = (offset.dot(normal), direction.dot(normal));
-    if slope == 0.0 {
+    // Products that are all 0 stay 0 for any length of the vectors. Those that cancel do not, if the normal is scaled to unit
+    // length first.
+    if slope == 0.0 && normal * direction == DVec3::ZERO {
         return Expected::Miss;
     }
     // Bound the error of each dot product by a few roundings of its largest term.

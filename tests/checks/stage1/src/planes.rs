@@ -102,6 +102,10 @@ fn mistakes(query: &PlaneQuery, yours: Option<f32>, loses_only: bool) -> Vec<(bo
                 || (is_lost && t <= of_coordinates),
             "-(D + n·o) cancels far from the origin; (p0 - o)·n does not",
         ),
+        (
+            t < 0.0 && gives(-t, range),
+            "you return |t| for a plane behind the ray: keep the signs of (p0 - o)·n and of n·d",
+        ),
         (!loses_only && gives(-t, range), "the sign of t is wrong: compute p0 - o, not o - p0"),
     ]);
     all

@@ -38,14 +38,8 @@ fn gives(
     })
 }
 
-/// The mistakes that lose a hit at a small `t`.
-const EPSILONS: [(f64, &str); 5] = [
-    (1e-6, "you drop hits with t below 0.000001: compare with t_min, not with a fixed epsilon"),
-    (1e-5, "you drop hits with t below 0.00001: compare with t_min, not with a fixed epsilon"),
-    (1e-4, "you drop hits with t below 0.0001: compare with t_min, not with a fixed epsilon"),
-    (1e-3, "you drop hits with t below 0.001: compare with t_min, not with a fixed epsilon"),
-    (1e-2, "you drop hits with t below 0.01: compare with t_min, not with a fixed epsilon"),
-];
+/// The limits of `t` below which hits are lost.
+const EPSILONS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// All known mistakes, each with whether it gives this answer. If `loses_only`, none of the student's answers is a wrong hit,
 /// so the sign of the roots is not the mistake.
@@ -64,7 +58,7 @@ pub(super) fn mistakes(
         all.extend(of_cancellation(query, yours));
     }
     all.extend(of_choices(query, yours, &quadratic, loses_only));
-    all.extend(of_formulas(query, yours, &quadratic));
+    all.extend(of_formulas(query, yours, &quadratic, loses_only));
     all
 }
 
@@ -182,14 +176,20 @@ fn of_choices(
             "you return the t of the point nearest to the centre: half the chord is missing",
         ),
     ];
-    all.extend(
-        EPSILONS.map(|(epsilon, text)| (is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)), text)),
-    );
+    all.push((
+        EPSILONS.iter().any(|&epsilon| is(&|roots| Within(t_min.max(epsilon), t_max).first(roots))),
+        "you drop hits with a small t: compare with t_min, not with a fixed epsilon",
+    ));
     all
 }
 
 /// Wrong roots.
-fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -> Vec<(bool, &'static str)> {
+fn of_formulas(
+    query: &SphereQuery,
+    yours: Option<f32>,
+    quadratic: &Quadratic,
+    loses_only: bool,
+) -> Vec<(bool, &'static str)> {
     let Quadratic { a, b, .. } = *quadratic;
     let range = Within(f64::from(query.ray.t_min), f64::from(query.ray.t_max));
     let first = |roots| range.first(roots);
@@ -220,7 +220,6 @@ fn of_formulas(query: &SphereQuery, yours: Option<f32>, quadratic: &Quadratic) -
             is_no_unit && (of(&a_is_one, 1.0) || gives(yours, &chord, by_product, first)),
             "direction is not a unit vector here: you take a = d·d for 1",
         ),
-        (of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
-        (of(&Quadratic::with_radius(query, 0.0), 1.0), "your answer is that for radius 0: is -r² left out?"),
+        (!loses_only && of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
     ]
 }

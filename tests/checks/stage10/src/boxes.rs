@@ -123,7 +123,7 @@ impl Mistake {
 }
 
 /// No box that is met by exact arithmetic may be missed, and no box that is passed by at more than 64 roundings may be met.
-fn boxes_are_told_apart(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult {
+fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult {
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
         let broken = |expected: &str| {
@@ -146,13 +146,13 @@ fn boxes_are_told_apart(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult
 pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 8);
     let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
-    boxes_are_told_apart(trial, &queries)
+    hit_and_missed_boxes_differ(trial, &queries)
 }
 
 pub(super) fn slab_misses_no_box_in_any_range(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 18);
     let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| of_any_size(&mut random)).collect();
-    boxes_are_told_apart(trial, &queries)
+    hit_and_missed_boxes_differ(trial, &queries)
 }
 
 /// Whether an end of the interval lies outside the exact interval by more than 64 roundings.

@@ -150,6 +150,7 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
     let hit = [t, beta, gamma];
     let inside = alpha >= -answer.tolerance && beta >= -answer.tolerance && gamma >= -answer.tolerance;
+    let is_hit = answer.yours.is_some();
     let tests = |least: f64| answer.is_inside(hit, least);
     let within = |counts: bool| answer.is(hit, counts && inside);
     let mut all = vec![
@@ -162,16 +163,20 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
         (within(0.0 < t), "you ask t > 0 and not ray.contains(t): t_min and t_max count"),
         (within(true), "you do not ask ray.contains(t)"),
         (
-            tests((beta + gamma).min(alpha)),
-            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well",
-        ),
-        (
             tests(beta.min(gamma).min(1.0 - beta).min(1.0 - gamma)),
             "you test β ≤ 1 and γ ≤ 1, which makes a parallelogram: β + γ ≤ 1 is not tested",
+        ),
+        (
+            is_hit && (-0.01..0.0).contains(&alpha.min(beta).min(gamma)) && answer.is(hit, true),
+            "you accept a point slightly outside: test β ≥ 0, γ ≥ 0 and β + γ ≤ 1 without a tolerance",
         ),
         (tests(beta.min(gamma)), "you accept a point beyond the side b c: β + γ ≤ 1 is not tested"),
         (tests(beta.min(alpha)), "you accept a γ below 0: γ ≥ 0 is not tested"),
         (tests(gamma.min(alpha)), "you accept a β below 0: β ≥ 0 is not tested"),
+        (
+            tests((beta + gamma).min(alpha)),
+            "you accept a β or γ below 0: 0 ≤ β + γ ≤ 1 is not enough, test β ≥ 0 and γ ≥ 0 as well",
+        ),
         (tests(1.0), "you do not test whether the point is inside the triangle"),
         (
             determinant < 0.0 && answer.yours.is_none(),
@@ -182,7 +187,7 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
             "you test the triangle from one side only: it is hit from the front as well",
         ),
     ];
-    let is_lost = answer.yours.is_none();
+    let is_lost = !is_hit;
     all.extend(LIMITS.map(|(limit, text)| (is_lost && determinant.abs() < limit, text)));
     all.extend(EPSILONS.map(|(epsilon, text)| (is_lost && 0.0 < t && t < epsilon, text)));
     all

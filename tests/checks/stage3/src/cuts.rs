@@ -54,6 +54,14 @@ fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
                 twice >= f64::from(INTERSECTION_COST) * area * n,
                 "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
             ),
+            (
+                is_leaf_without(ordered, [2, 1]),
+                "not every cut is tried: the one behind the first primitive is left out",
+            ),
+            (
+                is_leaf_without(ordered, [1, 2]),
+                "not every cut is tried: the one before the last primitive is left out",
+            ),
             (ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper"),
         ];
         return (leaf == Some(false)).then_some((String::new(), expected, mistakes));
@@ -73,6 +81,18 @@ fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
         let describe = format!("cost {yours:.4} (cut before {middle})");
         (describe, format!("cost {best:.4}"), cut_mistakes(given, ordered, middle))
     })
+}
+
+/// Whether a leaf is cheaper than each cut that leaves at least so many primitives on either side.
+fn is_leaf_without(primitives: &[PrimitiveRef], fewest: [usize; 2]) -> bool {
+    let cost = |left: &[PrimitiveRef], right: &[PrimitiveRef]| {
+        if left.len() < fewest[0] || right.len() < fewest[1] {
+            f64::INFINITY
+        } else {
+            tree::cut_cost(left, right)
+        }
+    };
+    tree::leaf_is_cheaper(primitives, tree::least_cost(primitives, &AXES, &cost)) != Some(false)
 }
 
 /// The mistakes that make this cut the best one.

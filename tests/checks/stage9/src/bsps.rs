@@ -141,7 +141,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
     judge_build(trial, "400 crossing needles", crossing_needles(400), 20, MOST_REFERENCES)
 }
 
-/// Thin triangles in all directions through a ball: each plane has some of them on both sides.
+/// Thin triangles in all directions through a sphere: each plane has some of them on both sides.
 fn crossing_needles(n: usize) -> Vec<Vec<Vec3>> {
     // Points that are spread evenly over the unit sphere (Fibonacci lattice).
     let point = |i: usize| {
