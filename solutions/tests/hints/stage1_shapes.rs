@@ -1,0 +1,53 @@
+//! Stage 1 by the third hints.
+
+use glam::Vec3;
+use raykata::ray::Ray;
+
+pub fn nearest_root(roots: [f32; 2], ray: &Ray) -> Option<f32> {
+    let near = roots[0].min(roots[1]);
+    let far = roots[0].max(roots[1]);
+    [near, far].into_iter().find(|&t| ray.contains(t))
+}
+
+pub fn sphere_algebraic(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
+    let d = ray.direction;
+    let f = ray.origin - center;
+    let a = d.dot(d);
+    let b = -f.dot(d);
+    let c = f.dot(f) - radius * radius;
+    let f_perpendicular = f + (b / a) * d;
+    let discriminant = a * (radius * radius - f_perpendicular.length_squared());
+    if !(discriminant >= 0.0 && radius > 0.0) {
+        return None;
+    }
+    let q = b + b.signum() * discriminant.sqrt();
+    nearest_root([q / a, c / q], ray)
+}
+
+pub fn sphere_geometric(ray: &Ray, center: Vec3, radius: f32) -> Option<f32> {
+    let d = ray.direction;
+    let l = center - ray.origin;
+    let t_ca = l.dot(d) / d.dot(d);
+    let n = l - t_ca * d;
+    let discriminant = (radius * radius - n.length_squared()) / d.dot(d);
+    if !(discriminant >= 0.0 && radius > 0.0) {
+        return None;
+    }
+    let t_hc = discriminant.sqrt();
+    let larger = if t_ca > 0.0 { t_ca + t_hc } else { t_ca - t_hc };
+    let product = (l.length_squared() - radius * radius) / d.dot(d);
+    nearest_root([product / larger, larger], ray)
+}
+
+pub fn sphere_normal(center: Vec3, point: Vec3) -> Vec3 {
+    (point - center).normalize()
+}
+
+pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
+    let t = normal.dot(point - ray.origin) / normal.dot(ray.direction);
+    ray.contains(t).then_some(t)
+}
+
+pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
+    if normal.dot(direction) > 0.0 { -normal } else { normal }
+}
