@@ -92,12 +92,22 @@ fn mistakes((query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static 
         let normal = (from.as_dvec3() - o).cross(to.as_dvec3() - o);
         normal.dot(p - o) - normal.dot(o)
     };
+    // Test I with normals of unit length, in single precision: NaN makes every comparison false.
+    let normalized = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+        let normal = (from - ray.origin).cross(to - ray.origin).normalize();
+        normal.dot(query.point - ray.origin)
+    });
+    let of_normalized = normalized.iter().all(|&s| s >= 0.0) || normalized.iter().all(|&s| s <= 0.0);
     let is_line = |from: Vec3, to: Vec3| (from.as_dvec3() - o).cross(to.as_dvec3() - o) == DVec3::ZERO;
     let on_the_line = is_line(a, b) || is_line(b, c) || is_line(c, a);
     vec![
         (
             on_the_line && !yours && inside,
             "the ray's origin is on the line of a side: accept its 0, and do not normalize (0/0)",
+        ),
+        (
+            yours == of_normalized,
+            "do not normalize: that rounds points off an edge, and is 0/0 if the ray's origin is on the line of a side",
         ),
         (yours == strictly, "points on an edge are inside: compare with ≥ and ≤, not with > and <"),
         (

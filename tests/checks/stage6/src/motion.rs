@@ -59,7 +59,7 @@ fn judge_slot((x, y): (u32, u32), slot: u32, twice: bool) -> CheckResult {
         ),
         // The first block is right, so the table is as well.
         (x.max(y) > 3, REPEAT),
-        (twice, "your table is wrong: it has this slot twice, and another one is missing"),
+        (twice, "a block of 4 × 4 cells has this slot twice, and another one is missing: compare the table and its index"),
     ]))
 }
 
