@@ -5,6 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
 use oracle::STABLE;
@@ -143,15 +144,35 @@ fn boxes_are_told_apart(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult
     all_hold(compare(queries, trial.kit.conservative_slab(queries), judge))
 }
 
+/// Rays in all directions with this range, and a box around the point at this `t`, through which the ray goes.
+fn plain(t: f32, (t_min, t_max): (f32, f32)) -> Vec<SlabQuery> {
+    let query = |(direction, scale): (Vec3, f32)| {
+        let (center, half) = (scale * t * direction, scale * Vec3::new(0.5, 0.25, 0.75));
+        let ray = Ray::new(Vec3::ZERO, scale * direction).with_range(t_min, t_max);
+        SlabQuery { ray, bounds: Aabb::new(center - half, center + half) }
+    };
+    let scales = [1.0, 2f32.powi(-60), 2f32.powi(60)];
+    scales
+        .into_iter()
+        .flat_map(|scale| nasty::directions().into_iter().map(move |d| (d, scale)))
+        .map(query)
+        .collect()
+}
+
 pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 8);
-    let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
+    let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
+    // Boxes behind the ray are missed.
+    queries.extend(plain(-3.0, (0.0, f32::INFINITY)));
     boxes_are_told_apart(trial, &queries)
 }
 
 pub(super) fn slab_misses_no_box_in_any_range(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 18);
-    let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| of_any_size(&mut random)).collect();
+    let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| of_any_size(&mut random)).collect();
+    // Boxes behind the range and before it are missed.
+    queries.extend(plain(3.0, (-1.0, 1.0)));
+    queries.extend(plain(-3.0, (-1.0, 1.0)));
     boxes_are_told_apart(trial, &queries)
 }
 
@@ -172,10 +193,17 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
         (ray.direction != Vec3::ZERO).then_some(SlabQuery { ray, ..query })
     };
     let mut corners = Random::new(trial.seed, 14);
-    let queries: Vec<SlabQuery> =
+    let mut queries: Vec<SlabQuery> =
         (0..20_000).filter_map(|_| at_a_corner(&mut corners)).filter_map(beside).collect();
+    // Boxes that the ray meets.
+    queries.extend(plain(3.0, (0.0, f32::INFINITY)));
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
+        if yours.is_none() && exact.verdict.is_hit() && exact.margin > STABLE {
+            let expected = "Some: the ray meets the box";
+            return Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly")
+                .explained_by([]));
+        }
         // Accept a hit that is wrong by a few roundings only: it costs a visit and loses no hit.
         if yours.is_none() || exact.verdict.is_hit() || exact.margin <= STABLE {
             return Ok(());
@@ -192,14 +220,16 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
 
 pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 15);
-    // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal.
-    let draw = |_| {
+    // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal. Aim
+    // every tenth ray inside the triangle, where no rounding decides whether the ray meets the box.
+    let draw = |index: u32| {
         let place = [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e3)][random.below(3) as usize];
         let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
         let triangle = Triangle { a, b, c };
         let origin = place + 4.0 * random.in_cube();
         let bounds = Aabb::new(a.min(b).min(c), a.max(b).max(c));
-        (SlabQuery { ray: Ray::new(origin, a - origin), bounds }, triangle)
+        let target = if index.is_multiple_of(10) { a + 0.3 * (b - a) + 0.4 * (c - a) } else { a };
+        (SlabQuery { ray: Ray::new(origin, target - origin), bounds }, triangle)
     };
     let drawn: Vec<(SlabQuery, Triangle)> = (0..20_000).map(draw).collect();
     let queries: Vec<SlabQuery> = drawn.iter().map(|(query, _)| *query).collect();
@@ -208,6 +238,10 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
             return Ok(());
         };
         match yours {
+            None if overlap(&query.ray, &query.bounds).is_some_and(|exact| exact.margin > STABLE) => {
+                let expected = format!("at {t} or before: there the ray hits a triangle in the box");
+                Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly").explained_by([]))
+            }
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),
                 format!("enters at {enter}"),

@@ -1,10 +1,11 @@
 //! The laws that the five searches of cells share.
 
+use super::parts::Structure;
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
+use super::search_mistakes::{facts, in_cells};
 use super::structures;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -35,32 +36,138 @@ impl Searcher {
         }
     }
 
-    /// Searches for all rays at once, in a structure over `scene` that the checks have built.
-    pub(super) fn ask(self, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
-        let depth = match self {
+    /// The depth of a structure over a scene.
+    fn depth(self) -> usize {
+        match self {
             Searcher::Grid | Searcher::OctreeByCells | Searcher::Octree => 3,
             Searcher::KdTree => 7,
             Searcher::Bsp => 6,
-        };
-        self.ask_to(depth, kit, scene, rays)
-    }
-
-    /// The same in a tree that is divided to this depth; 0 is one leaf.
-    fn ask_to(self, depth: usize, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
-        let boxes = scene.boxes();
-        match self {
-            Searcher::Grid => {
-                let bounds = structures::around_loosely(&boxes);
-                kit.grid_search(&grid_queries(scene, rays, bounds, UVec3::new(5, 4, 3)))
-            }
-            Searcher::OctreeByCells => {
-                kit.octree_by_cells(&queries(&structures::octree(&boxes, depth), scene, rays))
-            }
-            Searcher::Octree => kit.octree_search(&queries(&structures::octree(&boxes, depth), scene, rays)),
-            Searcher::KdTree => kit.kd_search(&queries(&structures::kd_tree(&boxes, depth), scene, rays)),
-            Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), depth), scene, rays)),
         }
     }
+
+    /// Searches for the rays of each scene, in a tree over the scene that the checks have built, and judges the answers. The
+    /// tree is divided to this depth; 0 is one leaf.
+    pub(super) fn judge_to(
+        self,
+        depth: usize,
+        kit: &dyn Kit,
+        cases: &[(String, &Scene, &[Ray])],
+    ) -> Vec<CheckResult> {
+        let octrees = || Asked::over(cases, |scene| structures::octree(&scene.boxes(), depth));
+        match self {
+            Searcher::Grid => {
+                let mut asked = Asked::new();
+                for (name, scene, rays) in cases {
+                    let bounds = structures::around_loosely(&scene.boxes());
+                    for query in grid_queries(scene, rays, bounds, UVec3::new(5, 4, 3)) {
+                        asked.add(format!("grid over {name}"), query);
+                    }
+                }
+                asked.judge_each(|queries| kit.grid_search(queries))
+            }
+            Searcher::OctreeByCells => {
+                octrees().named("octree, cell by cell").judge_each(|queries| kit.octree_by_cells(queries))
+            }
+            Searcher::Octree => octrees().named("octree").judge_each(|queries| kit.octree_search(queries)),
+            Searcher::KdTree => Asked::over(cases, |scene| structures::kd_tree(&scene.boxes(), depth))
+                .named("kd-tree")
+                .judge_each(|queries| kit.kd_search(queries)),
+            Searcher::Bsp => Asked::over(cases, |scene| structures::bsp(&scene.hulls(), depth))
+                .named("BSP tree")
+                .judge_each(|queries| kit.bsp_search(queries)),
+        }
+    }
+
+    /// The same with the depth of this structure.
+    pub(super) fn judge(self, kit: &dyn Kit, cases: &[(String, &Scene, &[Ray])]) -> Vec<CheckResult> {
+        self.judge_to(self.depth(), kit, cases)
+    }
+}
+
+/// Queries to a search, each with the text for its message.
+pub(super) struct Asked<S> {
+    what: Vec<String>,
+    queries: Vec<CellsQuery<S>>,
+}
+
+impl<S: Structure + Clone> Asked<S> {
+    pub(super) fn new() -> Self {
+        Asked { what: Vec::new(), queries: Vec::new() }
+    }
+
+    /// The rays of each scene in the structure over it.
+    fn over(cases: &[(String, &Scene, &[Ray])], build: impl Fn(&Scene) -> S) -> Self {
+        let mut asked = Asked::new();
+        for (name, scene, rays) in cases {
+            for query in queries(&build(scene), scene, rays) {
+                asked.add(format!("over {name}"), query);
+            }
+        }
+        asked
+    }
+
+    /// With the name of the structure before each text.
+    fn named(mut self, name: &str) -> Self {
+        self.what.iter_mut().for_each(|what| *what = format!("{name} {what}"));
+        self
+    }
+
+    pub(super) fn add(&mut self, what: impl Into<String>, query: CellsQuery<S>) {
+        self.what.push(what.into());
+        self.queries.push(query);
+    }
+
+    /// Asks for the hit of one ray with a scene.
+    pub(super) fn ask(&mut self, what: impl Into<String>, cells: &S, scene: &Scene, ray: Ray) {
+        self.add(what, CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) });
+    }
+
+    /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
+    pub(super) fn judge(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> CheckResult {
+        all_hold(self.judge_each(search))
+    }
+
+    fn judge_each(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> Vec<CheckResult> {
+        let answers = search(&self.queries);
+        let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
+        let is_right =
+            |query: &CellsQuery<S>, answer: &CellsAnswer| found(answer) == closest(&query.hits, &query.ray);
+        let pairs = || self.queries.iter().zip(&answers);
+        if pairs().all(|(query, answer)| is_right(query, answer)) {
+            return vec![Ok(()); answers.len()];
+        }
+        // A wrong search that gives another answer than a right one of the student is not the student's.
+        let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
+            let mut all = in_cells(&query.cells.leaves(&query.ray), &query.ray, &query.hits, found(answer));
+            all.extend(query.cells.mistakes(&query.ray, &query.hits, found(answer)));
+            all
+        };
+        let mut possible: Vec<bool> = Vec::new();
+        for (query, answer) in pairs().filter(|(query, answer)| is_right(query, answer)).take(200) {
+            let given = formulas(query, answer);
+            possible.resize(given.len(), true);
+            possible.iter_mut().zip(&given).for_each(|(possible, (gives, _))| *possible &= gives);
+        }
+        let judge = |((query, answer), what): ((&CellsQuery<S>, &CellsAnswer), &String)| {
+            if is_right(query, answer) {
+                return Ok(());
+            }
+            let mut proven = formulas(query, answer);
+            proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
+            let input = (&query.ray, &query.hits[..]);
+            proven.extend(facts(found(answer), &answer.tests, &answer.visits, input));
+            let expected = closest(&query.hits, &query.ray);
+            Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
+                .explained_by(proven))
+        };
+        pairs().zip(&self.what).map(judge).collect()
+    }
+}
+
+fn describe<S>(what: &str, query: &CellsQuery<S>) -> String {
+    let hits = query.hits.iter().enumerate().filter(|(_, t)| t.is_finite()).take(8);
+    let hits: Vec<String> = hits.map(|(i, t)| format!("{i} at t = {t}")).collect();
+    format!("{what}\n{}\nhits: {}", query.ray.paste(), hits.join(", "))
 }
 
 /// One query per ray.
@@ -94,41 +201,6 @@ pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, 
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
-/// Compares the answer with that of brute force.
-pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> CheckResult {
-    let expected = closest(hits, ray);
-    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-    if found == expected {
-        return Ok(());
-    }
-    let tested = expected.is_some_and(|(primitive, _)| yours.tests.contains(&primitive));
-    let diagnosis = match (found, expected) {
-        (Some((_, t)), _) if !ray.contains(t) => "you return a hit outside the ray's range",
-        (Some((_, t)), Some((_, best))) if t == best => {
-            "of two hits at the same t the smaller primitive number wins"
-        }
-        (Some(_), Some(_)) if tested => {
-            "you keep the farther of two hits: keep the best hit so far, over all cells"
-        }
-        (Some(_), Some(_)) => "you stop before a cell with a nearer hit",
-        (None, Some(_)) if tested => "you find a hit and reject it: it counts wherever its cell ends",
-        (None, Some(_)) if yours.visits.is_empty() => {
-            "you visit no cell although the ray enters the structure's bounds"
-        }
-        (None, Some(_)) => "you leave out a cell that the ray passes through",
-        _ => "",
-    };
-    let hits: Vec<String> = hits
-        .iter()
-        .enumerate()
-        .filter(|(_, t)| t.is_finite())
-        .take(8)
-        .map(|(i, t)| format!("{i} at t = {t}"))
-        .collect();
-    let input = format!("{what}\n{}\nhits: {}", ray.paste(), hits.join(", "));
-    Err(Broken::new(input, found, expected, "brute force, (primitive, t)").looks_like(known(diagnosis)))
-}
-
 /// Compares a search with brute force, in random scenes and in degenerate ones.
 pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
@@ -137,66 +209,69 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
-    let ray = Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X);
-    let in_a_row = searcher.ask_to(0, trial.kit, &row, &[ray]);
-    let passing = searcher.ask(trial.kit, &through, &[ray]);
-    for (name, scene, yours) in
-        [("three spheres in a row", row, in_a_row), ("a large sphere and eight small ones", through, passing)]
-    {
-        let [yours] = &yours[..] else { continue };
-        judge(&format!("{} over {name}", searcher.name()), &ray, &scene.hits(&ray), yours)?;
-    }
+    let ray = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X)];
+    all_hold(searcher.judge_to(0, trial.kit, &[("three spheres in a row".into(), &row, &ray)]))?;
+    all_hold(searcher.judge(trial.kit, &[("a large sphere and eight small ones".into(), &through, &ray)]))?;
     trial.forall(500, scenes(), |cases| {
-        let one = |(scene, ray): &(Scene, Ray)| {
-            let answer = searcher.ask(trial.kit, scene, std::slice::from_ref(ray)).remove(0);
-            let what = format!("{} over {} primitives", searcher.name(), scene.things.len());
-            judge(&what, ray, &scene.hits(ray), &answer)
-        };
-        cases.iter().map(one).collect()
+        let name = |scene: &Scene| format!("{} primitives", scene.things.len());
+        let cases: Vec<_> =
+            cases.iter().map(|(scene, ray)| (name(scene), scene, std::slice::from_ref(ray))).collect();
+        searcher.judge(trial.kit, &cases)
     })?;
-    for (name, scene, rays) in odd_scenes() {
-        let answers = searcher.ask(trial.kit, &scene, &rays);
-        for (ray, answer) in rays.iter().zip(&answers) {
-            judge(&format!("{} over {name}", searcher.name()), ray, &scene.hits(ray), answer)?;
-        }
-    }
-    Ok(())
+    let odd = odd_scenes();
+    let cases: Vec<_> =
+        odd.iter().map(|(name, scene, rays)| ((*name).to_owned(), scene, &rays[..])).collect();
+    all_hold(searcher.judge(trial.kit, &cases))
 }
 
 /// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
 pub(super) type Parts = Vec<(u32, f64, f64)>;
 
-/// Judges the visits of a search: the ray must enter each visited node before its hit. `parts` are all nodes that the
-/// ray enters or touches.
-pub(super) fn judge_visits(
+/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit. `parts` are all
+/// nodes that the ray enters or touches.
+pub(super) fn judge_visits<S>(
     what: &str,
-    ray: &Ray,
+    query: &CellsQuery<S>,
     parts: &Parts,
     yours: &CellsAnswer,
-    fewest: bool,
 ) -> CheckResult {
+    let ray = &query.ray;
+    let input = || format!("{what}\n{}", ray.paste());
+    // A search that visits nothing is not a search.
+    if yours.hit.is_none() || yours.visits.is_empty() {
+        let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+        let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
+        let yours = format!("{found:?} after {} visits", yours.visits.len());
+        return Err(
+            Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
+        );
+    }
     let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
     // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
     let room = (-14f64).exp2();
-    let input = || format!("{what}\n{}", ray.paste());
-    for visit in &yours.visits {
-        let Some((_, enter, _)) = parts.iter().find(|(node, ..)| node == visit) else {
-            let broken =
-                Broken::with_texts(input(), format!("a visit to {visit}"), "none", "the ray misses it");
-            return Err(broken.looks_like(Some("you visit a cell that the ray does not enter")));
-        };
-        if *enter > end + room * end.abs() {
-            let yours = format!("a visit to {visit}, which begins at t = {enter:.4}");
-            let expected = format!("none beyond the hit at t = {end}");
-            let broken = Broken::with_texts(input(), yours, expected, "counted");
-            return Err(broken.looks_like(Some(
-                "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
-            )));
-        }
-        if fewest && yours.visits.iter().filter(|other| *other == visit).count() > 1 {
-            let broken = Broken::with_texts(input(), format!("{visit} is visited again"), "once", "counted");
-            return Err(broken.looks_like(Some("you visit a cell several times")));
-        }
-    }
-    Ok(())
+    let enter = |visit: u32| parts.iter().find(|(node, ..)| *node == visit).map(|(_, enter, _)| *enter);
+    let is_behind = |enter: f64| enter > end + room * end.abs();
+    let again = |visit: u32| yours.visits.iter().filter(|other| **other == visit).count() > 1;
+    let missed = yours.visits.iter().copied().find(|&visit| enter(visit).is_none());
+    let behind =
+        yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
+    let twice = yours.visits.iter().copied().find(|&visit| again(visit));
+    let (yours, expected, source) = match (missed, behind, twice) {
+        (Some(visit), ..) => (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it"),
+        (None, Some((visit, t)), _) => (
+            format!("a visit to {visit}, which begins at t = {t:.4}"),
+            format!("none beyond the hit at t = {end}"),
+            "counted",
+        ),
+        (None, None, Some(visit)) => (format!("{visit} is visited again"), "once".to_owned(), "counted"),
+        (None, None, None) => return Ok(()),
+    };
+    Err(Broken::with_texts(input(), yours, expected, source).explained_by([
+        (missed.is_some(), "you visit a cell that the ray does not enter"),
+        (
+            behind.is_some(),
+            "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
+        ),
+        (twice.is_some(), "you visit a cell several times"),
+    ]))
 }
