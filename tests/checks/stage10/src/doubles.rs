@@ -4,12 +4,15 @@ use super::triangles::{aim_again, draw};
 use super::{Odd, SPECIAL};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare;
+use checks::double::U;
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
 use oracle::STABLE;
-use oracle::exact::{Body, meet, t_error_in_ulps, triangle, verdict};
+use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::splitmix::Random;
 use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
@@ -76,7 +79,49 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> CheckResul
         wrong.sort_by(|p, q| q.margin.total_cmp(&p.margin));
         all_hold(explain(trial, &wrong))?;
     }
-    Ok(())
+    points_on_edges_belong(trial)
+}
+
+/// Rays along an axis at points exactly on the edges and corners of triangles with small integer coordinates: no product is
+/// rounded, and β and γ are multiples of a quarter.
+fn points_on_edges_belong(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 21);
+    let mut corner = || 4.0 * Vec3::from_array([(); 3].map(|()| random.below(9) as f32 - 4.0));
+    let mut queries = Vec::new();
+    for index in 0..600 {
+        let (a, b, c) = (corner(), corner(), corner());
+        let (axis, quarter) = (index % 3, (index / 3 % 5) as f32 / 4.0);
+        let [from, to] = [[a, b], [b, c], [c, a]][index / 15 % 3];
+        let mut direction = Vec3::ZERO;
+        direction[axis] = if index.is_multiple_of(2) { 1.0 } else { -2.0 };
+        if (b - a).cross(c - a)[axis] != 0.0 {
+            let ray = Ray::new(from + quarter * (to - from) - 3.0 * direction, direction);
+            queries.push(TriangleQuery { ray, triangle: Triangle { a, b, c } });
+        }
+    }
+    all_hold(compare(&queries, trial.kit.triangle_in_double(&queries), |query, yours| {
+        if yours.is_some_and(|hit| hit.t == 3.0) {
+            return Ok(());
+        }
+        let weights = triangle::weights(&query.ray, &query.triangle).flatten();
+        let lost = |on: fn(f64, f64) -> bool| {
+            yours.is_none() && weights.is_some_and(|[beta, gamma]| on(beta, gamma))
+        };
+        Err(Broken::new(query.call("triangle_in_double"), yours, "a hit at t = 3", "integers, exactly").explained_by([
+            (
+                lost(|beta, gamma| beta + gamma == 1.0),
+                "you leave out points with β + γ = 1: points on the edge from b to c belong to the triangle",
+            ),
+            (
+                lost(|beta, gamma| beta == 0.0 || gamma == 0.0),
+                "you leave out points with β = 0 or γ = 0: points on these edges belong to the triangle",
+            ),
+            (
+                lost(|beta, gamma| beta == 0.0 || gamma == 0.0 || beta + gamma == 1.0),
+                "you leave out points on edges: they belong to the triangle",
+            ),
+        ]))
+    }))
 }
 
 /// The broken laws of wrong verdicts, with the known mistakes.
@@ -232,7 +277,93 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResul
         };
         all_hold(wrong.iter().map(broken).collect())?;
     }
-    Ok(())
+    let queries = draw(trial, "interior", 400);
+    all_hold(judge_weights("triangle_in_double", &queries, trial.kit.triangle_in_double(&queries), 2.0 * U))?;
+    let judge = |queries: &[TriangleQuery]| trial.kit.triangle_in_double(queries);
+    all_hold(judge_ends("triangle_in_double", &queries, judge))
+}
+
+/// Judges β and γ of hits well inside, up to `tolerance`.
+pub(super) fn judge_weights(
+    function: &str,
+    queries: &[TriangleQuery],
+    answers: Vec<Option<TriangleHit>>,
+    tolerance: f64,
+) -> Vec<CheckResult> {
+    compare(queries, answers, |query, yours| {
+        let (Some(yours), Some([beta, gamma])) =
+            (yours, triangle::weights(&query.ray, &query.triangle).flatten())
+        else {
+            return Ok(());
+        };
+        let is = |b: f64, g: f64| {
+            (f64::from(yours.beta) - b).abs() <= tolerance && (f64::from(yours.gamma) - g).abs() <= tolerance
+        };
+        if is(beta, gamma) {
+            return Ok(());
+        }
+        let describe = |beta: f64, gamma: f64| format!("β = {beta}, γ = {gamma}");
+        let alpha = 1.0 - beta - gamma;
+        Err(Broken::with_texts(
+            query.call(function),
+            describe(yours.beta.into(), yours.gamma.into()),
+            describe(beta, gamma),
+            "exactly",
+        )
+        .explained_by([
+            (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),
+            (
+                is(alpha, beta) || is(alpha, gamma) || is(beta, alpha) || is(gamma, alpha),
+                "one of your two numbers is α, the barycentric coordinate of corner a",
+            ),
+        ]))
+    })
+}
+
+/// Judges ranges that end exactly at a hit, or one float beside it. `t` is the student's own, which is rounded.
+pub(super) fn judge_ends(
+    function: &str,
+    queries: &[TriangleQuery],
+    ask: impl Fn(&[TriangleQuery]) -> Vec<Option<TriangleHit>>,
+) -> Vec<CheckResult> {
+    let whole = queries.iter().zip(ask(queries)).take(50);
+    let at_ends: Vec<(TriangleQuery, bool)> = whole
+        .filter_map(|(query, yours)| Some((query, yours?.t)))
+        .flat_map(|(query, t)| {
+            let ranges = nasty::ranges(t);
+            ranges.map(|((t_min, t_max), counts)| {
+                (TriangleQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, counts)
+            })
+        })
+        .collect();
+    let only: Vec<TriangleQuery> = at_ends.iter().map(|(query, _)| *query).collect();
+    let judge = |(query, counts): &(TriangleQuery, bool), yours: Option<TriangleHit>| {
+        if yours.is_some() == *counts {
+            return Ok(());
+        }
+        let expected = if *counts { "a hit" } else { "None" };
+        let yours_t = format!("{:?}", yours.map(|hit| hit.t));
+        Err(Broken::with_texts(query.call(function), yours_t, expected, "ray.contains of the rounded t")
+            .explained_by([]))
+    };
+    let formulas = |(query, _): &(TriangleQuery, bool), yours: &Option<TriangleHit>| {
+        let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+        let exact =
+            t_in_double(&query.ray.with_range(0.0, f32::INFINITY), Body::Triangle(query.triangle)).flatten();
+        let is = |of: &dyn Fn(f64) -> bool| exact.is_some_and(of) == yours.is_some();
+        let rounded = |t: f64| f64::from(t as f32);
+        vec![
+            (
+                is(&|t| t_min <= rounded(t) && rounded(t) <= t_max),
+                "the range of a ray is open at both ends: ask ray.contains(t)",
+            ),
+            (
+                is(&|t| t_min < t && t < t_max),
+                "you compare t with the range before you round it: ask ray.contains of the rounded t",
+            ),
+        ]
+    };
+    compare_formulas(&at_ends, ask(&only), judge, formulas)
 }
 
 const NAN_IS_NO_HIT: &str = "NaN is no hit: test the conditions of a hit, which are false for NaN";

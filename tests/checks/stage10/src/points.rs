@@ -3,7 +3,7 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::compare;
+use checks::judge::{compare, compare_formulas};
 use checks::nasty;
 use checks::offset::Start;
 use checks::paste::call;
@@ -27,7 +27,7 @@ fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
 
 /// Directions exactly perpendicular to the normal, whose scalar product is a zero of either sign.
 fn along_the_surface() -> Vec<OffsetQuery> {
-    let (point, error) = (vec3(1.0, -2.0, 3.0), vec3(1e-6, 2e-6, 5e-7));
+    let (point, error) = (vec3(1.0, -2.0, 3.0), vec3(1e-3, 2e-3, 5e-4));
     let of_normal = |normal: Vec3| {
         let across = [1.0, -1.0].map(|sign| sign * vec3(normal.y, normal.z, normal.x));
         across.map(|direction| OffsetQuery { point, error, normal, direction })
@@ -52,18 +52,22 @@ fn mistakes(query: &OffsetQuery, origin: Vec3) -> Vec<(bool, &'static str)> {
     let relative = [point.length(), point.abs().max_element()]
         .into_iter()
         .any(|size| (1..=7).any(|digits| (height / (size * 10f64.powi(-digits)) - 1.0).abs() < 0.01));
-    let mut mistakes = start.mistakes();
+    let mut mistakes = vec![(
+        along == 0.0 && height < 0.0,
+        "a direction perpendicular to the normal goes to the side of the normal",
+    )];
+    mistakes.extend(start.mistakes());
     mistakes.extend([
         (relative, "your offset is a fixed fraction of the size of the point: move by error·|n|"),
-        (
-            along == 0.0 && start.height() < 0.0,
-            "a direction perpendicular to the normal goes to the side of the normal",
-        ),
         (
             along < 0.0 && start.height() < 0.0,
             "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
         ),
         (start.height() < 0.0, "the ray starts on the other side: turn the normal to the side of the direction"),
+        (
+            height < 4.0 * U * point.abs().max_element(),
+            "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
+        ),
     ]);
     mistakes
 }
@@ -108,44 +112,82 @@ pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> CheckRes
     })
 }
 
-/// Whether the squares of the coordinates add up to no normal number in single precision, because they are too small or
-/// too large.
-fn squares_fit(v: Vec3) -> (bool, bool) {
+/// Whether a cause certainly acts on a vector, and whether it possibly does.
+#[derive(Clone, Copy)]
+struct Acts {
+    certainly: bool,
+    possibly: bool,
+}
+
+/// Whether the squares of the coordinates underflow in single precision, and whether they overflow.
+fn squares_fail(v: Vec3) -> [Acts; 2] {
     let squared = v.length_squared();
-    (squared < f32::MIN_POSITIVE, squared.is_infinite())
+    // A sum of squares that is denormal, or has a denormal term, has lost some digits.
+    let lost = f32::MIN_POSITIVE * 2f32.powi(24);
+    let infinite = squared.is_infinite();
+    [
+        Acts { certainly: squared == 0.0, possibly: squared < lost },
+        Acts { certainly: infinite, possibly: infinite },
+    ]
 }
 
 pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> CheckResult {
-    let vectors = (nasty::unit(), -148..=127i32)
+    let vectors = (nasty::unit(), -148..=128i32)
         .prop_map(|(v, exponent)| (v.as_dvec3() * 2f64.powi(exponent)).as_vec3());
-    let vectors = vectors.prop_filter("a vector that did not underflow to 0", |v| *v != Vec3::ZERO);
-    trial.forall(4000, vectors, |queries| {
-        compare(queries, trial.kit.safe_normalize(queries), |query, yours| {
+    let vectors = vectors.prop_filter("neither 0 nor infinite", |v| *v != Vec3::ZERO && v.is_finite());
+    let longest = [Vec3::splat(f32::MAX), vec3(f32::MAX, 1.0, -f32::MAX), Vec3::splat(f32::from_bits(1))];
+    // Allow four roundings per coordinate.
+    let is_right = |query: &Vec3, yours: &Option<Vec3>| {
+        yours.is_some_and(|yours| (yours.as_dvec3() - query.as_dvec3().normalize()).length() < 4.0 * 2.0 * U)
+    };
+    let judge = |query: &Vec3, yours: Option<Vec3>| match is_right(query, &yours) {
+        true => Ok(()),
+        false => {
             let expected = query.as_dvec3().normalize();
-            // Allow four roundings per coordinate.
-            if yours.is_some_and(|yours| (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U) {
-                return Ok(());
-            }
-            let (underflow, overflow) = squares_fit(*query);
-            let is_none = yours.is_none();
             Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision")
-                .explained_by([
-                    (is_none && underflow, "you return None for a short vector: the squares underflow, so scale by the largest coordinate first"),
-                    (is_none && overflow, "you return None for a long vector: the squares overflow, so scale by the largest coordinate first"),
-                    (is_none && query.length() < 1.0, "you return None for a short vector: only the zero vector has no direction"),
-                    (
-                        yours == Some(Vec3::ZERO),
-                        "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first",
-                    ),
-                    (
-                        !is_none && (1.0 / query.abs().max_element()).is_infinite(),
-                        "1 / x is infinite for the smallest x: divide by the largest coordinate, and do not multiply by its reciprocal",
-                    ),
-                    (underflow, "the squares underflow: scale by the largest coordinate first"),
-                    (overflow, "the squares overflow: scale by the largest coordinate first"),
-                    (underflow || overflow, "the squares underflow or overflow: scale by the largest coordinate first"),
-                ]))
-        })
+                .explained_by([]))
+        }
+    };
+    // A cause is proven if the answers are wrong exactly where it acts.
+    let causes = |query: &Vec3, yours: &Option<Vec3>| {
+        let [underflow, overflow] = squares_fail(*query);
+        let is_wrong = !is_right(query, yours);
+        let (is_none, is_zero) = (yours.is_none(), *yours == Some(Vec3::ZERO));
+        let infinite = (1.0 / query.abs().max_element()).is_infinite();
+        let reciprocal = Acts { certainly: infinite, possibly: infinite };
+        let either = Acts {
+            certainly: underflow.certainly || overflow.certainly,
+            possibly: underflow.possibly || overflow.possibly,
+        };
+        let of = |acts: Acts, answer: bool| if is_wrong { acts.possibly && answer } else { !acts.certainly };
+        vec![
+            (
+                of(underflow, is_none),
+                "you return None for a short vector: the squares underflow, so scale by the largest coordinate first",
+            ),
+            (
+                of(overflow, is_none),
+                "you return None for a long vector: the squares overflow, so scale by the largest coordinate first",
+            ),
+            (of(underflow, true), "the squares underflow: scale by the largest coordinate first"),
+            (of(overflow, true), "the squares overflow: scale by the largest coordinate first"),
+            (of(either, true), "the squares underflow or overflow: scale by the largest coordinate first"),
+            (
+                of(reciprocal, !is_none),
+                "1 / x is infinite for the smallest x: divide by the largest coordinate, and do not multiply by its reciprocal",
+            ),
+            (
+                !is_wrong || (is_none && query.length() < 1.0),
+                "you return None for a short vector: only the zero vector has no direction",
+            ),
+            (
+                !is_wrong || is_zero,
+                "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first",
+            ),
+        ]
+    };
+    trial.forall_and(&longest, 4000, vectors, |queries| {
+        compare_formulas(queries, trial.kit.safe_normalize(queries), judge, causes)
     })
 }
 

@@ -4,6 +4,8 @@ use super::doubles::{describe, err_both_ways};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::{U, sphere_roots};
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::{DVec3, Vec3};
 use oracle::STABLE;
@@ -132,7 +134,32 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
             ),
         ]))
     };
-    all_hold(wrong.iter().map(broken).collect())
+    all_hold(wrong.iter().map(broken).collect())?;
+    touching_rays_hit(trial)
+}
+
+/// Rays along an axis that touch a sphere with small integer coordinates: no product is rounded.
+fn touching_rays_hit(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 19);
+    let mut touching = |index: usize| {
+        let center = Vec3::from_array([(); 3].map(|()| random.below(9) as f32 - 4.0));
+        let radius = 1.0 + random.below(8) as f32;
+        let (mut direction, mut aside) = (Vec3::ZERO, Vec3::ZERO);
+        direction[index % 3] = if index.is_multiple_of(2) { 1.0 } else { -2.0 };
+        aside[(index + 1 + index / 3 % 2) % 3] = if index % 4 < 2 { radius } else { -radius };
+        let ray = Ray::new(center + aside - 5.0 * direction, direction);
+        SphereQuery { ray, sphere: Sphere { center, radius } }
+    };
+    let queries: Vec<SphereQuery> = (0..96).map(&mut touching).collect();
+    all_hold(compare(&queries, trial.kit.sphere_in_double(&queries), |query, yours| {
+        // Both roots are one; allow a rounding of t.
+        if yours.is_some_and(|t| (t - 5.0).abs() <= 1e-6) {
+            return Ok(());
+        }
+        Err(Broken::new(query.call("sphere_in_double"), yours, Some(5.0), "integers, exactly").explained_by(
+            [(yours.is_none(), "you return None for a ray that touches the sphere: it hits it")],
+        ))
+    }))
 }
 
 /// A ray that passes well through a sphere, from far away, from near its surface on either side, or from inside.
@@ -197,5 +224,45 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult 
             (single, "t has only the accuracy of single precision: round the root, and nothing before it"),
         ]))
     };
-    all_hold(wrong.iter().map(broken).collect())
+    all_hold(wrong.iter().map(broken).collect())?;
+
+    // Ranges that end exactly at the student's own hit, or one float beside it.
+    let hits = queries.iter().zip(trial.kit.sphere_in_double(&queries)).take(100);
+    let at_ends: Vec<(SphereQuery, f32, bool)> = hits
+        .filter_map(|(query, yours)| Some((query, yours?)))
+        .flat_map(|(query, t)| {
+            let ranges = nasty::ranges(t);
+            ranges.map(|((t_min, t_max), counts)| {
+                (SphereQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, t, counts)
+            })
+        })
+        .collect();
+    let only: Vec<SphereQuery> = at_ends.iter().map(|(query, ..)| *query).collect();
+    let judge = |(query, t, counts): &(SphereQuery, f32, bool), yours: Option<f32>| {
+        let fits =
+            if *counts { yours == Some(*t) } else { yours.is_none_or(|yours| query.ray.contains(yours)) };
+        if fits {
+            return Ok(());
+        }
+        let expected = if *counts { format!("Some({t:?})") } else { "None, or the other root".into() };
+        let input = query.call("sphere_in_double");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "ray.contains of the rounded t")
+            .explained_by([]))
+    };
+    let formulas = |(query, ..): &(SphereQuery, f32, bool), yours: &Option<f32>| {
+        let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+        let roots = sphere_roots(&query.ray, &query.sphere).ok();
+        let first = |counts: &dyn Fn(f64) -> bool| {
+            roots.and_then(|roots| [roots.near, roots.far].into_iter().find(|t| counts(*t))).map(|t| t as f32)
+        };
+        let closed = first(&|t| (t_min..=t_max).contains(&f64::from(t as f32)));
+        vec![
+            (closed == *yours, "the range of a ray is open at both ends: ask ray.contains(t)"),
+            (
+                first(&|t| t_min < t && t < t_max) == *yours,
+                "you compare t with the range before you round it: ask ray.contains of the rounded t",
+            ),
+        ]
+    };
+    all_hold(compare_formulas(&at_ends, trial.kit.sphere_in_double(&only), judge, formulas))
 }

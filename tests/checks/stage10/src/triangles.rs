@@ -1,6 +1,7 @@
 //! The laws of `watertight`.
 
 use super::Odd;
+use super::doubles::{judge_ends, judge_weights};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -269,7 +270,10 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
         };
         all_hold(compare(&queries, answers, judge))?;
     }
-    Ok(())
+    let queries = draw(trial, "interior", 400);
+    // A thousandth accepts every formula in single precision.
+    all_hold(judge_weights("watertight", &queries, trial.kit.watertight(&queries), 1e-3))?;
+    all_hold(judge_ends("watertight", &queries, |queries| trial.kit.watertight(queries)))
 }
 
 pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {

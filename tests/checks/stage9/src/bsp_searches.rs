@@ -21,6 +21,7 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
     let mut asked = Asked::new();
     asked.ask("BSP tree of one plane x + y = 0, both leaves list primitive 0", &tree, &scene, ray);
+    asked.control("BSP tree of one plane", two_leaves(diagonal(), &[0, 1, 2], &[]), ray, (0.0, 1.0));
     asked.judge(|queries| trial.kit.bsp_search(queries))?;
     agrees(trial, Searcher::Bsp)
 }

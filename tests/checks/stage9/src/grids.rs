@@ -81,6 +81,8 @@ pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
         let cells = filled(bounds, resolution, &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
         let ray = Ray::new(turn(vec3(-1.0, 0.0, 0.0)), turn(Vec3::X));
         asked.ask("grid of 4 cells in a row; all of them list primitive 0", &cells, &scene, ray);
+        let control = filled(bounds, resolution, &[vec![0, 1, 2], vec![], vec![], vec![]]);
+        asked.control("grid", control, ray, (1.0, 3.0));
     }
     asked.judge(|queries| trial.kit.grid_search(queries))
 }
@@ -176,18 +178,27 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
 
 /// Trap A8, second part: 250 cells along an axis.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResult {
-    // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along y, so that one
-    // axis takes twice as many steps as the other.
-    let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
-    let grid = bare_grid(bounds, uvec3(250, 125, 1));
-    // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
-    let query = |off: f32| {
-        let ray = Ray::new(vec3(1.1 - 0.5, 2.3 - 0.5 + off, -3.0), vec3(1.0, 1.0, 0.0));
-        CellsQuery { cells: grid.clone(), ray, hits: Vec::new() }
+    // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along the second axis, so
+    // that one axis takes twice as many steps as the other.
+    let query = |(axes, off): ([usize; 2], f32)| {
+        let turn = |x: f32, y: f32, z: f32| {
+            let mut turned = Vec3::splat(z);
+            (turned[axes[0]], turned[axes[1]]) = (x, y);
+            turned
+        };
+        let bounds = Aabb::new(turn(1.1, 2.3, -3.7), turn(2.4, 3.6, -2.4));
+        let cells = bare_grid(bounds, turn(250.0, 125.0, 1.0).as_uvec3());
+        // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
+        let ray = Ray::new(turn(1.1 - 0.5, 2.3 - 0.5 + off, -3.0), turn(1.0, 1.0, 0.0));
+        (CellsQuery { cells, ray, hits: Vec::new() }, axes)
     };
-    let queries = [7e-7f32, -7e-7, 1.2e-6, -1.2e-6].map(query);
-    all_hold(compare(&queries, trial.kit.grid_search(&queries), |query, yours| {
-        let expected = diagonal(query);
+    let pairs = [[0, 1], [1, 2], [2, 0]];
+    let offs = [7e-7f32, -7e-7, 1.2e-6, -1.2e-6];
+    let asked: Vec<_> = pairs.into_iter().flat_map(|axes| offs.map(|off| (axes, off))).map(query).collect();
+    let queries: Vec<CellsQuery<Grid>> = asked.iter().map(|(query, _)| query.clone()).collect();
+    all_hold(compare(&asked, trial.kit.grid_search(&queries), |(query, axes), yours| {
+        let axes = *axes;
+        let expected = diagonal(query, axes);
         let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) else {
             return Ok(());
         };
@@ -195,7 +206,7 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResu
             format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
         };
         let input = format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
-        let (yours, sums) = (yours.visits, added_up(query));
+        let (yours, sums) = (yours.visits, added_up(query, axes));
         let texts = (describe(&yours), describe(&expected));
         Err(Broken::with_texts(input, texts.0, texts.1, "planes in double precision").explained_by([
             (
@@ -203,25 +214,21 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResu
                 "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision",
             ),
             (
-                in_single(query) == yours,
+                in_single(query, axes) == yours,
                 "you compute the t of a plane in single precision, which cannot tell these corners apart: use double precision",
             ),
         ]))
     }))
 }
 
-/// Whether a ray whose direction has positive x and y goes along x next, from the `t` of the next planes.
-fn along_x([x, y]: [f32; 2]) -> bool {
-    x < y
-}
-
-/// The visits of a ray whose direction has positive x and y, from the `t` of the planes across x and across y.
-fn visits_by(query: &CellsQuery<Grid>, next: impl Fn([u32; 2]) -> bool) -> Vec<u32> {
+/// The visits of a ray whose direction is positive along two axes. `t` is that of the plane with an index across one of them.
+fn visits_by(query: &CellsQuery<Grid>, axes: [usize; 2], t: impl Fn(usize, u32) -> f32) -> Vec<u32> {
     let grid = &query.cells;
     let mut cell = UVec3::ZERO;
     let mut visits = vec![grid.number(cell)];
     loop {
-        let axis = if next([cell.x, cell.y]) { 0 } else { 1 };
+        let [p, q] = axes.map(|axis| t(axis, cell[axis] + 1));
+        let axis = if p < q { axes[0] } else { axes[1] };
         if cell[axis] + 1 == grid.resolution[axis] {
             return visits;
         }
@@ -232,10 +239,10 @@ fn visits_by(query: &CellsQuery<Grid>, next: impl Fn([u32; 2]) -> bool) -> Vec<u
 
 /// The visits of searches that add up tDelta in single precision, with the first `t` and the step rounded once or computed
 /// in single precision.
-fn added_up(query: &CellsQuery<Grid>) -> [Vec<u32>; 2] {
+fn added_up(query: &CellsQuery<Grid>, axes: [usize; 2]) -> [Vec<u32>; 2] {
     let (grid, ray) = (&query.cells, &query.ray);
-    let steps = |rounded_once: bool| {
-        let sums = [0, 1].map(|axis| {
+    [true, false].map(|rounded_once| {
+        let sums = [0, 1, 2].map(|axis| {
             let (low, high) = (grid.bounds.min[axis], grid.bounds.max[axis]);
             let n = grid.resolution[axis];
             let (first, delta) = if rounded_once {
@@ -246,42 +253,44 @@ fn added_up(query: &CellsQuery<Grid>) -> [Vec<u32>; 2] {
                 let size = (high - low) / n as f32;
                 ((low + size - ray.origin[axis]) / ray.direction[axis], size / ray.direction[axis])
             };
-            let mut sums = vec![first];
-            (1..n).for_each(|i| sums.push(sums[i as usize - 1] + delta));
+            let mut sums = vec![f32::NAN, first];
+            (1..n as usize).for_each(|i| sums.push(sums[i] + delta));
             sums
         });
-        visits_by(query, |cell| along_x([0, 1].map(|axis| sums[axis][cell[axis] as usize])))
-    };
-    [steps(true), steps(false)]
+        visits_by(query, axes, |axis, index| sums[axis][index as usize])
+    })
 }
 
 /// The visits of a search that computes the `t` of each plane in single precision.
-fn in_single(query: &CellsQuery<Grid>) -> Vec<u32> {
+fn in_single(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
-    let t = |axis: usize, index: u32| {
-        (grid.plane(axis, index + 1) as f32 - ray.origin[axis]) / ray.direction[axis]
-    };
-    visits_by(query, |[x, y]| along_x([t(0, x), t(1, y)]))
+    visits_by(query, axes, |axis, index| {
+        (grid.plane(axis, index) as f32 - ray.origin[axis]) / ray.direction[axis]
+    })
 }
 
-/// The cells along a ray whose direction has positive x and y, from the sorted planes.
-fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
+/// The cells along a ray whose direction is positive along two axes, from the sorted planes.
+fn diagonal(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     let t = |axis: usize, i: u32| {
         (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis])
     };
-    let begin = t(0, 0).max(t(1, 0));
+    let [p, q] = axes;
+    let begin = t(p, 0).max(t(q, 0));
+    let end = t(p, grid.resolution[p]).min(t(q, grid.resolution[q]));
     let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
     let mut cell = UVec3::ZERO;
-    let mut crossings: Vec<(f64, usize)> =
-        inner(0).chain(inner(1)).map(|(axis, i)| (t(axis, i), axis)).filter(|(t, _)| *t > begin).collect();
+    let mut crossings: Vec<(f64, usize)> = axes
+        .into_iter()
+        .flat_map(inner)
+        .map(|(axis, i)| (t(axis, i), axis))
+        .filter(|(t, _)| *t > begin && *t < end)
+        .collect();
     crossings.sort_by(|p, q| p.0.total_cmp(&q.0));
     let mut visits = vec![grid.number(cell)];
-    for (t_crossing, axis) in crossings {
-        if t_crossing < t(0, grid.resolution.x).min(t(1, grid.resolution.y)) {
-            cell[axis] += 1;
-            visits.push(grid.number(cell));
-        }
+    for (_, axis) in crossings {
+        cell[axis] += 1;
+        visits.push(grid.number(cell));
     }
     visits
 }

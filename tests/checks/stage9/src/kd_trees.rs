@@ -117,6 +117,9 @@ pub(super) fn kd_finds_a_wall_on_the_face_of_the_box(trial: &Trial<'_>) -> Check
         let scene = Scene { things: walls.into_iter().flatten().collect(), rough };
         let bounds = Aabb::new(Vec3::splat(-size), Vec3::splat(size));
         let whole = two_leaves(bounds, (axis, 0.0), &[2, 3], &[0, 1, 2, 3]);
+        let control = two_leaves(bounds, (axis, 0.0), &[0, 1, 2], &[]);
+        let start = Ray::new(size * along(axis, vec3(-0.5, 0.1, 0.2)), along(axis, Vec3::X));
+        asked.control("kd-tree", control, start, (0.0, 0.5 * size));
         for i in 0..12 {
             let y = (i as f32 - 5.5) * 0.07;
             // Aim at the far wall, and at the wall in the plane of the cut, which is listed on both sides.
@@ -157,6 +160,10 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
             let grid = Grid { bounds, resolution, starts: vec![0, 1, 2], items: vec![0, 1] };
             let what =
                 |name: &str| format!("{name} of two cells, a primitive of each in the face between them");
+            let three = two_leaves(bounds, (axis, at), &[0, 1, 2], &[]);
+            trees.control("kd-tree", three, ray, (0.0, exact));
+            let three = Grid { starts: vec![0, 3, 3], items: vec![0, 1, 2], bounds, resolution };
+            grids.control("grid", three, ray, (0.0, exact));
             trees.add(what("kd-tree"), CellsQuery { cells: tree, ray, hits: hits.clone() });
             grids.add(what("grid"), CellsQuery { cells: grid, ray, hits });
         }
@@ -175,6 +182,8 @@ pub(super) fn kd_hit_beyond_its_leaf_waits(trial: &Trial<'_>) -> CheckResult {
         let ray = Ray::new(along(axis, vec3(-1.0, 0.0, 0.0)), along(axis, Vec3::X));
         let tree = two_leaves(bounds, (axis, 2.0), &[0], &[0, 1]);
         asked.ask("kd-tree; primitive 0 overlaps both leaves", &tree, &scene, ray);
+        let control = two_leaves(bounds, (axis, 2.0), &[0, 1, 2], &[]);
+        asked.control("kd-tree", control, ray, (1.0, 3.0));
         // Without the small sphere, the hit counts although it lies beyond the first leaf and the second does not list it.
         let tree = two_leaves(bounds, (axis, 2.0), &[0], &[]);
         asked.ask(

@@ -79,6 +79,16 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                     high == cell.min[axis] || low == cell.max[axis]
                 });
                 let missing = times == 0;
+                // Each cell lists only primitives that it overlaps, so that their places are right.
+                let elsewhere = || {
+                    let is_right =
+                        |cell: &Cell, id: u32| !is_far_off(bounds, &cell.to_box(), &boxes[id as usize]);
+                    let right = |(_, cell, listed): &Listed<N>| {
+                        listed.iter().all(|&id| (id as usize) < boxes.len() && is_right(cell, id))
+                    };
+                    leaves.iter().all(right) && elsewhere()
+                };
+                let nowhere = missing && !leaves.iter().any(|(.., listed)| listed.contains(&(id as u32)));
                 return Some((
                     describe(times),
                     describe(1),
@@ -91,7 +101,7 @@ pub(super) fn listing_fault<N: std::fmt::Display>(
                             missing && elsewhere(),
                             "a primitive that overlaps or touches several cells belongs to all of them",
                         ),
-                        (missing && !elsewhere(), "you leave out a primitive: no cell lists it"),
+                        (nowhere, "you leave out a primitive: no cell lists it"),
                         (!missing, "you list a primitive twice in one cell"),
                     ],
                 ));

@@ -3,7 +3,7 @@
 use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Asked, Searcher, agrees, judge_visits, queries, spheres_and_rays};
+use super::searches::{Asked, Case, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -148,7 +148,7 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
         })
         .collect();
     let name = "26 spheres, rays along axes and diagonals".to_owned();
-    let judge = || searcher.judge(trial.kit, &[(name.clone(), &scene, &rays)]);
+    let judge = || searcher.judge(trial.kit, &[Case::new(&name, &scene, &rays)]);
     match kit_error::catch(judge) {
         Ok(outcomes) => all_hold(outcomes),
         Err(kit_error::KitError::Panicked { message, .. }) => {
@@ -196,6 +196,11 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResu
             let what = |name: &str| format!("octree, {name}; primitive 0 overlaps two octants");
             down.ask(what("from the root down"), &cells, &scene, ray);
             along.ask(what("cell by cell"), &cells, &scene, ray);
+            let mut control = Octree::new(cells.bounds);
+            control.divide(0, 1, 1);
+            control.set_leaf(near, &[0, 1, 2]);
+            down.control("octree, from the root down", control.clone(), ray, (1.0, 5.0));
+            along.control("octree, cell by cell", control, ray, (1.0, 5.0));
         }
     }
     down.judge(|queries| trial.kit.octree_search(queries))?;

@@ -20,9 +20,19 @@ fn part_of(ray: &Ray, cell: &Cell, room: f64) -> Option<(f64, f64)> {
     (near <= far).then_some((near, far))
 }
 
-/// The exact interval of a ray in a cell.
+/// The interval of a ray in a closed cell, in double precision and without room.
 pub(super) fn exactly(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
-    part_of(ray, cell, 0.0)
+    let (mut t, mut t_end) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    for axis in 0..3 {
+        let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+        let (low, high) = (cell.min[axis] - o, cell.max[axis] - o);
+        if d == 0.0 {
+            (t, t_end) = if low <= 0.0 && 0.0 <= high { (t, t_end) } else { (f64::INFINITY, t_end) };
+        } else {
+            (t, t_end) = (t.max((low / d).min(high / d)), t_end.min((low / d).max(high / d)));
+        }
+    }
+    (t <= t_end && t < f64::INFINITY).then_some((t, t_end))
 }
 
 /// A cell that a ray enters: the interval of the ray, and the primitives that the cell lists.
@@ -45,6 +55,9 @@ pub(super) trait Structure {
     /// The leaves that the ray enters, in their order.
     fn leaves(&self, ray: &Ray) -> Vec<Leaf>;
 
+    /// The primitives that a cell or a node lists; none for an inner node.
+    fn listed(&self, node: u32) -> &[u32];
+
     /// The known mistakes of this structure's searches, each with whether it finds this hit.
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)>;
 }
@@ -56,6 +69,10 @@ impl Structure for Grid {
             Some(Leaf { enter, exit, ids: self.primitives(number).to_vec() })
         };
         in_order(numbered(self).filter_map(leaf).collect())
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        self.primitives(node)
     }
 
     fn mistakes(&self, _: &Ray, _: &[f32], _: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -76,6 +93,13 @@ impl Structure for Octree {
         in_order(leaves)
     }
 
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            OctreeNode::Leaf { first, count } => self.primitives(first, count),
+            OctreeNode::Inner { .. } => &[],
+        }
+    }
+
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
         search_mistakes::of_octree(self, ray, hits, found)
     }
@@ -92,6 +116,13 @@ impl Structure for KdTree {
             }
         });
         in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            KdNode::Leaf { first, count } => self.primitives(first, count),
+            KdNode::Inner { .. } => &[],
+        }
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
@@ -112,6 +143,13 @@ impl Structure for Bsp {
             }
         });
         in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            BspNode::Leaf { first, count } => self.primitives(first, count),
+            BspNode::Inner { .. } => &[],
+        }
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {

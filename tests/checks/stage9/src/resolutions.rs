@@ -80,6 +80,10 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
                 is_none && parallel,
                 "you return None for a ray along a face: between the two planes it is inside for every t",
             ),
+            (
+                parallel,
+                "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
+            ),
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
         let expected = (expected.0 <= expected.1).then_some(expected);

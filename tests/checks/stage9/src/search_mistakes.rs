@@ -113,7 +113,7 @@ const MISTAKES: [(Wrong, &str); 11] = [
     ),
     (
         Wrong::FirstCellWithAHit,
-        "traps A8 and A9: `Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
+        "trap A8 (A9 for octrees): `Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
     ),
     (Wrong::FirstCellOnly, "you search only the first cell that the ray enters"),
     (
@@ -367,16 +367,17 @@ pub(super) fn in_cells(leaves: &[Leaf], ray: &Ray, hits: &[f32], found: Hit) -> 
     MISTAKES.map(|(wrong, text)| (wrong.search(leaves, hits, ray) == found, text)).into()
 }
 
-/// What the answer and the calls of a search prove without a known mistake.
-pub(super) fn facts(
+/// What the answer and the calls of a search prove without a known mistake. `listed` are the primitives of a node.
+pub(super) fn facts<'a>(
     found: Hit,
-    tests: &[u32],
-    visits: &[u32],
+    (tests, visits): (&[u32], &[u32]),
     (ray, hits): (&Ray, &[f32]),
+    listed: impl Fn(u32) -> &'a [u32],
 ) -> Vec<(bool, &'static str)> {
     let expected = closest(hits, ray);
     let Some((best, best_t)) = expected else { return vec![out_of_range(found, ray)] };
     let is_tested = tests.contains(&best);
+    let is_visited = visits.iter().any(|&node| listed(node).contains(&best));
     vec![
         out_of_range(found, ray),
         (
@@ -388,15 +389,20 @@ pub(super) fn facts(
             "you keep the farther of two hits: you test the primitive with the nearer hit, but return another one",
         ),
         (
-            found.is_some(),
-            "you stop before a cell with a nearer hit, or leave it out: its primitive is never tested",
-        ),
-        (
             found.is_none() && visits.is_empty(),
             "you visit no cell although the ray enters the structure's bounds",
         ),
         (found.is_none() && is_tested, "you find a hit and reject it: it counts wherever its cell ends"),
-        (found.is_none(), "you leave out a cell that the ray passes through: its primitive is never tested"),
+        (is_visited && !is_tested, "you visit a cell, but do not test all of its primitives"),
+        (
+            found.is_some() && !is_visited,
+            "you stop before a cell with a nearer hit, or leave it out: you never visit a cell that lists the primitive",
+        ),
+        (
+            found.is_none() && !is_visited,
+            "you leave out a cell that the ray passes through: you never visit a cell that lists the primitive",
+        ),
+        (!is_visited, "you never visit a cell that lists the primitive with the nearest hit"),
     ]
 }
 

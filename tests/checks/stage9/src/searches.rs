@@ -45,42 +45,44 @@ impl Searcher {
         }
     }
 
-    /// Searches for the rays of each scene, in a tree over the scene that the checks have built, and judges the answers. The
-    /// tree is divided to this depth; 0 is one leaf.
-    pub(super) fn judge_to(
-        self,
-        depth: usize,
-        kit: &dyn Kit,
-        cases: &[(String, &Scene, &[Ray])],
-    ) -> Vec<CheckResult> {
-        let octrees = || Asked::over(cases, |scene| structures::octree(&scene.boxes(), depth));
+    /// Searches for the rays of each case, in a structure over its scene that the checks have built, and judges the answers.
+    pub(super) fn judge(self, kit: &dyn Kit, cases: &[Case<'_>]) -> Vec<CheckResult> {
+        let octrees = || Asked::over(self, cases, |scene, depth| structures::octree(&scene.boxes(), depth));
         match self {
             Searcher::Grid => {
                 let mut asked = Asked::new();
-                for (name, scene, rays) in cases {
+                for Case { name, scene, rays, one_leaf } in cases {
                     let bounds = structures::around_loosely(&scene.boxes());
-                    for query in grid_queries(scene, rays, bounds, UVec3::new(5, 4, 3)) {
+                    let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
+                    for query in grid_queries(scene, rays, bounds, resolution) {
                         asked.add(format!("grid over {name}"), query);
                     }
                 }
                 asked.judge_each(|queries| kit.grid_search(queries))
             }
-            Searcher::OctreeByCells => {
-                octrees().named("octree, cell by cell").judge_each(|queries| kit.octree_by_cells(queries))
+            Searcher::OctreeByCells => octrees().judge_each(|queries| kit.octree_by_cells(queries)),
+            Searcher::Octree => octrees().judge_each(|queries| kit.octree_search(queries)),
+            Searcher::KdTree => {
+                Asked::over(self, cases, |scene, depth| structures::kd_tree(&scene.boxes(), depth))
+                    .judge_each(|queries| kit.kd_search(queries))
             }
-            Searcher::Octree => octrees().named("octree").judge_each(|queries| kit.octree_search(queries)),
-            Searcher::KdTree => Asked::over(cases, |scene| structures::kd_tree(&scene.boxes(), depth))
-                .named("kd-tree")
-                .judge_each(|queries| kit.kd_search(queries)),
-            Searcher::Bsp => Asked::over(cases, |scene| structures::bsp(&scene.hulls(), depth))
-                .named("BSP tree")
+            Searcher::Bsp => Asked::over(self, cases, |scene, depth| structures::bsp(&scene.hulls(), depth))
                 .judge_each(|queries| kit.bsp_search(queries)),
         }
     }
+}
 
-    /// The same with the depth of this structure.
-    pub(super) fn judge(self, kit: &dyn Kit, cases: &[(String, &Scene, &[Ray])]) -> Vec<CheckResult> {
-        self.judge_to(self.depth(), kit, cases)
+/// Rays at a scene, in a structure that is divided, or in one with one leaf.
+pub(super) struct Case<'a> {
+    name: String,
+    scene: &'a Scene,
+    rays: &'a [Ray],
+    one_leaf: bool,
+}
+
+impl<'a> Case<'a> {
+    pub(super) fn new(name: impl Into<String>, scene: &'a Scene, rays: &'a [Ray]) -> Self {
+        Case { name: name.into(), scene, rays, one_leaf: false }
     }
 }
 
@@ -95,21 +97,23 @@ impl<S: Structure + Clone> Asked<S> {
         Asked { what: Vec::new(), queries: Vec::new() }
     }
 
-    /// The rays of each scene in the structure over it.
-    fn over(cases: &[(String, &Scene, &[Ray])], build: impl Fn(&Scene) -> S) -> Self {
+    /// The rays of each case in the structure over its scene.
+    fn over(searcher: Searcher, cases: &[Case<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
         let mut asked = Asked::new();
-        for (name, scene, rays) in cases {
-            for query in queries(&build(scene), scene, rays) {
-                asked.add(format!("over {name}"), query);
+        for Case { name, scene, rays, one_leaf } in cases {
+            let depth = if *one_leaf { 0 } else { searcher.depth() };
+            for query in queries(&build(scene, depth), scene, rays) {
+                asked.add(format!("{} over {name}", searcher.name()), query);
             }
         }
         asked
     }
 
-    /// With the name of the structure before each text.
-    fn named(mut self, name: &str) -> Self {
-        self.what.iter_mut().for_each(|what| *what = format!("{name} {what}"));
-        self
+    /// A ray in a structure whose first leaf on the way lists 0, 1 and 2, of which 1 is nearest. All three are hit between
+    /// these two `t`, in this leaf. A right answer here refutes the mistakes in testing the list of a leaf.
+    pub(super) fn control(&mut self, what: &str, cells: S, ray: Ray, (t, t_end): (f32, f32)) {
+        let hits = [0.75, 0.25, 0.875].map(|share| t + share * (t_end - t)).to_vec();
+        self.add(format!("{what}; the first leaf lists three primitives"), CellsQuery { cells, ray, hits });
     }
 
     pub(super) fn add(&mut self, what: impl Into<String>, query: CellsQuery<S>) {
@@ -155,7 +159,8 @@ impl<S: Structure + Clone> Asked<S> {
             let mut proven = formulas(query, answer);
             proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
             let input = (&query.ray, &query.hits[..]);
-            proven.extend(facts(found(answer), &answer.tests, &answer.visits, input));
+            let calls = (&answer.tests[..], &answer.visits[..]);
+            proven.extend(facts(found(answer), calls, input, |node| query.cells.listed(node)));
             let expected = closest(&query.hits, &query.ray);
             Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
                 .explained_by(proven))
@@ -209,19 +214,19 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
-    let ray = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X)];
-    all_hold(searcher.judge_to(0, trial.kit, &[("three spheres in a row".into(), &row, &ray)]))?;
-    all_hold(searcher.judge(trial.kit, &[("a large sphere and eight small ones".into(), &through, &ray)]))?;
+    let rays = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(9.0, 0.0, 0.0), Vec3::NEG_X)];
+    let in_a_row = Case { one_leaf: true, ..Case::new("three spheres in a row", &row, &rays) };
+    let passing = Case::new("a large sphere and eight small ones", &through, &rays[..1]);
+    all_hold(searcher.judge(trial.kit, &[in_a_row, passing]))?;
     trial.forall(500, scenes(), |cases| {
         let name = |scene: &Scene| format!("{} primitives", scene.things.len());
-        let cases: Vec<_> =
-            cases.iter().map(|(scene, ray)| (name(scene), scene, std::slice::from_ref(ray))).collect();
-        searcher.judge(trial.kit, &cases)
+        let case = |(scene, ray)| Case::new(name(scene), scene, std::slice::from_ref(ray));
+        searcher.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
     })?;
     let odd = odd_scenes();
-    let cases: Vec<_> =
-        odd.iter().map(|(name, scene, rays)| ((*name).to_owned(), scene, &rays[..])).collect();
-    all_hold(searcher.judge(trial.kit, &cases))
+    odd.iter().try_for_each(|(name, scene, rays)| {
+        all_hold(searcher.judge(trial.kit, &[Case::new(*name, scene, rays)]))
+    })
 }
 
 /// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
