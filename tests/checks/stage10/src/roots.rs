@@ -45,8 +45,19 @@ fn are_near(yours: [f32; 2], exact: [f64; 2]) -> bool {
 const LARGER_FIRST: &str =
     "you return the larger root first: the smaller root comes first, also if a or b is negative";
 
+/// The roots if the root of the discriminant is always added to b, in double and in single precision.
+fn without_the_sign_of_b(coefficients: Coefficients) -> [[f32; 2]; 2] {
+    let [a, b, c] = coefficients.map(f64::from);
+    let root = discriminant(coefficients).0.sqrt();
+    let q = -0.5 * (b + root);
+    let single = -0.5 * (coefficients[1] + root as f32);
+    let pair = |p: f32, r: f32| [p.min(r), p.max(r)];
+    let of = |q: f64| if q == 0.0 { [0.0, 0.0] } else { pair((q / a) as f32, (c / q) as f32) };
+    [of(q), of(f64::from(single))]
+}
+
 /// The known mistakes in two roots, each with whether it gives these roots.
-fn mistakes(yours: [f32; 2], expected: [f64; 2]) -> [(bool, &'static str); 4] {
+fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> [(bool, &'static str); 5] {
     let (small, large) = if expected[0].abs() < expected[1].abs() { (0, 1) } else { (1, 0) };
     let large_is_right = near(yours[large], expected[large]);
     // The error of a difference of two numbers of the size of the larger root.
@@ -59,8 +70,14 @@ fn mistakes(yours: [f32; 2], expected: [f64; 2]) -> [(bool, &'static str); 4] {
     // The two wrong roots are sorted again.
     let sorted = |[p, q]: [f64; 2]| [p.min(q), p.max(q)];
     let is = |roots: [f64; 2]| are_near(yours, roots) || are_near(yours, sorted(roots));
+    let unsigned =
+        without_the_sign_of_b(*query).into_iter().any(|roots| are_near(yours, roots.map(f64::from)));
     [
         (are_near(yours, [expected[1], expected[0]]), LARGER_FIRST),
+        (
+            unsigned,
+            "you leave out the sign of b, so a root cancels if b is negative: q = -(b + sign(b) √(b² - 4ac)) / 2",
+        ),
         (
             lost && yours[small] == 0.0,
             "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers",
@@ -92,7 +109,7 @@ pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
                 "you return None, but the discriminant is far above 0: there are two roots",
             )])),
             (Some(yours), Some(expected)) if are_near(yours, expected) => Ok(()),
-            (Some(yours), Some(expected)) => Err(broken().explained_by(mistakes(yours, expected))),
+            (Some(yours), Some(expected)) => Err(broken().explained_by(mistakes(query, yours, expected))),
         }
     };
     let drawn =
@@ -117,13 +134,17 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
             let (value, _) = discriminant(*query);
             let exact = roots(*query);
             let double = value == 0.0;
+            // The double root of the parabola with the same axis that touches.
+            let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
+            let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
+            let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
             let broken = |expected: String| {
                 Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
             };
             match yours {
                 None if value < 0.0 => Ok(()),
                 Some(_) if value < 0.0 => Err(broken("None".into())
-                    .explained_by([(true, "you return roots although the discriminant is below 0")])),
+                    .explained_by([band, (true, "you return roots although the discriminant is below 0")])),
                 None => Err(broken(format!("{exact:?}")).explained_by([
                     (double, "a double root is a root: the parabola touches the axis"),
                     (!double, "you return None although the discriminant is above 0"),
@@ -133,8 +154,8 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
                 Some(yours) => {
                     let one = near(yours[0], exact[0]) != near(yours[1], exact[1]);
                     let twice = (double && one, "return a double root twice: only one of yours is right");
-                    let mistakes = mistakes(yours, exact).into_iter().skip(usize::from(double) * 4);
-                    Err(broken(format!("{exact:?}")).explained_by([twice].into_iter().chain(mistakes)))
+                    let mistakes = mistakes(query, yours, exact).into_iter().skip(usize::from(double) * 5);
+                    Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(mistakes)))
                 }
             }
         })
