@@ -21,6 +21,9 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
     let mut asked = Asked::new();
     asked.ask("BSP tree of one plane x + y = 0, both leaves list primitive 0", &tree, &scene, ray);
+    // Nothing is hit before the plane, so the other side decides.
+    let alone = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5)]);
+    asked.ask("BSP tree of one plane x + y = 0", &two_leaves(diagonal(), &[], &[0]), &alone, ray);
     asked.control("BSP tree of one plane", two_leaves(diagonal(), &[0, 1, 2], &[]), ray, (0.0, 1.0));
     asked.judge(|queries| trial.kit.bsp_search(queries))?;
     agrees(trial, Searcher::Bsp)

@@ -109,11 +109,13 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
     }))
 }
 
-/// The visits of a search that steps across the farthest of the three faces.
-fn across_the_farthest(query: &CellsQuery<Grid>) -> Vec<u32> {
+/// The visits of a search that steps across the farthest of the three faces. It begins at the `t` of the entry, or earlier by
+/// this share of it.
+fn across_the_farthest(query: &CellsQuery<Grid>, earlier: f64) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     let bounds = Cell::new(&grid.bounds);
     let Some((enter, leave)) = parts::exactly(ray, &bounds) else { return Vec::new() };
+    let enter = enter * (1.0 - earlier);
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let share =
         (origin + enter * direction - bounds.min) / (bounds.max - bounds.min) * grid.resolution.as_dvec3();
@@ -167,7 +169,7 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
             "you do not find the first cell: clip the ray to the grid's bounds, and start there",
         ),
         (
-            visits == across_the_farthest(query),
+            [0.0, 1e-6].iter().any(|earlier| visits == across_the_farthest(query, *earlier)),
             "you step across the farthest of the three faces: step along the axis whose plane comes first",
         ),
         (missed.is_some(), "you visit a cell that the ray does not enter"),

@@ -164,6 +164,16 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
             trees.control("kd-tree", three, ray, (0.0, exact));
             let three = Grid { starts: vec![0, 3, 3], items: vec![0, 1, 2], bounds, resolution };
             grids.control("grid", three, ray, (0.0, exact));
+            // A hit behind the end of the first cell counts, because the second cell lists nothing.
+            let beyond = vec![exact + 1.0];
+            let alone = two_leaves(bounds, (axis, at), &[0], &[]);
+            trees.add(
+                "kd-tree; the only hit is behind its leaf",
+                CellsQuery { cells: alone, ray, hits: beyond.clone() },
+            );
+            let alone = Grid { starts: vec![0, 1, 1], items: vec![0], bounds, resolution };
+            grids
+                .add("grid; the only hit is behind its cell", CellsQuery { cells: alone, ray, hits: beyond });
             trees.add(what("kd-tree"), CellsQuery { cells: tree, ray, hits: hits.clone() });
             grids.add(what("grid"), CellsQuery { cells: grid, ray, hits });
         }

@@ -71,7 +71,10 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
     let dense =
         (0..8).map(|i| Aabb::new(Vec3::splat(6.0) + 0.125 * at(i), Vec3::splat(6.02) + 0.125 * at(i)));
-    let query = OctreeQuery { bounds: even.chain(dense).collect(), leaf_size: 2, max_depth: 8 };
+    // A second box in another cell, which then holds exactly leaf_size boxes.
+    let pair = [Aabb::new(at(5) + 0.125, at(5) + 0.25)];
+    let bounds = even.chain(dense).chain(pair).collect();
+    let query = OctreeQuery { bounds, leaf_size: 2, max_depth: 8 };
     let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
     judge_octree(&query, &yours)?;
     let most = yours.nodes.iter().map(|node| match node {

@@ -91,6 +91,9 @@ impl Wrong {
     }
 }
 
+/// The text of the mistake of a search that ends after the first cell.
+pub(super) const FIRST_CELL_ONLY: &str = "you search only the first cell that the ray enters";
+
 const MISTAKES: [(Wrong, &str); 11] = [
     (
         Wrong::TieToTheFirst,
@@ -115,7 +118,7 @@ const MISTAKES: [(Wrong, &str); 11] = [
         Wrong::FirstCellWithAHit,
         "trap A8 (A9 for octrees): `Some hit → Some hit` stops at the first cell with a hit, and a later cell has a nearer hit: go on until the next cell begins behind the best hit",
     ),
-    (Wrong::FirstCellOnly, "you search only the first cell that the ray enters"),
+    (Wrong::FirstCellOnly, FIRST_CELL_ONLY),
     (
         Wrong::NoRoom,
         "trap A6: t of a hit and t of a cell are rounded differently; stop only if the hit is before the cell by more than the rounding error",

@@ -2,7 +2,7 @@
 
 use super::parts::Structure;
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
-use super::search_mistakes::{facts, in_cells};
+use super::search_mistakes::{FIRST_CELL_ONLY, facts, in_cells};
 use super::structures;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
@@ -143,6 +143,9 @@ impl<S: Structure + Clone> Asked<S> {
         // A wrong search that gives another answer than a right one of the student is not the student's.
         let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
             let mut all = in_cells(&query.cells.leaves(&query.ray), &query.ray, &query.hits, found(answer));
+            // A search that visits two leaves searches more than the first cell.
+            let n_leaves = answer.visits.iter().filter(|node| !query.cells.listed(**node).is_empty()).count();
+            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
             all.extend(query.cells.mistakes(&query.ray, &query.hits, found(answer)));
             all
         };
@@ -217,7 +220,16 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     let rays = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(9.0, 0.0, 0.0), Vec3::NEG_X)];
     let in_a_row = Case { one_leaf: true, ..Case::new("three spheres in a row", &row, &rays) };
     let passing = Case::new("a large sphere and eight small ones", &through, &rays[..1]);
-    all_hold(searcher.judge(trial.kit, &[in_a_row, passing]))?;
+    // And rays from all directions at both scenes, which refute or confirm a mistake that one answer suggests.
+    let around = |at: Vec3| {
+        let look = move |forward: Vec3| Ray::new(at - 20.0 * forward, forward);
+        checks::nasty::directions().into_iter().map(look).collect::<Vec<Ray>>()
+    };
+    let (at_row, at_small) = (around(vec3(2.0, 0.1, 0.2)), around(vec3(7.0, 0.9, 0.4)));
+    let others =
+        [Case::new("three spheres in a row", &row, &at_row), Case::new("nine spheres", &through, &at_small)];
+    let cases: Vec<Case<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
+    all_hold(searcher.judge(trial.kit, &cases))?;
     trial.forall(500, scenes(), |cases| {
         let name = |scene: &Scene| format!("{} primitives", scene.things.len());
         let case = |(scene, ray)| Case::new(name(scene), scene, std::slice::from_ref(ray));
