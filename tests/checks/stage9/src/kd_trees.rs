@@ -164,6 +164,16 @@ pub(super) fn hits_at_a_face_are_compared_with_each_other(trial: &Trial<'_>) -> 
             trees.control("kd-tree", three, ray, (0.0, exact));
             let three = Grid { starts: vec![0, 3, 3], items: vec![0, 1, 2], bounds, resolution };
             grids.control("grid", three, ray, (0.0, exact));
+            // A hit behind the end of the first cell waits, because the second cell has a nearer one.
+            let waiting = vec![exact + 2.0, exact + 1.0];
+            let both = two_leaves(bounds, (axis, at), &[0], &[0, 1]);
+            let what_waits = "a hit behind the first cell, and a nearer one in the second";
+            trees.add(
+                format!("kd-tree; {what_waits}"),
+                CellsQuery { cells: both, ray, hits: waiting.clone() },
+            );
+            let both = Grid { starts: vec![0, 1, 3], items: vec![0, 0, 1], bounds, resolution };
+            grids.add(format!("grid; {what_waits}"), CellsQuery { cells: both, ray, hits: waiting });
             // A hit behind the end of the first cell counts, because the second cell lists nothing.
             let beyond = vec![exact + 1.0];
             let alone = two_leaves(bounds, (axis, at), &[0], &[]);
