@@ -135,7 +135,7 @@ fn boxes_are_told_apart(trial: &Trial<'_>, queries: &[SlabQuery]) -> CheckResult
                 MISTAKES.map(|(mistake, widened, text)| (mistake.slab(widened, query).is_none(), text)),
             )),
             // A box whose exit overflows may be entered at infinity, which costs a visit.
-            Some((enter, _)) if enter.is_finite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
+            Some((enter, _)) if !enter.is_infinite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
                 Err(broken("None: the ray passes by the box").explained_by([]))
             }
             _ => Ok(()),
@@ -184,6 +184,12 @@ fn is_too_wide(query: &SlabQuery, (enter, leave): (f32, f32)) -> bool {
     let (near, far) = double::slabs_interval(&query.ray, &query.bounds);
     let room = |t: f64| STABLE * f64::from(UNIT_ROUNDOFF) * t.abs();
     f64::from(enter) < near - room(near) || f64::from(leave) > far + room(far)
+}
+
+/// Whether the entry differs from the exact one by at most 64 roundings.
+fn is_entry(query: &SlabQuery, enter: f32) -> bool {
+    let near = double::slabs_interval(&query.ray, &query.bounds).0.max(f64::from(query.ray.t_min));
+    (f64::from(enter) - near).abs() <= STABLE * f64::from(UNIT_ROUNDOFF) * near.abs()
 }
 
 pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult {
@@ -240,10 +246,19 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
         let Some(t) = meet(&query.ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t) else {
             return Ok(());
         };
+        let is_clear = overlap(&query.ray, &query.bounds).is_some_and(|exact| exact.margin > STABLE);
         match yours {
-            None if overlap(&query.ray, &query.bounds).is_some_and(|exact| exact.margin > STABLE) => {
+            None if is_clear => {
                 let expected = format!("at {t} or before: there the ray hits a triangle in the box");
                 Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly").explained_by([]))
+            }
+            // Where no rounding decides, the entry itself must be right, up to 64 roundings.
+            Some((enter, _)) if is_clear && !is_entry(query, enter) => {
+                let (near, _) = double::slabs_interval(&query.ray, &query.bounds);
+                let expected = format!("enters at {}", near.max(f64::from(query.ray.t_min)));
+                let yours = format!("enters at {enter}");
+                Err(Broken::with_texts(query.call("conservative_slab"), yours, expected, "double precision")
+                    .explained_by([]))
             }
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),

@@ -280,7 +280,14 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
     // A factor of a power of two changes no rounding unless a number over- or underflows. Half of the rays are aimed well
     // inside, where roundings do not decide.
     let mut queries = draw(trial, "edge", 300);
-    queries.extend(draw(trial, "interior", 300));
+    let inside = draw(trial, "interior", 300);
+    // And rays that go away from the triangle.
+    let away = |query: &TriangleQuery| TriangleQuery {
+        ray: Ray::new(query.ray.origin, -query.ray.direction),
+        ..*query
+    };
+    queries.extend(inside.iter().map(away));
+    queries.extend(inside);
     let plain = trial.kit.watertight(&queries);
     for exponent in [-30, 30] {
         let size = 2f32.powi(exponent);
@@ -302,8 +309,13 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
                      yours: Option<TriangleHit>| {
             let exact = verdict(&query.ray, Body::Triangle(query.triangle));
             let clear = triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
-            if yours.is_none() && plain.is_none() && clear && exact.is_some_and(|exact| exact.is_hit()) {
-                return Err(Broken::new(query.call("watertight"), yours, "a hit", "exactly").explained_by([]));
+            let is_hit = exact.is_some_and(|exact| exact.is_hit());
+            let alike = yours.is_some() == plain.is_some();
+            if alike && clear && yours.is_some() != is_hit {
+                let expected = if is_hit { "a hit" } else { "None" };
+                return Err(
+                    Broken::new(query.call("watertight"), yours, expected, "exactly").explained_by([])
+                );
             }
             if yours == **plain {
                 return Ok(());
