@@ -5,6 +5,7 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double;
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
 use oracle::STABLE;
@@ -134,7 +135,7 @@ fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> Chec
                 MISTAKES.map(|(mistake, widened, text)| (mistake.slab(widened, query).is_none(), text)),
             )),
             // A box whose exit overflows may be entered at infinity, which costs a visit.
-            Some((enter, _)) if enter.is_finite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
+            Some((enter, _)) if !enter.is_infinite() && !exact.verdict.is_hit() && exact.margin > STABLE => {
                 Err(broken("None: the ray passes by the box").explained_by([]))
             }
             _ => Ok(()),
@@ -143,15 +144,38 @@ fn hit_and_missed_boxes_differ(trial: &Trial<'_>, queries: &[SlabQuery]) -> Chec
     all_hold(compare(queries, trial.kit.conservative_slab(queries), judge))
 }
 
+/// Scales whose third powers are normal numbers in double precision, but not in single precision.
+const SCALES: [f32; 3] = [1.0, 1.0 / (1u64 << 60) as f32, (1u64 << 60) as f32];
+
+/// Rays in all directions with this range, and a box around the point at this `t`, through which the ray goes; at these
+/// scales.
+fn plain(t: f32, (t_min, t_max): (f32, f32), scales: &[f32]) -> Vec<SlabQuery> {
+    let query = |(direction, scale): (Vec3, f32)| {
+        let (center, half) = (scale * t * direction, scale * Vec3::new(0.5, 0.25, 0.75));
+        let ray = Ray::new(Vec3::ZERO, scale * direction).with_range(t_min, t_max);
+        SlabQuery { ray, bounds: Aabb::new(center - half, center + half) }
+    };
+    scales
+        .iter()
+        .flat_map(|&scale| nasty::directions().into_iter().map(move |d| (d, scale)))
+        .map(query)
+        .collect()
+}
+
 pub(super) fn slab_misses_no_box_that_is_met(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 8);
-    let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
+    let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| at_a_corner(&mut random)).collect();
+    // Boxes behind the ray are missed.
+    queries.extend(plain(-3.0, (0.0, f32::INFINITY), &[1.0]));
     hit_and_missed_boxes_differ(trial, &queries)
 }
 
 pub(super) fn slab_misses_no_box_in_any_range(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 18);
-    let queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| of_any_size(&mut random)).collect();
+    let mut queries: Vec<SlabQuery> = (0..20_000).filter_map(|_| of_any_size(&mut random)).collect();
+    // Boxes behind the range and before it are missed.
+    queries.extend(plain(3.0, (-1.0, 1.0), &SCALES));
+    queries.extend(plain(-3.0, (-1.0, 1.0), &SCALES));
     hit_and_missed_boxes_differ(trial, &queries)
 }
 
@@ -160,6 +184,12 @@ fn is_too_wide(query: &SlabQuery, (enter, leave): (f32, f32)) -> bool {
     let (near, far) = double::slabs_interval(&query.ray, &query.bounds);
     let room = |t: f64| STABLE * f64::from(UNIT_ROUNDOFF) * t.abs();
     f64::from(enter) < near - room(near) || f64::from(leave) > far + room(far)
+}
+
+/// Whether the entry differs from the exact one by at most 64 roundings.
+fn is_entry(query: &SlabQuery, enter: f32) -> bool {
+    let near = double::slabs_interval(&query.ray, &query.bounds).0.max(f64::from(query.ray.t_min));
+    (f64::from(enter) - near).abs() <= STABLE * f64::from(UNIT_ROUNDOFF) * near.abs()
 }
 
 pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult {
@@ -172,10 +202,17 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
         (ray.direction != Vec3::ZERO).then_some(SlabQuery { ray, ..query })
     };
     let mut corners = Random::new(trial.seed, 14);
-    let queries: Vec<SlabQuery> =
+    let mut queries: Vec<SlabQuery> =
         (0..20_000).filter_map(|_| at_a_corner(&mut corners)).filter_map(beside).collect();
+    // Boxes that the ray meets.
+    queries.extend(plain(3.0, (0.0, f32::INFINITY), &SCALES));
     let judge = |query: &SlabQuery, yours: Option<(f32, f32)>| {
         let Some(exact) = overlap(&query.ray, &query.bounds) else { return Ok(()) };
+        if yours.is_none() && exact.verdict.is_hit() && exact.margin > STABLE {
+            let expected = "Some: the ray meets the box";
+            return Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly")
+                .explained_by([]));
+        }
         // Accept a hit that is wrong by a few roundings only: it costs a visit and loses no hit.
         if yours.is_none() || exact.verdict.is_hit() || exact.margin <= STABLE {
             return Ok(());
@@ -192,14 +229,16 @@ pub(super) fn slab_meets_no_box_that_is_passed(trial: &Trial<'_>) -> CheckResult
 
 pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckResult {
     let mut random = Random::new(trial.seed, 15);
-    // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal.
-    let draw = |_| {
+    // Aim rays at a corner of a triangle that lies on its bounding box: the exact t of box and triangle are equal. Aim
+    // every tenth ray inside the triangle, where no rounding decides whether the ray meets the box.
+    let draw = |index: u32| {
         let place = [Vec3::ZERO, Vec3::ONE, Vec3::splat(1e3)][random.below(3) as usize];
         let [a, b, c] = [(); 3].map(|()| place + random.in_cube());
         let triangle = Triangle { a, b, c };
         let origin = place + 4.0 * random.in_cube();
         let bounds = Aabb::new(a.min(b).min(c), a.max(b).max(c));
-        (SlabQuery { ray: Ray::new(origin, a - origin), bounds }, triangle)
+        let target = if index.is_multiple_of(10) { a + 0.3 * (b - a) + 0.4 * (c - a) } else { a };
+        (SlabQuery { ray: Ray::new(origin, target - origin), bounds }, triangle)
     };
     let drawn: Vec<(SlabQuery, Triangle)> = (0..20_000).map(draw).collect();
     let queries: Vec<SlabQuery> = drawn.iter().map(|(query, _)| *query).collect();
@@ -207,7 +246,20 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
         let Some(t) = meet(&query.ray, Body::Triangle(*triangle)).and_then(|meeting| meeting.t) else {
             return Ok(());
         };
+        let is_clear = overlap(&query.ray, &query.bounds).is_some_and(|exact| exact.margin > STABLE);
         match yours {
+            None if is_clear => {
+                let expected = format!("at {t} or before: there the ray hits a triangle in the box");
+                Err(Broken::with_texts(query.call("conservative_slab"), "None", expected, "exactly").explained_by([]))
+            }
+            // Where no rounding decides, the entry itself must be right, up to 64 roundings.
+            Some((enter, _)) if is_clear && !is_entry(query, enter) => {
+                let (near, _) = double::slabs_interval(&query.ray, &query.bounds);
+                let expected = format!("enters at {}", near.max(f64::from(query.ray.t_min)));
+                let yours = format!("enters at {enter}");
+                Err(Broken::with_texts(query.call("conservative_slab"), yours, expected, "double precision")
+                    .explained_by([]))
+            }
             Some((enter, _)) if enter > t => Err(Broken::with_texts(
                 query.call("conservative_slab"),
                 format!("enters at {enter}"),

@@ -3,13 +3,16 @@
 use super::triangles::{aim_again, draw};
 use super::{Odd, SPECIAL};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double::U;
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::Vec3;
 use oracle::STABLE;
-use oracle::exact::{Body, meet, t_error_in_ulps, triangle};
+use oracle::exact::{Body, meet, t_error_in_ulps, t_in_double, triangle, verdict};
 use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::splitmix::Random;
 use raykata::kit::{SphereQuery, TriangleHit, TriangleQuery};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
@@ -28,16 +31,6 @@ const TOO_THIN_FOR_GRAM: &str = "needle";
 const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was \
                               converted stays rounded: convert the corners and the origin first";
 
-/// A wrong verdict.
-struct Wrong {
-    query: TriangleQuery,
-    yours: Option<TriangleHit>,
-    /// The exact answer.
-    exact: Option<f32>,
-    /// How many roundings of single precision the exact answer is from flipping.
-    margin: f64,
-}
-
 /// The distribution, with rays at all three edges and beside them.
 fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
     let mut queries = draw(trial, name, 400);
@@ -49,6 +42,24 @@ fn at_all_edges(trial: &Trial<'_>, name: &str) -> Vec<TriangleQuery> {
             [Triangle { a, b, c }, Triangle { a: b, b: c, c: a }, Triangle { a: c, b: a, c: b }][index % 3];
     }
     queries
+}
+
+const SINGLE: &str =
+    "the error is that of single precision, in both directions: you round an intermediate result to f32";
+
+/// Whether answers err in both directions, as rounding errors do. A tolerance errs in one direction only.
+pub(super) fn err_both_ways(mut is_above: impl Iterator<Item = bool>) -> bool {
+    let Some(first) = is_above.next() else { return false };
+    is_above.any(|other| other != first)
+}
+
+/// A wrong verdict: the query, the student's answer, the exact one, and how many roundings of single precision the exact
+/// answer is from flipping.
+struct Wrong {
+    query: TriangleQuery,
+    yours: Option<TriangleHit>,
+    exact: Option<f32>,
+    margin: f64,
 }
 
 pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> CheckResult {
@@ -63,14 +74,96 @@ pub(super) fn double_triangle_is_right_at_edges(trial: &Trial<'_>) -> CheckResul
             let margin = triangle::margin(&query.ray, &query.triangle)?;
             Some(Wrong { query: *query, yours, exact: exact.t, margin })
         };
-        let wrong: Vec<Wrong> = queries.iter().zip(answers).filter_map(judge).collect();
-        let Some(worst) = wrong.iter().max_by(|p, q| p.margin.total_cmp(&q.margin)) else { continue };
-        let yours = format!("{:?}", worst.yours.map(|hit| hit.t));
-        let expected = format!("{:?}, {}", worst.exact, describe(worst.margin));
-        let broken = Broken::with_texts(worst.query.call("triangle_in_double"), yours, expected, "exactly");
-        return Err(broken.looks_like(known(diagnosis(trial, &wrong, worst))));
+        let mut wrong: Vec<Wrong> = queries.iter().zip(answers).filter_map(judge).collect();
+        // Report the plainest error.
+        wrong.sort_by(|p, q| q.margin.total_cmp(&p.margin));
+        all_hold(explain(trial, &wrong))?;
     }
-    Ok(())
+    points_on_edges_belong(trial)
+}
+
+/// Rays along an axis at points exactly on the edges and corners of triangles with small integer coordinates: no product is
+/// rounded, and β and γ are multiples of a quarter.
+fn points_on_edges_belong(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 21);
+    let mut corner = || 4.0 * Vec3::from_array([(); 3].map(|()| random.below(9) as f32 - 4.0));
+    let mut queries = Vec::new();
+    for index in 0..600 {
+        let (a, b, c) = (corner(), corner(), corner());
+        let (axis, quarter) = (index % 3, (index / 3 % 5) as f32 / 4.0);
+        let [from, to] = [[a, b], [b, c], [c, a]][index / 15 % 3];
+        let mut direction = Vec3::ZERO;
+        direction[axis] = if index.is_multiple_of(2) { 1.0 } else { -2.0 };
+        if (b - a).cross(c - a)[axis] != 0.0 {
+            let ray = Ray::new(from + quarter * (to - from) - 3.0 * direction, direction);
+            queries.push(TriangleQuery { ray, triangle: Triangle { a, b, c } });
+        }
+    }
+    all_hold(compare(&queries, trial.kit.triangle_in_double(&queries), |query, yours| {
+        if yours.is_some_and(|hit| hit.t == 3.0) {
+            return Ok(());
+        }
+        let weights = triangle::weights(&query.ray, &query.triangle).flatten();
+        let lost = |on: fn(f64, f64) -> bool| {
+            yours.is_none() && weights.is_some_and(|[beta, gamma]| on(beta, gamma))
+        };
+        Err(Broken::new(query.call("triangle_in_double"), yours, "a hit at t = 3", "integers, exactly").explained_by([
+            (
+                lost(|beta, gamma| beta + gamma == 1.0),
+                "you leave out points with β + γ = 1: points on the edge from b to c belong to the triangle",
+            ),
+            (
+                lost(|beta, gamma| beta == 0.0 || gamma == 0.0),
+                "you leave out points with β = 0 or γ = 0: points on these edges belong to the triangle",
+            ),
+            (
+                lost(|beta, gamma| beta == 0.0 || gamma == 0.0 || beta + gamma == 1.0),
+                "you leave out points on edges: they belong to the triangle",
+            ),
+        ]))
+    }))
+}
+
+/// The broken laws of wrong verdicts, with the known mistakes.
+fn explain(trial: &Trial<'_>, wrong: &[Wrong]) -> Vec<CheckResult> {
+    let enlarged: Vec<TriangleQuery> = wrong.iter().map(|one| enlarged(&one.query)).collect();
+    let enlarged = trial.kit.triangle_in_double(&enlarged);
+    let is_right = |query: &TriangleQuery, yours| verdict_is_right(query, yours) == Some(true);
+    let converted_late = is_converted_late(trial, wrong.iter().map(|one| (&one.query, one.yours)), is_right);
+    let single = wrong.iter().all(|one| one.margin <= STABLE)
+        && err_both_ways(wrong.iter().map(|one| one.yours.is_some()));
+    // The plainest error comes first. Rounding errors alone do not give it.
+    let clear = wrong.first().is_some_and(|one| one.margin > STABLE);
+    let judge = |(Wrong { query, yours, exact, margin }, enlarged): (&Wrong, Option<TriangleHit>)| {
+        let line = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+        let on_the_line = meet(&line, Body::Triangle(query.triangle)).is_some_and(|it| it.verdict.is_hit());
+        let weights = triangle::weights(&query.ray, &query.triangle).flatten();
+        let beyond_the_third_edge = weights.is_some_and(|[beta, gamma]| beta >= 0.0 && gamma >= 0.0);
+        let outside = yours.is_some() && !on_the_line && clear;
+        let expected = format!("{exact:?}, {}", describe(*margin));
+        let yours_t = format!("{:?}", yours.map(|hit| hit.t));
+        Err(Broken::with_texts(query.call("triangle_in_double"), yours_t, expected, "exactly").explained_by([
+            (
+                yours.is_none() && enlarged.is_some(),
+                "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit",
+            ),
+            (
+                yours.is_some() && on_the_line,
+                "you return a hit behind the origin or beyond the range: t counts only within the range of the ray",
+            ),
+            (
+                outside && beyond_the_third_edge,
+                "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too",
+            ),
+            (
+                outside && !beyond_the_third_edge,
+                "you return a hit where there is none: β and γ must be at least 0",
+            ),
+            (converted_late, CONVERTED_LATE),
+            (single, SINGLE),
+        ]))
+    };
+    wrong.iter().zip(enlarged).map(judge).collect()
 }
 
 /// How far a verdict is from flipping, in roundings of single precision.
@@ -79,38 +172,6 @@ pub(super) fn describe(margin: f64) -> String {
         return "and no rounding error can change that".into();
     }
     format!("{margin:.2} roundings of single precision from the opposite answer")
-}
-
-fn diagnosis(trial: &Trial<'_>, wrong: &[Wrong], worst: &Wrong) -> &'static str {
-    let Wrong { query, yours, margin, .. } = worst;
-    let infinite = TriangleQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
-    let on_the_line =
-        meet(&infinite.ray, Body::Triangle(query.triangle)).is_some_and(|it| it.verdict.is_hit());
-    let beyond_the_third_edge = || {
-        let weights = triangle::weights(&query.ray, &query.triangle).flatten();
-        weights.is_some_and(|[beta, gamma]| beta >= 0.0 && gamma >= 0.0)
-    };
-    let converted_late = || {
-        let wrong = wrong.iter().map(|one| (&one.query, one.yours));
-        is_converted_late(trial, wrong, |query, yours| verdict_is_right(query, yours) == Some(true))
-    };
-    match yours {
-        None if trial.kit.triangle_in_double(&[enlarged(query)])[0].is_some() => {
-            "you treat a small determinant as 0: a determinant that is small is not 0, and the same triangle enlarged is hit"
-        }
-        Some(_) if on_the_line => {
-            "you return a hit behind the origin or beyond the range: t counts only within the range of the ray"
-        }
-        Some(_) if *margin > STABLE && beyond_the_third_edge() => {
-            "you return a hit where β + γ > 1: α = 1 - β - γ must be at least 0, too"
-        }
-        Some(_) if *margin > STABLE => "you return a hit where there is none: β and γ must be at least 0",
-        _ if converted_late() => CONVERTED_LATE,
-        _ if *margin <= STABLE => {
-            "the error is that of single precision: you round an intermediate result to f32"
-        }
-        _ => "",
-    }
 }
 
 /// The query scaled by a power of two to a size of about a million, which changes no rounding.
@@ -166,64 +227,176 @@ fn steps_off(query: &TriangleQuery, yours: Option<TriangleHit>) -> Option<f64> {
     t_error_in_ulps(&query.ray, Body::Triangle(query.triangle), yours?.t)
 }
 
+/// The greatest error, in units of the last place, that may come from rounding one intermediate result to single precision.
+/// The cancellation that follows enlarges it a thousand times or more.
+const OF_SINGLE: f64 = 1e5;
+
 pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult {
     for distribution in &DISTRIBUTIONS {
         let queries = draw(trial, distribution.name, 400);
         let answers = trial.kit.triangle_in_double(&queries);
+        let is_lost = |query: &TriangleQuery, yours: Option<TriangleHit>| {
+            // Leave verdicts that roundings decide to another check.
+            let clear = triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
+            yours.is_none()
+                && clear
+                && verdict(&query.ray, Body::Triangle(query.triangle)).is_some_and(|it| it.is_hit())
+        };
         let judge = |(query, yours): (&TriangleQuery, Option<TriangleHit>)| {
+            if is_lost(query, yours) {
+                return Some((*query, yours, f64::INFINITY));
+            }
             let off = steps_off(query, yours)?;
             // Rounding an accurate result leaves an error of half a unit. One whole unit accepts both neighbours of t.
-            (off.abs() > 1.0).then_some((*query, yours, off))
+            (!(off.abs() <= 1.0)).then_some((*query, yours, off))
         };
         let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
-        let Some((query, yours, off)) = wrong.first() else { continue };
-        let converted_late = || {
-            let wrong = wrong.iter().map(|(query, yours, _)| (query, *yours));
-            let is_right =
-                |query: &TriangleQuery, yours| steps_off(query, yours).is_some_and(|off| off.abs() <= 1.0);
-            is_converted_late(trial, wrong, is_right)
+        let is_right =
+            |query: &TriangleQuery, yours| steps_off(query, yours).is_some_and(|off| off.abs() <= 1.0);
+        let converted_late =
+            is_converted_late(trial, wrong.iter().map(|(query, yours, _)| (query, *yours)), is_right);
+        let single = wrong.iter().all(|(.., off)| off.abs() < OF_SINGLE)
+            && err_both_ways(wrong.iter().map(|(.., off)| *off > 0.0));
+        let broken = |(query, yours, off): &(TriangleQuery, Option<TriangleHit>, f64)| {
+            let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
+            let expected = match yours {
+                None => format!("{exact:?}"),
+                Some(_) => format!(
+                    "{exact:?}, or a neighbour: yours is {:.1} units of the last place off",
+                    off.abs()
+                ),
+            };
+            let (input, yours) = (query.call("triangle_in_double"), format!("{:?}", yours.map(|hit| hit.t)));
+            Err(Broken::with_texts(input, yours, expected, "exactly").explained_by([
+                (converted_late, CONVERTED_LATE),
+                (
+                    single,
+                    "t has only the accuracy of single precision: round the quotient, and nothing before it",
+                ),
+            ]))
         };
-        let diagnosis = match () {
-            () if converted_late() => CONVERTED_LATE,
-            () if off.abs() < 1e5 => {
-                "t has only the accuracy of single precision: round the quotient, and nothing before it"
-            }
-            () => "",
-        };
-        let exact = meet(&query.ray, Body::Triangle(query.triangle)).and_then(|meeting| meeting.t);
-        let expected =
-            format!("{exact:?}, or a neighbour: yours is {:.1} units of the last place off", off.abs());
-        let broken = Broken::with_texts(
-            query.call("triangle_in_double"),
-            format!("{:?}", yours.map(|hit| hit.t)),
-            expected,
-            "exactly",
-        );
-        return Err(broken.looks_like(known(diagnosis)));
+        all_hold(wrong.iter().map(broken).collect())?;
     }
-    Ok(())
+    let queries = draw(trial, "interior", 400);
+    all_hold(judge_weights("triangle_in_double", &queries, trial.kit.triangle_in_double(&queries), 2.0 * U))?;
+    let judge = |queries: &[TriangleQuery]| trial.kit.triangle_in_double(queries);
+    all_hold(judge_ends("triangle_in_double", &queries, judge))
 }
+
+/// Judges β and γ of hits well inside, up to `tolerance`.
+pub(super) fn judge_weights(
+    function: &str,
+    queries: &[TriangleQuery],
+    answers: Vec<Option<TriangleHit>>,
+    tolerance: f64,
+) -> Vec<CheckResult> {
+    compare(queries, answers, |query, yours| {
+        let (Some(yours), Some([beta, gamma])) =
+            (yours, triangle::weights(&query.ray, &query.triangle).flatten())
+        else {
+            return Ok(());
+        };
+        let is = |b: f64, g: f64| {
+            (f64::from(yours.beta) - b).abs() <= tolerance && (f64::from(yours.gamma) - g).abs() <= tolerance
+        };
+        if is(beta, gamma) {
+            return Ok(());
+        }
+        let describe = |beta: f64, gamma: f64| format!("β = {beta}, γ = {gamma}");
+        let alpha = 1.0 - beta - gamma;
+        Err(Broken::with_texts(
+            query.call(function),
+            describe(yours.beta.into(), yours.gamma.into()),
+            describe(beta, gamma),
+            "exactly",
+        )
+        .explained_by([
+            (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),
+            (
+                is(alpha, beta) || is(alpha, gamma) || is(beta, alpha) || is(gamma, alpha),
+                "one of your two numbers is α, the barycentric coordinate of corner a",
+            ),
+        ]))
+    })
+}
+
+/// Judges ranges that end exactly at a hit, or one float beside it. `t` is the student's own, which is rounded.
+pub(super) fn judge_ends(
+    function: &str,
+    queries: &[TriangleQuery],
+    ask: impl Fn(&[TriangleQuery]) -> Vec<Option<TriangleHit>>,
+) -> Vec<CheckResult> {
+    let whole = queries.iter().zip(ask(queries)).take(50);
+    let at_ends: Vec<(TriangleQuery, bool)> = whole
+        .filter_map(|(query, yours)| Some((query, yours?.t)))
+        .flat_map(|(query, t)| {
+            let ranges = nasty::ranges(t);
+            ranges.map(|((t_min, t_max), counts)| {
+                (TriangleQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, counts)
+            })
+        })
+        .collect();
+    let only: Vec<TriangleQuery> = at_ends.iter().map(|(query, _)| *query).collect();
+    let judge = |(query, counts): &(TriangleQuery, bool), yours: Option<TriangleHit>| {
+        if yours.is_some() == *counts {
+            return Ok(());
+        }
+        let expected = if *counts { "a hit" } else { "None" };
+        let yours_t = format!("{:?}", yours.map(|hit| hit.t));
+        Err(Broken::with_texts(query.call(function), yours_t, expected, "ray.contains of the rounded t")
+            .explained_by([]))
+    };
+    let formulas = |(query, _): &(TriangleQuery, bool), yours: &Option<TriangleHit>| {
+        let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+        let exact =
+            t_in_double(&query.ray.with_range(0.0, f32::INFINITY), Body::Triangle(query.triangle)).flatten();
+        let is = |of: &dyn Fn(f64) -> bool| exact.is_some_and(of) == yours.is_some();
+        let rounded = |t: f64| f64::from(t as f32);
+        vec![
+            (
+                is(&|t| t_min <= rounded(t) && rounded(t) <= t_max),
+                "the range of a ray is open at both ends: ask ray.contains(t)",
+            ),
+            (
+                is(&|t| t_min < t && t < t_max),
+                "you compare t with the range before you round it: ask ray.contains of the rounded t",
+            ),
+        ]
+    };
+    compare_formulas(&at_ends, ask(&only), judge, formulas)
+}
+
+const NAN_IS_NO_HIT: &str = "NaN is no hit: test the conditions of a hit, which are false for NaN";
 
 pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 16);
-    let triangles = odd.triangles();
+    let mut triangles = odd.triangles();
+    // One ordinary hit.
+    let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
+    let ordinary = TriangleQuery { ray: Ray::new(Vec3::new(0.25, 0.25, 1.0), Vec3::NEG_Z), triangle };
+    triangles.push(ordinary);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
         let TriangleQuery { ray, triangle: Triangle { a, b, c } } = query;
-        let nan = [ray.origin, ray.direction, *a, *b, *c].iter().any(|vector| vector.is_nan());
+        let has_nan = [ray.origin, ray.direction, *a, *b, *c].iter().any(|vector| vector.is_nan());
+        let input = || query.call("triangle_in_double");
         match yours {
-            Some(hit) if nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
-                let input = query.call("triangle_in_double");
-                let yours = format!("{hit:?}");
-                let broken = Broken::with_texts(input, yours, "finite numbers, or None", "the definition");
-                Err(broken
-                    .looks_like(Some("NaN is no hit: test the conditions of a hit, which are false for NaN")))
+            None if *query == ordinary => {
+                Err(Broken::new(input(), yours, "a hit at t = 1", "exactly").explained_by([]))
+            }
+            Some(hit) if has_nan || !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
+                let is_nan = hit.t.is_nan() || hit.beta.is_nan() || hit.gamma.is_nan();
+                let broken = Broken::with_texts(
+                    input(),
+                    format!("{hit:?}"),
+                    "finite numbers, or None",
+                    "the definition",
+                );
+                Err(broken.explained_by([(has_nan || is_nan, NAN_IS_NO_HIT)]))
             }
             _ => Ok(()),
         }
     };
-    compare(&triangles, trial.kit.triangle_in_double(&triangles), judge)
-        .into_iter()
-        .collect::<CheckResult>()?;
+    all_hold(compare(&triangles, trial.kit.triangle_in_double(&triangles), judge))?;
 
     // Aim at the centre, so that only the radius decides.
     let centred = |radius: f32| {
@@ -238,24 +411,27 @@ pub(super) fn double_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckRes
     }));
     let judge = |query: &SphereQuery, yours: Option<f32>| {
         let SphereQuery { ray, sphere } = query;
-        let nan =
+        let has_nan =
             ray.origin.is_nan() || ray.direction.is_nan() || sphere.center.is_nan() || sphere.radius.is_nan();
-        let broken = |expected: &str, diagnosis: &'static str| {
+        let broken = |expected: &str, mistakes: &[(bool, &'static str)]| {
             let input = query.call("sphere_in_double");
             Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition")
-                .looks_like(Some(diagnosis)))
+                .explained_by(mistakes.iter().copied()))
         };
         match yours {
-            Some(t) if nan || !t.is_finite() => broken(
-                "a finite number, or None",
-                "NaN is no hit: test the conditions of a hit, which are false for NaN",
-            ),
+            None if *query == centred(1.0) => broken("Some(3.0)", &[]),
+            Some(t) if has_nan || !t.is_finite() => {
+                broken("a finite number, or None", &[(has_nan || t.is_nan(), NAN_IS_NO_HIT)])
+            }
             Some(_) if sphere.radius <= 0.0 => broken(
                 "None",
-                "you return a hit for a radius of 0 or below: r² has no sign, so test the radius itself",
+                &[(
+                    true,
+                    "you return a hit for a radius of 0 or below: r² has no sign, so test the radius itself",
+                )],
             ),
             _ => Ok(()),
         }
     };
-    compare(&spheres, trial.kit.sphere_in_double(&spheres), judge).into_iter().collect()
+    all_hold(compare(&spheres, trial.kit.sphere_in_double(&spheres), judge))
 }

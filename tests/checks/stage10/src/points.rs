@@ -1,138 +1,234 @@
 //! The laws of `offset_origin` and `safe_normalize`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::generate::{magnitude, rough_point, unit};
-use checks::judge::{compare, known};
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
+use checks::offset::Start;
 use checks::paste::call;
-use glam::Vec3;
+use glam::{Vec3, vec3};
 use proptest::prelude::*;
-use raykata::kit::OffsetQuery;
+use raykata::kit::{OffsetQuery, Surface};
+use raykata::ray::Ray;
 
 fn describe(query: &OffsetQuery) -> String {
     call("offset_origin", &[&query.point, &query.error, &query.normal, &query.direction])
 }
 
+/// Points with another error on each axis, at all scales, and directions down to 0.001 above the surface on either side.
 fn surfaces() -> impl Strategy<Value = OffsetQuery> + Clone {
-    (unit(), unit(), rough_point(1.0), magnitude(-3.0, 5.0), any::<bool>()).prop_map(
-        |(normal, lean, at, size, beyond)| {
-            let side = if beyond { -normal } else { normal };
-            OffsetQuery {
-                point: size * at,
-                // Seven roundings per coordinate, as for a point on a triangle of this size.
-                error: Vec3::splat(4e-7 * size),
-                normal,
-                direction: (side + 0.8 * lean).normalize(),
-            }
-        },
-    )
+    (nasty::surface(), nasty::tilt(), any::<bool>()).prop_map(|(surface, (angle, turn), beyond)| {
+        let normal = surface.geometric_normal;
+        let direction = nasty::tilted(if beyond { -normal } else { normal }, angle, turn);
+        OffsetQuery { point: surface.point, error: surface.error, normal, direction }
+    })
 }
 
-/// The height of the origin above the point on the side to which the ray goes, and the error bound of the point along
-/// the normal.
-fn height(query: &OffsetQuery, origin: Vec3) -> (f64, f64) {
-    let normal = query.normal.as_dvec3();
-    let side = if normal.dot(query.direction.as_dvec3()) < 0.0 { -normal } else { normal };
-    let moved = origin.as_dvec3() - query.point.as_dvec3();
-    (moved.dot(side), query.error.as_dvec3().dot(side.abs()))
+/// Directions exactly perpendicular to the normal. Their scalar product is 0.0, and not -0.0, whose sign says nothing.
+fn along_the_surface() -> Vec<OffsetQuery> {
+    let (point, error) = (vec3(1.0, -2.0, 3.0), vec3(1e-3, 2e-3, 5e-4));
+    let of_normal = |normal: Vec3| {
+        let across = [1.0, -1.0].map(|sign| sign * vec3(normal.y, normal.z, normal.x));
+        across.map(|direction| OffsetQuery { point, error, normal, direction })
+    };
+    let all = [Vec3::X, Vec3::Y, Vec3::NEG_Y, Vec3::NEG_Z].into_iter().flat_map(of_normal);
+    all.filter(|query| query.normal.dot(query.direction).is_sign_positive()).collect()
+}
+
+/// The start of the ray with this origin, on the side to which the direction goes.
+fn start(query: &OffsetQuery, origin: Vec3) -> Start {
+    let OffsetQuery { point, error, normal, direction } = *query;
+    let side = if normal.as_dvec3().dot(direction.as_dvec3()) < 0.0 { -normal } else { normal };
+    let surface = Surface { point, error, geometric_normal: normal, shading_normal: normal };
+    Start::new(&surface, side, direction, &Ray::new(origin, direction))
+}
+
+/// The known mistakes, each with whether it gives this origin.
+fn mistakes(query: &OffsetQuery, origin: Vec3) -> Vec<(bool, &'static str)> {
+    let start = start(query, origin);
+    let along = query.normal.as_dvec3().dot(query.direction.as_dvec3());
+    let (height, point) = (start.height(), query.point.as_dvec3());
+    // A power of ten times the size of the point.
+    let relative = [point.length(), point.abs().max_element()]
+        .into_iter()
+        .any(|size| (1..=7).any(|digits| (height / (size * 10f64.powi(-digits)) - 1.0).abs() < 0.01));
+    let mut mistakes = vec![(
+        along == 0.0 && height < 0.0,
+        "a direction perpendicular to the normal goes to the side of the normal",
+    )];
+    mistakes.extend(start.mistakes());
+    mistakes.extend([
+        (relative, "your offset is a fixed fraction of the size of the point: move by error·|n|"),
+        (
+            along < 0.0 && start.height() < 0.0,
+            "the ray starts on the side of the normal, but it goes to the other side: turn the normal to the side of the direction",
+        ),
+        (start.height() < 0.0, "the ray starts on the other side: turn the normal to the side of the direction"),
+        (
+            height < 4.0 * U * point.abs().max_element(),
+            "the ray starts on the other side, up to rounding: turn the normal to the side of the direction",
+        ),
+    ]);
+    mistakes
 }
 
 pub(super) fn offsets_leave_the_surface_at_any_scale(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(4000, surfaces(), |queries| {
+    let judge = |queries: &[OffsetQuery]| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
-            let (height, bound) = height(query, origin);
-            // Allow one per cent for the rounding of the bound itself.
-            if height >= 0.99 * bound {
+            let start = start(query, origin);
+            if !start.is_too_low() {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if height == 0.0 => {
-                    "the ray starts on the surface itself, and hits it again in half of all cases (shadow acne)"
-                }
-                () if height < 0.0 => {
-                    "the ray starts on the other side: turn the normal to the side of the direction"
-                }
-                () => "the offset is too small here: move by the error of the point, error · |n|",
-            };
             Err(Broken::with_texts(
                 describe(query),
-                format!("{height:.3e} off the point"),
-                format!("{bound:.3e} or more, on the side of the direction"),
+                format!("{:.3e} off the point", start.height()),
+                format!("{:.3e} or more, on the side of the direction", start.least()),
                 "closed form",
             )
-            .looks_like(Some(diagnosis)))
+            .explained_by(mistakes(query, origin)))
         })
-    })
+    };
+    trial.forall(4000, surfaces(), judge)?;
+    all_hold(judge(&along_the_surface()))
 }
 
 pub(super) fn offsets_are_as_small_as_they_can_be(trial: &Trial<'_>) -> CheckResult {
     trial.forall(4000, surfaces(), |queries| {
         compare(queries, trial.kit.offset_origin(queries), |query, origin| {
-            let (height, bound) = height(query, origin);
-            // Allow 64 steps of the largest coordinate. The ray must hit objects that are farther away.
-            let most = 64.0 * 2.0 * U * f64::from(query.point.abs().max_element()) + 4.0 * bound;
-            if height <= most {
+            // The ray must hit objects that are farther away. A point that is not moved at all is not an offset.
+            let start = start(query, origin);
+            let moved = origin != query.point || start.least() == 0.0;
+            if !start.is_too_high() && moved {
                 return Ok(());
             }
-            let diagnosis = "the offset is too large here: the ray misses objects that touch the surface";
             Err(Broken::with_texts(
                 describe(query),
-                format!("{height:.3e} off the point"),
-                format!("at most {most:.3e}"),
+                format!("{:.3e} off the point", start.height()),
+                format!("at most {:.3e}, and not the point itself", start.most()),
                 "closed form",
             )
-            .looks_like(Some(diagnosis)))
+            .explained_by(mistakes(query, origin)))
         })
     })
 }
 
+/// Whether a cause certainly acts on a vector, and whether it possibly does.
+#[derive(Clone, Copy)]
+struct Acts {
+    certainly: bool,
+    possibly: bool,
+}
+
+/// Whether the squares of the coordinates underflow in single precision, and whether they overflow.
+fn squares_fail(v: Vec3) -> [Acts; 2] {
+    let squared = v.length_squared();
+    // A sum of squares that is denormal, or has a denormal term, has lost some digits.
+    let lost = f32::MIN_POSITIVE * 2f32.powi(24);
+    let infinite = squared.is_infinite();
+    [
+        Acts { certainly: squared == 0.0, possibly: squared < lost },
+        Acts { certainly: infinite, possibly: infinite },
+    ]
+}
+
 pub(super) fn directions_have_length_one_at_every_length(trial: &Trial<'_>) -> CheckResult {
-    let vectors =
-        (unit(), -140..=126i32).prop_map(|(v, exponent)| (v.as_dvec3() * 2f64.powi(exponent)).as_vec3());
-    let vectors = vectors.prop_filter("a vector that did not underflow to 0", |v| *v != Vec3::ZERO);
-    trial.forall(4000, vectors, |queries| {
-        compare(queries, trial.kit.safe_normalize(queries), |query, yours| {
+    let vectors = (nasty::unit(), -148..=128i32)
+        .prop_map(|(v, exponent)| (v.as_dvec3() * 2f64.powi(exponent)).as_vec3());
+    let vectors = vectors.prop_filter("neither 0 nor infinite", |v| *v != Vec3::ZERO && v.is_finite());
+    let longest = [Vec3::splat(f32::MAX), vec3(f32::MAX, 1.0, -f32::MAX), Vec3::splat(f32::from_bits(1))];
+    // Allow four roundings per coordinate.
+    let is_right = |query: &Vec3, yours: &Option<Vec3>| {
+        yours.is_some_and(|yours| (yours.as_dvec3() - query.as_dvec3().normalize()).length() < 4.0 * 2.0 * U)
+    };
+    let judge = |query: &Vec3, yours: Option<Vec3>| match is_right(query, &yours) {
+        true => Ok(()),
+        false => {
             let expected = query.as_dvec3().normalize();
-            // Allow four roundings per coordinate.
-            if yours.is_some_and(|yours| (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U) {
-                return Ok(());
-            }
-            let short = query.as_dvec3().length() < 1.0;
-            let diagnosis = match yours {
-                None if short => {
-                    "you return None for a short vector: the squares underflow, so scale by the largest coordinate first"
-                }
-                None => {
-                    "you return None for a long vector: the squares overflow, so scale by the largest coordinate first"
-                }
-                // The vector was divided by an infinite length.
-                Some(yours) if yours.length() < 0.5 => "the squares overflow: scale by the largest coordinate first",
-                Some(_) if short => "the squares underflow: scale by the largest coordinate first",
-                Some(_) => "",
-            };
             Err(Broken::new(call("safe_normalize", &[query]), yours, expected, "double precision")
-                .looks_like(known(diagnosis)))
-        })
+                .explained_by([]))
+        }
+    };
+    // A cause is proven if the answers are wrong exactly where it acts.
+    let causes = |query: &Vec3, yours: &Option<Vec3>| {
+        let [underflow, overflow] = squares_fail(*query);
+        let is_wrong = !is_right(query, yours);
+        let (is_none, is_zero) = (yours.is_none(), *yours == Some(Vec3::ZERO));
+        let infinite = (1.0 / query.abs().max_element()).is_infinite();
+        let reciprocal = Acts { certainly: infinite, possibly: infinite };
+        let either = Acts {
+            certainly: underflow.certainly || overflow.certainly,
+            possibly: underflow.possibly || overflow.possibly,
+        };
+        let of = |acts: Acts, answer: bool| if is_wrong { acts.possibly && answer } else { !acts.certainly };
+        vec![
+            (
+                of(underflow, is_none),
+                "you return None for a short vector: the squares underflow, so scale by the largest coordinate first",
+            ),
+            (
+                of(overflow, is_none),
+                "you return None for a long vector: the squares overflow, so scale by the largest coordinate first",
+            ),
+            (of(underflow, true), "the squares underflow: scale by the largest coordinate first"),
+            (of(overflow, true), "the squares overflow: scale by the largest coordinate first"),
+            (of(either, true), "the squares underflow or overflow: scale by the largest coordinate first"),
+            (
+                of(reciprocal, !is_none),
+                "1 / x is infinite for the smallest x: divide by the largest coordinate, and do not multiply by its reciprocal",
+            ),
+            (
+                !is_wrong || (is_none && query.length() < 1.0),
+                "you return None for a short vector: only the zero vector has no direction",
+            ),
+            (
+                !is_wrong || is_zero,
+                "you return 0, as a division by an infinite length does: the squares overflow, so scale by the largest coordinate first",
+            ),
+        ]
+    };
+    trial.forall_and(&longest, 4000, vectors, |queries| {
+        compare_formulas(queries, trial.kit.safe_normalize(queries), judge, causes)
     })
 }
 
 pub(super) fn zero_has_no_direction(trial: &Trial<'_>) -> CheckResult {
-    let bad = [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
-    let mut queries = vec![Vec3::ZERO, Vec3::splat(-0.0)];
-    for number in &bad[2..] {
-        queries.extend([Vec3::new(*number, 1.0, 0.0), Vec3::new(0.0, 1.0, *number), Vec3::splat(*number)]);
+    let mut queries = vec![Vec3::ZERO, Vec3::splat(-0.0), vec3(0.0, -0.0, 0.0)];
+    for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        queries.extend([
+            vec3(number, 1.0, 0.0),
+            vec3(0.0, number, -3.0),
+            vec3(0.0, 1.0, number),
+            Vec3::splat(number),
+        ]);
     }
-    let judge = |query: &Vec3, yours: Option<Vec3>| match yours {
-        None => Ok(()),
-        Some(_) => {
-            let broken = Broken::new(call("safe_normalize", &[query]), yours, None::<Vec3>, "the definition");
-            let diagnosis = match () {
-                () if *query == Vec3::ZERO => "you return a direction for the zero vector: 0 / 0 is NaN",
-                () => "you return a direction for a vector that is not finite",
-            };
-            Err(broken.looks_like(Some(diagnosis)))
+    // Vectors that have a direction.
+    queries.extend([vec3(0.0, -2.0, 0.0), vec3(3.0, 0.0, -4.0)]);
+    let judge = |query: &Vec3, yours: Option<Vec3>| {
+        let has_none = *query == Vec3::ZERO || !query.is_finite();
+        if has_none && yours.is_none() {
+            return Ok(());
         }
+        if !has_none {
+            let expected = query.as_dvec3().normalize();
+            // Allow four roundings per coordinate, as at every length.
+            return match yours {
+                Some(yours) if (yours.as_dvec3() - expected).length() < 4.0 * 2.0 * U => Ok(()),
+                _ => Err(Broken::new(
+                    call("safe_normalize", &[query]),
+                    yours,
+                    Some(expected),
+                    "double precision",
+                )
+                .explained_by([])),
+            };
+        }
+        Err(Broken::new(call("safe_normalize", &[query]), yours, None::<Vec3>, "the definition")
+            .explained_by([
+                (*query == Vec3::ZERO, "you return a direction for the zero vector: 0 / 0 is NaN"),
+                (!query.is_finite(), "you return a direction for a vector that is not finite"),
+                (true, "you return a direction for the zero vector, and for vectors that are not finite"),
+            ]))
     };
-    compare(&queries, trial.kit.safe_normalize(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.safe_normalize(&queries), judge))
 }

@@ -1,10 +1,11 @@
 //! The laws of `sphere_in_double`.
 
-use super::doubles::describe;
+use super::doubles::{describe, err_both_ways};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::double::U;
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double::{U, sphere_roots};
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
 use checks::paste::Arguments;
 use glam::{DVec3, Vec3};
 use oracle::STABLE;
@@ -24,7 +25,7 @@ const UNDECIDED: f64 = 1.0 / (1u64 << 48) as f64;
 /// r and the chord is at least half as long.
 const CANCELLED: f64 = 1.0 / (1u64 << 46) as f64;
 
-const CONVERTED_LATE: &str = "you subtract in f32 and convert after that, and a number that was rounded before it was converted stays rounded: convert the origin and the centre first";
+const CONVERTED_LATE: &str = "the difference of origin and centre is rounded to f32 before the rest is computed, and stays rounded when it is converted: convert the origin and the centre first";
 
 /// A ray that passes the centre of the sphere at `aside` radii, its nearest point at `t = 1`; the origin is `away`
 /// radii from the centre. Centre and origin are about as far from 0 as from each other, so that their difference is
@@ -104,35 +105,61 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
         (!right).then_some((*query, yours, exact.t))
     };
     let answers = trial.kit.sphere_in_double(&queries);
-    let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
-    let plainest = wrong.iter().max_by(|(p, ..), (q, ..)| margin(p).total_cmp(&margin(q)));
-    let Some((query, yours, exact)) = plainest else { return Ok(()) };
-    let infinite = SphereQuery { ray: query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY), ..*query };
-    let on_the_line = meet(&infinite.ray, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
-    let only_the_far_root =
-        sphere::roots(&query.ray, &query.sphere).is_some_and(|it| !it.near_counts && it.far_counts);
-    let diagnosis = match yours {
-        Some(_) if on_the_line => {
-            "you return a hit behind the origin or beyond the range: a root counts only within the range of the ray"
-        }
-        None if only_the_far_root => {
-            "you return None although the far root is in the range: the ray starts inside, or its range begins inside"
-        }
-        _ if wrong.iter().all(|(query, yours, _)| {
-            subtracted_in_single(query).is_some_and(|exact| exact.t.is_some() == yours.is_some())
-        }) =>
-        {
-            CONVERTED_LATE
-        }
-        _ if margin(query) <= STABLE * U => {
-            "the error is that of single precision: you round an intermediate result to f32"
-        }
-        _ => "",
+    let mut wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+    // Report the plainest error.
+    wrong.sort_by(|(p, ..), (q, ..)| margin(q).total_cmp(&margin(p)));
+    let single = wrong.iter().all(|(query, ..)| margin(query) <= STABLE * U)
+        && err_both_ways(wrong.iter().map(|(_, yours, _)| yours.is_some()));
+    let broken = |(query, yours, exact): &(SphereQuery, Option<f32>, Option<f32>)| {
+        let line = query.ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+        let on_the_line = meet(&line, Body::Sphere(query.sphere)).is_some_and(|it| it.verdict.is_hit());
+        let only_the_far_root =
+            sphere::roots(&query.ray, &query.sphere).is_some_and(|it| !it.near_counts && it.far_counts);
+        let converted_late =
+            subtracted_in_single(query).is_some_and(|exact| exact.t.is_some() == yours.is_some());
+        let expected = format!("{exact:?}, {}", describe(margin(query) / U));
+        Err(Broken::with_texts(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly").explained_by([
+            (
+                yours.is_some() && on_the_line,
+                "you return a hit behind the origin or beyond the range: a root counts only within the range of the ray",
+            ),
+            (
+                yours.is_none() && only_the_far_root,
+                "you return None although the far root is in the range: the ray starts inside, or its range begins inside",
+            ),
+            (converted_late, CONVERTED_LATE),
+            (
+                single,
+                "the error is that of single precision, in both directions: you round an intermediate result to f32",
+            ),
+        ]))
     };
-    let expected = format!("{exact:?}, {}", describe(margin(query) / U));
-    let broken =
-        Broken::with_texts(query.call("sphere_in_double"), format!("{yours:?}"), expected, "exactly");
-    Err(broken.looks_like(known(diagnosis)))
+    all_hold(wrong.iter().map(broken).collect())?;
+    touching_rays_hit(trial)
+}
+
+/// Rays along an axis that touch a sphere with small integer coordinates: no product is rounded.
+fn touching_rays_hit(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 19);
+    let mut touching = |index: usize| {
+        let center = Vec3::from_array([(); 3].map(|()| random.below(9) as f32 - 4.0));
+        let radius = 1.0 + random.below(8) as f32;
+        let (mut direction, mut aside) = (Vec3::ZERO, Vec3::ZERO);
+        direction[index % 3] = if index.is_multiple_of(2) { 1.0 } else { -2.0 };
+        aside[(index + 1 + index / 3 % 2) % 3] = if index % 4 < 2 { radius } else { -radius };
+        let ray = Ray::new(center + aside - 5.0 * direction, direction);
+        SphereQuery { ray, sphere: Sphere { center, radius } }
+    };
+    let queries: Vec<SphereQuery> = (0..96).map(&mut touching).collect();
+    all_hold(compare(&queries, trial.kit.sphere_in_double(&queries), |query, yours| {
+        // Both roots are one; allow a rounding of t.
+        if yours.is_some_and(|t| (t - 5.0).abs() <= 1e-6) {
+            return Ok(());
+        }
+        Err(Broken::new(query.call("sphere_in_double"), yours, Some(5.0), "integers, exactly").explained_by(
+            [(yours.is_none(), "you return None for a ray that touches the sphere: it hits it")],
+        ))
+    }))
 }
 
 /// A ray that passes well through a sphere, from far away, from near its surface on either side, or from inside.
@@ -166,31 +193,76 @@ pub(super) fn double_sphere_has_the_nearest_t(trial: &Trial<'_>) -> CheckResult 
         step + CANCELLED * f.length() / ray.direction.as_dvec3().length()
     };
     let judge = |(query, yours): (&SphereQuery, Option<f32>)| {
-        let (yours, body) = (yours?, Body::Sphere(query.sphere));
+        let body = Body::Sphere(query.sphere);
         let (exact, rounded) = (t_in_double(&query.ray, body)??, meet(&query.ray, body)?.t?);
-        let off = (f64::from(yours) - exact).abs() / allowed(query, rounded);
-        (!(off <= 1.0)).then_some((*query, yours, rounded, off))
+        // All rays pass well inside the rim, so each has a hit.
+        let Some(t) = yours else { return Some((*query, yours, rounded, f64::INFINITY)) };
+        let off = (f64::from(t) - exact) / allowed(query, rounded);
+        (!(off.abs() <= 1.0)).then_some((*query, yours, rounded, off))
     };
     let answers = trial.kit.sphere_in_double(&queries);
-    let wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
-    let worst = wrong.iter().max_by(|(.., p), (.., q)| p.total_cmp(q));
-    let Some((query, yours, rounded, _)) = worst else { return Ok(()) };
-    let converted_late = |(query, yours, ..): &(SphereQuery, f32, f32, f64)| {
-        let known = subtracted_in_single(query).and_then(|exact| exact.t);
-        known.is_some_and(|t| f64::from((t - yours).abs()) <= allowed(query, t))
+    let mut wrong: Vec<_> = queries.iter().zip(answers).filter_map(judge).collect();
+    // Report the largest error.
+    wrong.sort_by(|(.., p), (.., q)| q.abs().total_cmp(&p.abs()));
+    let single = wrong.iter().all(|(_, yours, rounded, _)| {
+        yours.is_some_and(|yours| (yours - rounded).abs() <= 1e-2 * rounded.abs())
+    }) && err_both_ways(wrong.iter().map(|(.., off)| *off > 0.0));
+    let broken = |(query, yours, rounded, _): &(SphereQuery, Option<f32>, f32, f64)| {
+        let expected = format!("Some({rounded:?}), or a neighbour");
+        let is = |t: f32| yours.is_some_and(|yours| f64::from((t - yours).abs()) <= allowed(query, t));
+        // Both roots, in double precision.
+        let roots = sphere_roots(&query.ray, &query.sphere).ok();
+        let is_far = roots.is_some_and(|roots| query.ray.contains(roots.near as f32) && is(roots.far as f32));
+        let input = query.call("sphere_in_double");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "exactly").explained_by([
+            (
+                yours.is_some_and(|yours| !query.ray.contains(yours)),
+                "you return the near root, which is outside the range of the ray: the far one is the hit",
+            ),
+            (subtracted_in_single(query).and_then(|exact| exact.t).is_some_and(is), CONVERTED_LATE),
+            (is_far, "you return the far root, but the near one counts as well"),
+            (single, "t has only the accuracy of single precision: round the root, and nothing before it"),
+        ]))
     };
-    let close = (yours - rounded).abs() <= 1e-2 * rounded.abs();
-    let diagnosis = match () {
-        () if !query.ray.contains(*yours) => {
-            "you return the near root, which is outside the range of the ray: the far one is the hit"
+    all_hold(wrong.iter().map(broken).collect())?;
+
+    // Ranges that end exactly at the student's own hit, or one float beside it.
+    let hits = queries.iter().zip(trial.kit.sphere_in_double(&queries)).take(100);
+    let at_ends: Vec<(SphereQuery, f32, bool)> = hits
+        .filter_map(|(query, yours)| Some((query, yours?)))
+        .flat_map(|(query, t)| {
+            let ranges = nasty::ranges(t);
+            ranges.map(|((t_min, t_max), counts)| {
+                (SphereQuery { ray: query.ray.with_range(t_min, t_max), ..*query }, t, counts)
+            })
+        })
+        .collect();
+    let only: Vec<SphereQuery> = at_ends.iter().map(|(query, ..)| *query).collect();
+    let judge = |(query, t, counts): &(SphereQuery, f32, bool), yours: Option<f32>| {
+        let fits =
+            if *counts { yours == Some(*t) } else { yours.is_none_or(|yours| query.ray.contains(yours)) };
+        if fits {
+            return Ok(());
         }
-        () if wrong.iter().all(converted_late) => CONVERTED_LATE,
-        () if close => "t has only the accuracy of single precision: round the root, and nothing before it",
-        () if yours > rounded => "you return the far root, but the near one counts as well",
-        () => "",
+        let expected = if *counts { format!("Some({t:?})") } else { "None, or the other root".into() };
+        let input = query.call("sphere_in_double");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected, "ray.contains of the rounded t")
+            .explained_by([]))
     };
-    let expected = format!("Some({rounded:?}), or a neighbour");
-    let broken =
-        Broken::with_texts(query.call("sphere_in_double"), format!("{:?}", Some(yours)), expected, "exactly");
-    Err(broken.looks_like(known(diagnosis)))
+    let formulas = |(query, ..): &(SphereQuery, f32, bool), yours: &Option<f32>| {
+        let (t_min, t_max) = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
+        let roots = sphere_roots(&query.ray, &query.sphere).ok();
+        let first = |counts: &dyn Fn(f64) -> bool| {
+            roots.and_then(|roots| [roots.near, roots.far].into_iter().find(|t| counts(*t))).map(|t| t as f32)
+        };
+        let closed = first(&|t| (t_min..=t_max).contains(&f64::from(t as f32)));
+        vec![
+            (closed == *yours, "the range of a ray is open at both ends: ask ray.contains(t)"),
+            (
+                first(&|t| t_min < t && t < t_max) == *yours,
+                "you compare t with the range before you round it: ask ray.contains of the rounded t",
+            ),
+        ]
+    };
+    all_hold(compare_formulas(&at_ends, trial.kit.sphere_in_double(&only), judge, formulas))
 }

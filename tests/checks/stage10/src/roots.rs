@@ -2,10 +2,10 @@
 
 use super::Odd;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::magnitude;
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::call;
 use proptest::prelude::*;
 
@@ -30,94 +30,133 @@ fn roots(coefficients: Coefficients) -> [f64; 2] {
     [first.min(second), first.max(second)]
 }
 
+/// Whether a root is right up to five roundings; and a discriminant in single precision, 1e6 roundings away from 0, adds
+/// √(2u / 1e6) / 2 ≈ 3u.
+fn near(yours: f32, exact: f64) -> bool {
+    let least = f64::from(f32::from_bits(1));
+    f64::from(yours) == exact || (f64::from(yours) - exact).abs() <= 10.0 * U * exact.abs() + 10.0 * least
+}
+
+/// Two roots are right, if both are near the exact ones.
+fn are_near(yours: [f32; 2], exact: [f64; 2]) -> bool {
+    near(yours[0], exact[0]) && near(yours[1], exact[1])
+}
+
+const LARGER_FIRST: &str =
+    "you return the larger root first: the smaller root comes first, also if a or b is negative";
+
+/// The roots if the root of the discriminant is always added to b, in double and in single precision.
+fn without_the_sign_of_b(coefficients: Coefficients) -> [[f32; 2]; 2] {
+    let [a, b, c] = coefficients.map(f64::from);
+    let root = discriminant(coefficients).0.sqrt();
+    let q = -0.5 * (b + root);
+    let single = -0.5 * (coefficients[1] + root as f32);
+    let pair = |p: f32, r: f32| [p.min(r), p.max(r)];
+    let of = |q: f64| if q == 0.0 { [0.0, 0.0] } else { pair((q / a) as f32, (c / q) as f32) };
+    [of(q), of(f64::from(single))]
+}
+
+/// The known mistakes in two roots, each with whether it gives these roots.
+fn mistakes(query: &Coefficients, yours: [f32; 2], expected: [f64; 2]) -> [(bool, &'static str); 5] {
+    let (small, large) = if expected[0].abs() < expected[1].abs() { (0, 1) } else { (1, 0) };
+    let large_is_right = near(yours[large], expected[large]);
+    // The error of a difference of two numbers of the size of the larger root.
+    let rounding = 16.0 * U * expected[large].abs();
+    let lost = large_is_right && (f64::from(yours[small]) - expected[small]).abs() <= rounding;
+    let mut doubled = expected;
+    (doubled[small], doubled[large]) = (0.5 * expected[small], 2.0 * expected[large]);
+    let mut halved = expected;
+    (halved[small], halved[large]) = (2.0 * expected[small], 0.5 * expected[large]);
+    // The two wrong roots are sorted again.
+    let sorted = |[p, q]: [f64; 2]| [p.min(q), p.max(q)];
+    let is = |roots: [f64; 2]| are_near(yours, roots) || are_near(yours, sorted(roots));
+    let unsigned =
+        without_the_sign_of_b(*query).into_iter().any(|roots| are_near(yours, roots.map(f64::from)));
+    [
+        (are_near(yours, [expected[1], expected[0]]), LARGER_FIRST),
+        (
+            unsigned,
+            "you leave out the sign of b, so a root cancels if b is negative: q = -(b + sign(b) √(b² - 4ac)) / 2",
+        ),
+        (
+            lost && yours[small] == 0.0,
+            "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers",
+        ),
+        (
+            lost,
+            "one root has lost its digits, because two nearly equal numbers are subtracted: where one root has cancelled, compute it as c / q",
+        ),
+        (is(doubled) || is(halved), "off by a factor of 2: q is half of -(b + sign(b) √(b² - 4ac))"),
+    ]
+}
+
 pub(super) fn roots_do_not_cancel(trial: &Trial<'_>) -> CheckResult {
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let (value, roundings) = discriminant(*query);
         // Leave nearly equal roots to another check: they move by the square root of a rounding.
-        if value < 0.0 || roundings < 1e6 {
+        if roundings < 1e6 {
             return Ok(());
         }
-        let expected = roots(*query);
+        let expected = (value > 0.0).then(|| roots(*query));
         let broken = || Broken::new(describe(query), yours, expected, "double precision");
-        let Some(yours) = yours else {
-            return Err(broken().looks_like(Some(
+        match (yours, expected) {
+            (None, None) => Ok(()),
+            (Some(_), None) => {
+                Err(broken().explained_by([(true, "you return roots although the discriminant is below 0")]))
+            }
+            (None, Some(_)) => Err(broken().explained_by([(
+                true,
                 "you return None, but the discriminant is far above 0: there are two roots",
-            )));
-        };
-        // Allow six roundings; a discriminant in single precision, 1e6 roundings away from 0, adds √(2u / 1e6) / 2 ≈
-        // 3u.
-        let near =
-            |yours: f32, exact: f64| (f64::from(yours) - exact).abs() <= 10.0 * U * exact.abs() + 1e-44;
-        if near(yours[0], expected[0]) && near(yours[1], expected[1]) {
-            return Ok(());
+            )])),
+            (Some(yours), Some(expected)) if are_near(yours, expected) => Ok(()),
+            (Some(yours), Some(expected)) => Err(broken().explained_by(mistakes(query, yours, expected))),
         }
-        let swapped = near(yours[0], expected[1]) && near(yours[1], expected[0]);
-        let small = if expected[0].abs() < expected[1].abs() { 0 } else { 1 };
-        let diagnosis = match () {
-            () if swapped => {
-                "you return the larger root first: the smaller root comes first, also if a or b is negative"
-            }
-            () if yours[small] == 0.0 && expected[small] != 0.0 => {
-                "one root has cancelled to 0: -b + √(b² - 4ac) subtracts two nearly equal numbers"
-            }
-            () if near(yours[1 - small], expected[1 - small]) => {
-                "one root has lost its digits: compute it as c / q, without a difference"
-            }
-            () if near(2.0 * yours[1 - small], expected[1 - small])
-                || near(0.5 * yours[1 - small], expected[1 - small]) =>
-            {
-                "off by a factor of 2: q is half of -(b + sign(b) √(b² - 4ac))"
-            }
-            () => "",
-        };
-        Err(broken().looks_like(known(diagnosis)))
     };
     let drawn =
         [[1.0, -10_000.0, 1.0], [-2.0, 3e4, 0.5], [1.0, 10_000.0, 1.0], [2.0, -3.0, -4.0], [3.0, 0.0, -12.0]];
-    compare(&drawn, trial.kit.stable_roots(&drawn), judge).into_iter().collect::<CheckResult>()?;
     let signed =
         |low, high| (magnitude(low, high), any::<bool>()).prop_map(|(x, minus)| if minus { -x } else { x });
     let queries = (signed(-3.0, 3.0), signed(-3.0, 5.0), signed(-3.0, 3.0)).prop_map(|(a, b, c)| [a, b, c]);
-    trial.forall(5000, queries, |queries| compare(queries, trial.kit.stable_roots(queries), judge))
+    trial
+        .forall_and(&drawn, 5000, queries, |queries| compare(queries, trial.kit.stable_roots(queries), judge))
 }
 
 pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
     // a (t - p)² with integers: the products are exact in single precision, so the sign of the discriminant is exact.
-    let queries = (1..=4i32, -500..=500i32, -1..=1i32).prop_map(|(a, p, step)| {
-        let (a, p) = (a as f32, p as f32);
-        [a, -2.0 * a * p, a * p * p + step as f32]
-    });
+    // A power of two changes no rounding.
+    let queries = (prop::sample::select(vec![1, 2, 3, 4, -1, -3]), -500..=500i32, -1..=1i32, -20..=20i32)
+        .prop_map(|(a, p, step, exponent)| {
+            let (a, p, scale) = (a as f32, p as f32, 2f32.powi(exponent));
+            [a, -2.0 * a * p, a * p * p + step as f32].map(|x| scale * x)
+        });
     trial.forall(2000, queries, |queries| {
         compare(queries, trial.kit.stable_roots(queries), |query, yours| {
             let (value, _) = discriminant(*query);
-            let p = f64::from(-query[1] / (2.0 * query[0]));
-            let broken = |expected: String, diagnosis: &'static str| {
-                Err(Broken::with_texts(
-                    describe(query),
-                    format!("{yours:?}"),
-                    expected,
-                    "whole numbers, exactly",
-                )
-                .looks_like(Some(diagnosis)))
+            let exact = roots(*query);
+            let double = value == 0.0;
+            // The double root of the parabola with the same axis that touches.
+            let axis = -f64::from(query[1]) / (2.0 * f64::from(query[0]));
+            let touches = yours.is_some_and(|yours| are_near(yours, [axis, axis]));
+            let band = (!double && touches, "you treat a discriminant near 0 as 0: it is not 0");
+            let broken = |expected: String| {
+                Broken::with_texts(describe(query), format!("{yours:?}"), expected, "whole numbers, exactly")
             };
-            match (value, yours) {
-                (value, None) if value < 0.0 => Ok(()),
-                (value, Some(_)) if value < 0.0 => {
-                    broken("None".into(), "you return roots although the discriminant is below 0")
+            match yours {
+                None if value < 0.0 => Ok(()),
+                Some(_) if value < 0.0 => Err(broken("None".into())
+                    .explained_by([band, (true, "you return roots although the discriminant is below 0")])),
+                None => Err(broken(format!("{exact:?}")).explained_by([
+                    (double, "a double root is a root: the parabola touches the axis"),
+                    (!double, "you return None although the discriminant is above 0"),
+                    (true, "you return None although the discriminant is not below 0"),
+                ])),
+                Some(yours) if are_near(yours, exact) => Ok(()),
+                Some(yours) => {
+                    let one = near(yours[0], exact[0]) != near(yours[1], exact[1]);
+                    let twice = (double && one, "return a double root twice: only one of yours is right");
+                    let mistakes = mistakes(query, yours, exact).into_iter().skip(usize::from(double) * 5);
+                    Err(broken(format!("{exact:?}")).explained_by([band, twice].into_iter().chain(mistakes)))
                 }
-                (0.0, None) => broken(
-                    format!("Some([{p}, {p}])"),
-                    "a double root is a root: the parabola touches the axis",
-                ),
-                (0.0, Some(roots))
-                    if roots.iter().any(|&root| (f64::from(root) - p).abs() > 4.0 * U * p.abs()) =>
-                {
-                    broken(format!("Some([{p}, {p}])"), "return a double root twice")
-                }
-                (_, None) => {
-                    broken("two roots".into(), "you return None although the discriminant is above 0")
-                }
-                _ => Ok(()),
             }
         })
     })
@@ -125,27 +164,38 @@ pub(super) fn roots_that_touch_are_found(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn roots_of_special_numbers_are_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 10);
-    let mut queries: Vec<Coefficients> = vec![[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, f32::NAN, 1.0]];
+    let mut queries: Vec<Coefficients> =
+        vec![[0.0, 1.0, 1.0], [1.0, 0.0, 0.0], [1.0, f32::NAN, 1.0], [1.0, 0.0, -4.0], [-2.0, -0.0, -0.0]];
     queries.extend((0..1000).map(|_| [(); 3].map(|()| odd.number())));
     let judge = |query: &Coefficients, yours: Option<[f32; 2]>| {
         let refused = query[0] == 0.0 || !query.iter().all(|x| x.is_finite());
-        let broken = |expected: &str, diagnosis: &'static str| {
+        let zero = query[1..] == [0.0, 0.0] && !refused;
+        let broken = |expected: &str, mistakes: &[(bool, &'static str)]| {
             Err(Broken::with_texts(describe(query), format!("{yours:?}"), expected, "the definition")
-                .looks_like(known(diagnosis)))
+                .explained_by(mistakes.iter().copied()))
         };
+        let is_nan = yours.is_some_and(|roots| roots.iter().any(|root| root.is_nan()));
+        let nan = (is_nan, "you return NaN: 0 / 0, or the difference of two infinities");
         match yours {
-            Some(_) if refused => {
-                broken("None", "you return roots although a is 0, or a number is not finite")
+            Some(_) if refused => broken(
+                "None",
+                &[
+                    (query[0] == 0.0, "you return roots although a is 0: the equation is not quadratic"),
+                    (query[0] != 0.0, "you return roots although a number is not finite"),
+                    (true, "you return roots although a is 0, or a number is not finite"),
+                ],
+            ),
+            Some(roots) if zero && roots != [0.0, 0.0] => broken("Some([0, 0])", &[nan]),
+            Some(_) if is_nan => broken("numbers, or None", &[nan]),
+            Some([first, second]) if first > second => {
+                broken("the smaller one first", &[(true, LARGER_FIRST)])
             }
-            Some([first, second]) if first.is_nan() || second.is_nan() => {
-                broken("numbers, or None", "you return NaN: 0 / 0, or the difference of two infinities")
+            None if zero => {
+                broken("Some([0, 0])", &[(true, "you return None for b = c = 0: a t² = 0 has the root 0")])
             }
-            Some([first, second]) if first > second => broken("the smaller one first", ""),
-            None if query[1..] == [0.0, 0.0] && !refused => {
-                broken("Some([0, 0])", "you return None for b = c = 0: a t² = 0 has the root 0")
-            }
+            None if *query == [1.0, 0.0, -4.0] => broken("Some([-2, 2])", &[]),
             _ => Ok(()),
         }
     };
-    compare(&queries, trial.kit.stable_roots(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.stable_roots(&queries), judge))
 }

@@ -1,6 +1,7 @@
 //! The laws of `watertight`.
 
 use super::Odd;
+use super::doubles::{judge_ends, judge_weights};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -239,7 +240,14 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
         let answers = trial.kit.watertight(&queries);
         let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| {
             let exact = t_in_double(&query.ray, Body::Triangle(query.triangle)).flatten();
-            let (Some(exact), Some(yours)) = (exact, yours) else { return Ok(()) };
+            let Some(exact) = exact else { return Ok(()) };
+            let Some(yours) = yours else {
+                // Leave verdicts that roundings decide to another check.
+                let clear =
+                    triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
+                let hit = || Broken::new(query.call("watertight"), "None", exact, "exactly").explained_by([]);
+                return if clear { Err(hit()) } else { Ok(()) };
+            };
             let normal = {
                 let Triangle { a, b, c } = query.triangle;
                 let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
@@ -262,12 +270,24 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
         };
         all_hold(compare(&queries, answers, judge))?;
     }
-    Ok(())
+    let queries = draw(trial, "interior", 400);
+    // A thousandth accepts every formula in single precision.
+    all_hold(judge_weights("watertight", &queries, trial.kit.watertight(&queries), 1e-3))?;
+    all_hold(judge_ends("watertight", &queries, |queries| trial.kit.watertight(queries)))
 }
 
 pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
-    // A factor of a power of two changes no rounding unless a number over- or underflows.
-    let queries = draw(trial, "edge", 300);
+    // A factor of a power of two changes no rounding unless a number over- or underflows. Half of the rays are aimed well
+    // inside, where roundings do not decide.
+    let mut queries = draw(trial, "edge", 300);
+    let inside = draw(trial, "interior", 300);
+    // And rays that go away from the triangle.
+    let away = |query: &TriangleQuery| TriangleQuery {
+        ray: Ray::new(query.ray.origin, -query.ray.direction),
+        ..*query
+    };
+    queries.extend(inside.iter().map(away));
+    queries.extend(inside);
     let plain = trial.kit.watertight(&queries);
     for exponent in [-30, 30] {
         let size = 2f32.powi(exponent);
@@ -287,6 +307,16 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
             (&TriangleQuery, &Option<TriangleHit>),
         ),
                      yours: Option<TriangleHit>| {
+            let exact = verdict(&query.ray, Body::Triangle(query.triangle));
+            let clear = triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
+            let is_hit = exact.is_some_and(|exact| exact.is_hit());
+            let alike = yours.is_some() == plain.is_some();
+            if alike && clear && yours.is_some() != is_hit {
+                let expected = if is_hit { "a hit" } else { "None" };
+                return Err(
+                    Broken::new(query.call("watertight"), yours, expected, "exactly").explained_by([])
+                );
+            }
             if yours == **plain {
                 return Ok(());
             }
@@ -308,13 +338,17 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn watertight_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut queries = Odd::new(trial, 6).triangles();
-    // One ordinary hit.
+    // One ordinary hit and one ordinary miss.
     let triangle = Triangle { a: Vec3::ZERO, b: Vec3::X, c: Vec3::Y };
-    let ordinary = TriangleQuery { ray: Ray::new(vec3(0.25, 0.25, 1.0), Vec3::NEG_Z), triangle };
-    queries.push(ordinary);
+    let at = |x: f32| TriangleQuery { ray: Ray::new(vec3(x, 0.25, 1.0), Vec3::NEG_Z), triangle };
+    let (ordinary, beside) = (at(0.25), at(4.0));
+    queries.extend([ordinary, beside]);
     let judge = |query: &TriangleQuery, yours: Option<TriangleHit>| match yours {
         None if *query == ordinary => {
-            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly"))
+            Err(Broken::new(query.call("watertight"), yours, "a hit at t = 1", "exactly").explained_by([]))
+        }
+        Some(_) if *query == beside => {
+            Err(Broken::new(query.call("watertight"), yours, "None", "exactly").explained_by([]))
         }
         Some(hit) if !(hit.t.is_finite() && hit.beta.is_finite() && hit.gamma.is_finite()) => {
             let broken =

@@ -1,7 +1,7 @@
 //! The three searches, compared with brute force. A table holds the answers of the probe.
 
 use super::search_mistakes::{any_mistakes, every_node, mistakes};
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::{point, unit};
 use checks::judge::compare;
 use checks::tree::closest_in_table;
@@ -113,7 +113,20 @@ pub(super) fn closest_hit_both_agrees_with_brute_force(trial: &Trial<'_>) -> Che
     })
 }
 
+/// A leaf of four primitives that are all missed, and one whose nearest primitive is the last.
+fn missed_and_hit() -> [SearchQuery; 2] {
+    let [hit, ..] = drawn_searches();
+    let mut missed = hit.clone();
+    missed.table.primitives.fill(f32::INFINITY);
+    [missed, hit]
+}
+
 pub(super) fn closest_hit_both_enters_only_boxes_it_meets(trial: &Trial<'_>) -> CheckResult {
+    // A search that opens nothing finds nothing.
+    let simple = missed_and_hit();
+    all_hold(compare(&simple, trial.kit.closest_hit_both(&simple), |query, yours| {
+        judge_search(query, &yours)
+    }))?;
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.closest_hit_both(queries), |query, yours| {
             let met = tree::overlapped(query).len() as u64;
@@ -162,6 +175,15 @@ pub(super) fn any_hit_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult 
 }
 
 pub(super) fn any_hit_stops_at_the_first(trial: &Trial<'_>) -> CheckResult {
+    // A search that asks nothing finds nothing.
+    let simple = missed_and_hit();
+    all_hold(compare(&simple, trial.kit.any_hit(&simple), |query, (yours, _)| {
+        match closest_in_table(query).is_some() {
+            expected if yours == expected => Ok(()),
+            expected => Err(Broken::new(describe_search(query), yours, expected, "brute force")
+                .explained_by(any_mistakes(query, yours))),
+        }
+    }))?;
     trial.forall(500, searches(), |queries| {
         compare(queries, trial.kit.any_hit(queries), |query, (_, answer)| {
             let describe = |n: u64| format!("{n} primitive tests after the first hit");

@@ -106,7 +106,15 @@ pub(super) fn each_split_strategy_is_worth_its_cost(trial: &Trial<'_>) -> CheckR
     let bounds: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
     for split in Split::ALL {
         let query = BuildQuery { bounds: bounds.clone(), split, leaf_size: 4 };
-        let yours = counted_cost(&trial.kit.build(std::slice::from_ref(&query))[0], &spheres);
+        let bvh = trial.kit.build(std::slice::from_ref(&query)).remove(0);
+        // A tree that leaves out primitives costs less.
+        if let Some((yours, expected)) = tree::fault(&bvh, &bounds, query.leaf_size) {
+            let input = format!("build of the 200 boxes of a stadium, {split:?}, leaf_size 4");
+            return Err(
+                Broken::with_texts(input, yours, expected, "the invariants of a hierarchy").explained_by([])
+            );
+        }
+        let yours = counted_cost(&bvh, &spheres);
         // The cost changes by a tenth with the axis of a nearly cubic box and with the side that gets one more.
         let most = counted(split) * 5 / 4;
         if yours > most {
@@ -131,13 +139,19 @@ fn nothing_behind_in_a_row(trial: &Trial<'_>) -> CheckResult {
     let bvh = tree::joined(&spheres.iter().map(tree::sphere_box).collect::<Vec<_>>(), 1);
     let query = tree::search_query(&bvh, &spheres, &Ray::new(vec3(-9.0, 0.0, 0.0), Vec3::X));
     let needed = tree::needed(&query).0.len() as u64;
-    let yours = trial.kit.closest_hit(std::slice::from_ref(&query))[0].counts.node_visits;
+    let answer = trial.kit.closest_hit(std::slice::from_ref(&query)).remove(0);
+    let (yours, found) = (answer.counts.node_visits, answer.hit.map(|hit| (hit.primitive, hit.t)));
     let describe = |n: u64| format!("{n} nodes opened");
+    let input = "a ray along a row of 64 spheres, of which it hits the first";
+    // A search that finds nothing opens few nodes.
+    let expected = tree::closest_in_table(&query);
+    if found != expected {
+        return Err(Broken::new(input, found, expected, "brute force, (primitive, t)").explained_by([]));
+    }
     // No two boxes overlap, so there is only one order of search and only one right count.
     if yours <= needed {
         return Ok(());
     }
-    let input = "a ray along a row of 64 spheres, of which it hits the first";
     let most = format!("at most {}", describe(needed));
     Err(Broken::with_texts(input, describe(yours), most, "counted")
         .explained_by(order_mistakes(std::slice::from_ref(&query), yours)))

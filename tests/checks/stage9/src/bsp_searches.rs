@@ -2,12 +2,12 @@
 
 use super::parts;
 use super::scenes::{Scene, Thing, sphere, wall};
-use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
+use super::searches::{Asked, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::bsp;
 use checks::Trial;
-use checks::broken::CheckResult;
+use checks::broken::{CheckResult, all_hold};
+use checks::judge::compare;
 use glam::{DVec3, Vec3, vec3};
-use raykata::kit::CellsQuery;
 use raykata::partition::{Bsp, CutPlane};
 use raykata::ray::Ray;
 use raykata::shape::{Sphere, Triangle};
@@ -17,10 +17,15 @@ pub(super) fn bsp_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResu
     // plane, behind the hit of the small sphere.
     let large = Thing::Sphere(Sphere { center: vec3(4.0, 4.0, 0.0), radius: 5.0 });
     let scene = Scene::new(vec![large, sphere(0.25, 0.2, 0.0, 0.125)]);
-    let says = "a hit may lie outside the side that lists its primitive, and here the other side has a nearer hit: go on until a side begins behind the best hit";
     let ray = Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0));
     let tree = two_leaves(diagonal(), &[0], &[0, 1]);
-    ask(trial, &tree, &scene, &ray, "BSP tree of one plane x + y = 0, both leaves list primitive 0", says)?;
+    let mut asked = Asked::new();
+    asked.ask("BSP tree of one plane x + y = 0, both leaves list primitive 0", &tree, &scene, ray);
+    // Nothing is hit before the plane, so the other side decides.
+    let alone = Scene::new(vec![sphere(3.0, 3.0, 0.0, 0.5)]);
+    asked.ask("BSP tree of one plane x + y = 0", &two_leaves(diagonal(), &[], &[0]), &alone, ray);
+    asked.control("BSP tree of one plane", two_leaves(diagonal(), &[0, 1, 2], &[]), ray, (0.0, 1.0));
+    asked.judge(|queries| trial.kit.bsp_search(queries))?;
     agrees(trial, Searcher::Bsp)
 }
 
@@ -39,16 +44,8 @@ fn diagonal() -> CutPlane {
     CutPlane { normal: DVec3::new(1.0, 1.0, 0.0).normalize(), offset: 0.0 }
 }
 
-fn ask(trial: &Trial<'_>, cells: &Bsp, scene: &Scene, ray: &Ray, what: &str, says: &str) -> CheckResult {
-    let hits = scene.hits(ray);
-    let query = CellsQuery { cells: cells.clone(), ray: *ray, hits: hits.clone() };
-    let yours = trial.kit.bsp_search(&[query]).remove(0);
-    judge(what, ray, &hits, &yours).map_err(|broken| broken.looks_like(Some(says)))
-}
-
 /// Trap A7: the plane lies behind the ray or beyond its end, or the ray is parallel to it.
 pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'_>) -> CheckResult {
-    let says = "trap A7: if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side";
     let scene = Scene::new(vec![
         sphere(-4.0, -4.0, 0.0, 1.0),
         sphere(4.0, 4.0, 0.0, 1.0),
@@ -69,14 +66,16 @@ pub(super) fn bsp_planes_behind_and_beyond_do_not_end_the_search(trial: &Trial<'
             Ray::new(vec3(-1.0, -1.0, 0.0), vec3(1.0, 1.0, 0.0)),
         ),
     ];
-    cases.iter().try_for_each(|(what, ray)| {
-        ask(trial, &tree, &scene, ray, &format!("BSP tree of one plane x + y = 0: {what}"), says)
-    })
+    let mut asked = Asked::new();
+    for (what, ray) in cases {
+        asked.ask(format!("BSP tree of one plane x + y = 0: {what}"), &tree, &scene, ray);
+    }
+    asked.judge(|queries| trial.kit.bsp_search(queries))
 }
 
 /// Rays that run in the plane or start on it, and polygons that lie in it.
 pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResult {
-    let says = "a ray in the plane, or that starts on it, is on both sides, and a primitive in the plane may be listed on one side only: search both";
+    let mut asked = Asked::new();
     let spheres = Scene::new(vec![
         sphere(3.0, -3.0, 0.0, 0.5),
         sphere(-3.0, 3.0, 0.0, 0.5),
@@ -95,26 +94,22 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
     {
         let tree = two_leaves(diagonal(), behind, before);
         for direction in [vec3(1.0, -1.0, 0.0), vec3(-1.0, 1.0, -0.0), vec3(0.0, -0.0, 1.0)] {
-            ask(
-                trial,
+            asked.ask(
+                "BSP tree of one plane x + y = 0, and a ray in it",
                 &tree,
                 &spheres,
-                &Ray::new(Vec3::ZERO, direction),
-                "BSP tree of one plane x + y = 0, and a ray in it",
-                says,
-            )?;
+                Ray::new(Vec3::ZERO, direction),
+            );
         }
         for (origin, direction) in
             [(vec3(-3.0, -3.0, 0.2), vec3(1.0, 1.0, 0.0)), (vec3(2.0, 2.5, -0.3), vec3(-1.0, -1.1, 0.1))]
         {
-            ask(
-                trial,
+            asked.ask(
+                "BSP tree of one plane x + y = 0, with triangles in it",
                 &tree,
                 &stack,
-                &Ray::new(origin, direction),
-                "BSP tree of one plane x + y = 0, with triangles in it",
-                says,
-            )?;
+                Ray::new(origin, direction),
+            );
         }
     }
     // Rays from a point of the plane to each side.
@@ -123,14 +118,12 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
     for direction in [vec3(1.0, 1.0, 0.0), vec3(-1.0, -1.0, 0.0)] {
         for origin in [Vec3::ZERO, vec3(1.0, -1.0, 0.0)] {
             let direction = direction - origin / 3.0;
-            ask(
-                trial,
+            asked.ask(
+                "BSP tree of one plane x + y = 0, and a ray that starts on it",
                 &tree,
                 &sides,
-                &Ray::new(origin, direction),
-                "BSP tree of one plane x + y = 0, and a ray that starts on it",
-                says,
-            )?;
+                Ray::new(origin, direction),
+            );
         }
     }
     // A room whose walls lie in the planes of the tree.
@@ -140,9 +133,9 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
     for i in 0..64 {
         let spread = |k: i32| ((i * k) % 17) as f32 / 8.5 - 1.0;
         let ray = Ray::new(vec3(0.1, -0.2, 0.3), vec3(spread(3), spread(5), spread(7) + 0.01));
-        ask(trial, &tree, &room, &ray, "BSP tree over a room of twelve triangles", says)?;
+        asked.ask("BSP tree over a room of twelve triangles", &tree, &room, ray);
     }
-    Ok(())
+    asked.judge(|queries| trial.kit.bsp_search(queries))
 }
 
 pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
@@ -150,14 +143,7 @@ pub(super) fn bsp_search_visits_what_the_ray_enters_before_its_hit(trial: &Trial
     let (scene, rays) = spheres_and_rays(&(0..64).map(place).collect::<Vec<Vec3>>(), 5, 12.0);
     let cells = bsp(&scene.hulls(), 8);
     let queries = queries(&cells, &scene, &rays);
-    for (query, yours) in queries.iter().zip(trial.kit.bsp_search(&queries)) {
-        judge_visits(
-            "BSP tree over 64 spheres",
-            &query.ray,
-            &parts::of_bsp(&cells, &query.ray),
-            &yours,
-            true,
-        )?;
-    }
-    Ok(())
+    all_hold(compare(&queries, trial.kit.bsp_search(&queries), |query, yours| {
+        judge_visits("BSP tree over 64 spheres", query, &parts::of_bsp(&cells, &query.ray), &yours)
+    }))
 }

@@ -1,6 +1,6 @@
 //! The laws of the builder of BSP trees: which primitives each leaf lists.
 
-use super::lists::{Fault, ended, judge_references};
+use super::lists::{Fault, ended, fact, judge_references};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::point;
@@ -49,7 +49,7 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
     if yours.depth() > query.max_depth + 1 {
         let (yours, expected) = (yours.depth() - 1, query.max_depth);
         let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
-        return Some((yours, expected, "the tree is deeper than max_depth"));
+        return Some(fact(yours, expected, "the tree is deeper than max_depth"));
     }
     let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
     // A corner within one float of a plane touches it. A corner within a 64th of the size may be counted as touching.
@@ -61,7 +61,7 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
             let count = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
             if !usable(hull) {
                 if times > 0 {
-                    return Some((
+                    return Some(fact(
                         count(times),
                         count(0),
                         "you list a hull with NaN or without corners: leave it out",
@@ -79,15 +79,27 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
             if reaches && times != 1 {
                 let on_plane =
                     hull.iter().any(|p| above.iter().any(|(plane, _)| plane.distance(*p).abs() <= step));
-                let diagnosis = match times {
-                    0 if on_plane => "a primitive that touches a plane, or lies in it, belongs to both sides",
-                    0 => "a primitive that crosses a plane belongs to both sides",
-                    _ => "you list a primitive twice in one leaf",
-                };
-                return Some((count(times), count(1), diagnosis));
+                let missing = times == 0;
+                let elsewhere = leaves(yours).iter().any(|(.., listed)| listed.contains(&(id as u32)));
+                return Some((
+                    count(times),
+                    count(1),
+                    vec![
+                        (
+                            missing && elsewhere && on_plane,
+                            "a primitive that touches a plane, or lies in it, belongs to both sides",
+                        ),
+                        (
+                            missing && elsewhere,
+                            "a primitive that crosses or touches a plane belongs to both sides",
+                        ),
+                        (missing && !elsewhere, "you leave out a primitive: no leaf lists it"),
+                        (!missing, "you list a primitive twice in one leaf"),
+                    ],
+                ));
             }
             if outside && times > 0 {
-                return Some((
+                return Some(fact(
                     count(times),
                     count(0),
                     "you list a primitive in a leaf that it does not overlap",
@@ -188,13 +200,21 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
     if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
         return Ok(());
     }
-    let diagnosis = match () {
-        () if yours.nodes.len() == 1 => "you make no cut: the planes of the polygons are the candidates",
-        () if fullest > 2 => {
-            "you do not divide the parallel sheets: the planes of the polygons are the candidates"
-        }
-        () => "you choose planes poorly: choose those that leave few primitives on the fuller side",
-    };
+    let mistakes = [
+        (yours.nodes.len() == 1, "you make no cut: the planes of the polygons are the candidates"),
+        (
+            fullest > 2,
+            "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates",
+        ),
+        (
+            references > 2 * n as usize,
+            "your planes have many sheets on both sides: the planes of the polygons are the candidates",
+        ),
+        (
+            depth > 8,
+            "your planes leave most sheets on one side: choose those that leave few primitives on the fuller side",
+        ),
+    ];
     let yours = format!("up to {fullest} sheets per leaf, {references} references, {depth} levels");
     let input = format!("build of {n} sheets side by side across a diagonal, leaf_size 2, max_depth 12");
     Err(Broken::with_texts(
@@ -203,5 +223,5 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
         format!("2 per leaf, at most {} references, 8 levels", 2 * n),
         "counted",
     )
-    .looks_like(Some(diagnosis)))
+    .explained_by(mistakes))
 }

@@ -3,13 +3,14 @@
 use super::scenes::{Scene, closest, rays, scenes, sphere};
 use checks::broken::{Broken, CheckResult};
 use checks::generate::unit;
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::Paste;
 use checks::tree::{closest_in_table, search_query, sphere_box};
 use checks::{Trial, tree};
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
+use raykata::bvh::PrimitiveHit;
 use raykata::kit::{CachedQuery, PacketAnswer, PacketQuery, SearchQuery};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -39,34 +40,38 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
             if found == expected {
                 return Ok(());
             }
-            let diagnosis = match (found, expected) {
-                (Some((_, t)), _) if !query.ray.contains(t) => {
-                    "you return a hit outside the ray's range: test the last primitive with this ray"
-                }
-                (Some((_, t)), Some((_, best))) if t == best => {
-                    "of two hits at the same t the smaller number wins: end the ray one float above the known hit"
-                }
-                (Some((primitive, _)), _) if Some(primitive) == query.last => {
-                    "you return the hit with the last primitive, but a nearer one exists: search on"
-                }
-                (None, Some(_)) => {
-                    "you forget the hit with the last primitive: the search with the shortened ray may find nothing"
-                }
-                (Some(_), Some(_)) => {
-                    "you return the farther of the known hit and the found one: keep the nearer"
-                }
-                _ => "",
-            };
+            let known = query.last.map(|last| query.hits[last as usize]).filter(|t| query.ray.contains(*t));
+            let is_last = |primitive: u32| Some(primitive) == query.last;
+            let mistakes = [
+                (
+                    found.is_some_and(|(_, t)| !query.ray.contains(t)),
+                    "you return a hit outside the ray's range: test the last primitive with this ray",
+                ),
+                (
+                    found.zip(expected).is_some_and(|((_, t), (_, best))| t == best),
+                    "of two hits at the same t the smaller number wins: end the ray one float above the known hit",
+                ),
+                (
+                    found.is_some_and(|(primitive, _)| is_last(primitive)) && yours.tests.len() == 1,
+                    "you return the hit with the last primitive, but a nearer one exists: search on",
+                ),
+                (
+                    found.is_none() && known.is_some(),
+                    "you forget the hit with the last primitive: the search with the shortened ray may find nothing",
+                ),
+                (
+                    found.is_some() && expected.is_some(),
+                    "you return the farther of the known hit and the found one: keep the nearer",
+                ),
+            ];
             let input =
                 format!("{n} primitives, of which {:?} was the last hit\n{}", query.last, query.ray.paste());
-            Err(Broken::new(input, found, expected, "brute force, (primitive, t)")
-                .looks_like(known(diagnosis)))
+            Err(Broken::new(input, found, expected, "brute force, (primitive, t)").explained_by(mistakes))
         })
     };
     let behind = Scene::new(vec![sphere(2.0, 0.0, 0.0, 0.5), sphere(5.0, 0.0, 0.0, 1.0)]);
     let nearer = (cached(&behind, &ray, Some(1)), 2);
-    judge(&[nearer, tie]).into_iter().collect::<CheckResult>()?;
-    trial.forall(1000, inputs, judge)
+    trial.forall_and(&[nearer, tie], 1000, inputs, judge)
 }
 
 pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
@@ -81,19 +86,18 @@ pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {
         return Ok(());
     }
     let describe = |[first, again]: [usize; 2]| format!("{first} tests without a known hit, {again} with it");
-    let diagnosis = match counts {
-        [_, again] if again > 32 => "the ray is not shortened: end it at the known hit",
-        [first, _] if first > 32 => "you test a primitive before the search although there is no known hit",
-        [_, 1] => "you leave out the search: this ray may hit a nearer primitive",
-        _ => "",
-    };
+    let mistakes = [
+        (counts[1] > 32, "the ray is not shortened: end it at the known hit"),
+        (counts[0] > 32, "you test a primitive before the search although there is no known hit"),
+        (counts[1] == 1, "you leave out the search: this ray may hit a nearer primitive"),
+    ];
     Err(Broken::with_texts(
         "a ray along 32 spheres in a row, and the next ray, which hits the same one",
         describe(counts),
         describe([32, 2]),
         "counted",
     )
-    .looks_like(known(diagnosis)))
+    .explained_by(mistakes))
 }
 
 fn packet(spheres: &[Sphere], rays: &[Ray]) -> (PacketQuery, Vec<SearchQuery>) {
@@ -128,24 +132,42 @@ pub(super) fn packet_finds_what_single_rays_find(trial: &Trial<'_>) -> CheckResu
         let queries: Vec<PacketQuery> = asked.iter().map(|(query, _)| query.clone()).collect();
         compare(&asked, trial.kit.packet_search(&queries), |(query, singles), yours| {
             let input = format!("{} rays, {} nodes", query.rays.len(), query.bvh.nodes.len());
-            if yours.hits.len() != query.rays.len() {
+            let yours_count = yours.hits.len();
+            if yours_count != query.rays.len() {
                 let (yours, expected) = (format!("{} hits", yours.hits.len()), format!("{}", query.rays.len()));
                 let broken = Broken::with_texts(input, yours, expected, "one per ray");
-                return Err(broken.looks_like(Some("a packet has eight rays at most: put the other rays into further packets")));
+                return Err(broken.explained_by([(
+                    yours_count == query.rays.len().min(8),
+                    "a packet has eight rays at most: put the other rays into further packets",
+                )]));
             }
+            let yours_opened = &yours.opened;
             for (index, (single, yours)) in singles.iter().zip(&yours.hits).enumerate() {
                 let expected = closest_in_table(single);
                 let found = yours.map(|hit| (hit.primitive, hit.t));
                 if found != expected {
-                    let diagnosis = match (found, expected) {
-                        (Some((_, t)), Some((_, best))) if t == best => "of two hits at the same t the smaller primitive number wins",
-                        (Some((_, t)), _) if !single.ray.contains(t) => "you return a hit outside the range of this ray: each ray has its own range",
-                        (Some(_), None) => "you return the hit of another ray: each ray keeps its own",
-                        _ => "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it",
-                    };
+                    // A node that every right search opens for this ray.
+                    let (needed, _) = tree::needed(single);
+                    let is_left = needed.iter().any(|node| !yours_opened.contains(&(*node as u32)));
+                    let is_tie = found.zip(expected).is_some_and(|((_, t), (_, best))| t == best);
+                    let mistakes = [
+                        (is_tie, "of two hits at the same t the smaller primitive number wins"),
+                        (
+                            found.is_some_and(|(_, t)| !single.ray.contains(t)),
+                            "you return a hit outside the range of this ray: each ray has its own range",
+                        ),
+                        (
+                            found.is_some_and(|(primitive, t)| single.table.primitives.get(primitive as usize) != Some(&t)),
+                            "you return the hit of another ray: each ray keeps its own",
+                        ),
+                        (
+                            is_left,
+                            "the packet left a node that this ray enters: skip a node only if no ray of the packet enters it",
+                        ),
+                    ];
                     let input = format!("{input}; ray {index}: {}", single.ray.paste());
                     let broken = Broken::new(input, found, expected, "brute force, (primitive, t)");
-                    return Err(broken.looks_like(Some(diagnosis)));
+                    return Err(broken.explained_by(mistakes));
                 }
             }
             Ok(())
@@ -160,7 +182,7 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
     for (x, direction) in [(-9.0, Vec3::X), (300.0, Vec3::NEG_X)] {
         let (query, singles) = packet(&row, &[Ray::new(vec3(x, 0.0, 0.0), direction); 8]);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
-        judge_opened("8 equal rays along a row of", &yours, opened_alone(&singles[0]))?;
+        judge_opened("8 equal rays along a row of", &yours, &singles, opened_alone(&singles[0]))?;
     }
     let spheres: Vec<Sphere> = (0..64)
         .map(|i| Sphere {
@@ -175,31 +197,37 @@ pub(super) fn packet_opens_a_node_once(trial: &Trial<'_>) -> CheckResult {
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         // If a ray enters both children at the same t, either may come first.
         let most = opened_alone(&singles[0]) + 2;
-        judge_opened("8 equal rays through", &yours, most)?;
+        judge_opened("8 equal rays through", &yours, &singles, most)?;
         // Eight rays side by side open fewer nodes together than one after the other.
         let beam: Vec<Ray> = (0..8).map(|i| ray(x + 0.05 * i as f32, y)).collect();
         let (query, singles) = packet(&spheres, &beam);
         let yours = trial.kit.packet_search(std::slice::from_ref(&query)).remove(0);
         let alone: u64 = singles.iter().map(opened_alone).sum();
-        judge_opened("8 rays side by side through", &yours, alone / 2)?;
-        // A node is needed if at least one ray enters it before its hit.
-        let needed = |node: u32| {
-            singles.iter().any(|single| {
-                let (near, far) = single.table.boxes[node as usize];
-                let end = closest_in_table(single).map_or(single.ray.t_max, |(_, t)| t);
-                near.max(single.ray.t_min) <= far && near <= end
-            })
-        };
-        let needless = yours.opened.iter().filter(|&&node| !needed(node)).count();
+        judge_opened("8 rays side by side through", &yours, &singles, alone / 2)?;
+        let needless = needless(&yours, &singles);
         // Allow a quarter of needless nodes, because some rays of a packet enter the farther child first.
         if needless > yours.opened.len() / 4 {
             let describe = format!("{needless} of {} opened nodes are needless", yours.opened.len());
-            return Err(Broken::with_texts("8 rays side by side through 64 spheres", describe, "few", "counted").looks_like(Some(
-                "you open nodes that no ray enters before its hit: shorten each ray to its best hit, and search the nearer child first",
-            )));
+            let broken =
+                Broken::with_texts("8 rays side by side through 64 spheres", describe, "few", "counted");
+            return Err(broken.explained_by([(needless > 0, NEEDLESS)]));
         }
     }
     Ok(())
+}
+
+const NEEDLESS: &str = "you open nodes that no ray enters before its hit: shorten each ray to its best hit, and search the nearer child first";
+
+/// How many opened nodes no ray enters before its hit.
+fn needless(yours: &PacketAnswer, singles: &[SearchQuery]) -> usize {
+    let needed = |node: u32| {
+        singles.iter().any(|single| {
+            let (near, far) = single.table.boxes[node as usize];
+            let end = closest_in_table(single).map_or(single.ray.t_max, |(_, t)| t);
+            near.max(single.ray.t_min) <= far && near <= end
+        })
+    };
+    yours.opened.iter().filter(|&&node| !needed(node)).count()
 }
 
 /// How many nodes a ray has to open.
@@ -207,12 +235,20 @@ fn opened_alone(query: &SearchQuery) -> u64 {
     tree::needed(query).0.len() as u64
 }
 
-fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> CheckResult {
+fn judge_opened(what: &str, yours: &PacketAnswer, singles: &[SearchQuery], most: u64) -> CheckResult {
     let mut opened = yours.opened.clone();
     opened.sort_unstable();
     let again = opened.windows(2).find(|pair| pair[0] == pair[1]);
     let describe = |n: u64| format!("{n} nodes opened");
     let input = format!("{what} 64 spheres");
+    // A search that opens nothing finds nothing.
+    let hits = |found: &[Option<PrimitiveHit>]| found.iter().flatten().count();
+    let expected = singles.iter().filter(|single| closest_in_table(single).is_some()).count();
+    if hits(&yours.hits) != expected || opened.is_empty() {
+        let yours = format!("{} hits, {}", hits(&yours.hits), describe(opened.len() as u64));
+        let broken = Broken::with_texts(input, yours, format!("{expected} hits"), "brute force");
+        return Err(broken.explained_by([]));
+    }
     if let Some(pair) = again {
         let broken = Broken::with_texts(
             input,
@@ -220,9 +256,13 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> CheckResult {
             "once per packet",
             "counted",
         );
-        return Err(broken.looks_like(Some(
-            "you search for the rays one after the other: open a node once for all rays that enter it",
-        )));
+        // Of children that are entered at the same t, either may come first.
+        let alone: u64 = singles.iter().map(opened_alone).sum();
+        let one_by_one = (opened.len() as u64).abs_diff(alone) <= alone / 4;
+        return Err(broken.explained_by([(
+            one_by_one,
+            "you open as many nodes as rays that are searched one after the other: open a node once for all rays that enter it",
+        )]));
     }
     if yours.opened.len() as u64 > most {
         let broken = Broken::with_texts(
@@ -231,7 +271,7 @@ fn judge_opened(what: &str, yours: &PacketAnswer, most: u64) -> CheckResult {
             format!("at most {}", describe(most)),
             "counted",
         );
-        return Err(broken.looks_like(Some("you open nodes that no ray enters before its hit")));
+        return Err(broken.explained_by([(needless(yours, singles) > 0, NEEDLESS)]));
     }
     Ok(())
 }

@@ -1,19 +1,19 @@
 //! The laws of the uniform grid: which primitives each cell lists, and the search.
 
-use super::lists::{bounds_fault, is_far_off, some_boxes};
+use super::lists::{Fault, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, rays, sphere, wall};
-use super::searches::{Searcher, agrees, grid_queries, judge, judge_visits};
+use super::searches::{Asked, Searcher, agrees, grid_queries, judge_visits};
 use super::structures::{around_loosely, filled};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::paste::Paste;
-use glam::{UVec3, Vec3, uvec3, vec3};
+use glam::{DVec3, UVec3, Vec3, uvec3, vec3};
 use proptest::prelude::Strategy;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsQuery, GridQuery};
-use raykata::partition::Grid;
+use raykata::partition::{Cell, Grid};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
@@ -23,79 +23,37 @@ pub(super) fn grid_lists_what_reaches_into_cells(trial: &Trial<'_>) -> CheckResu
     let none = GridQuery { bounds: Vec::new(), resolution: UVec3::splat(2) };
     let flat =
         GridQuery { bounds: vec![Aabb::new(Vec3::ZERO, vec3(4.0, 4.0, 0.0)); 3], resolution: uvec3(4, 4, 1) };
-    judge_grids(trial, &[none, flat]).into_iter().collect::<CheckResult>()?;
-    trial.forall(200, inputs, |queries| judge_grids(trial, queries))
+    trial.forall_and(&[none, flat], 200, inputs, |queries| judge_grids(trial, queries))
 }
 
 fn judge_grids(trial: &Trial<'_>, queries: &[GridQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.grid_build(queries), |query, yours| match grid_fault(query, &yours) {
         None => Ok(()),
-        Some((yours, expected, diagnosis)) => {
+        Some((yours, expected, mistakes)) => {
             let input = format!("build(&{}, {})", checks::paste::list(&query.bounds), query.resolution);
-            Err(Broken::with_texts(input, yours, expected, "the definition of a grid")
-                .looks_like(known(diagnosis)))
+            Err(Broken::with_texts(input, yours, expected, "the definition of a grid").explained_by(mistakes))
         }
     })
 }
 
-fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<(String, String, &'static str)> {
+fn grid_fault(query: &GridQuery, grid: &Grid) -> Option<Fault> {
     let n: u32 = query.resolution.element_product();
     let in_order = grid.starts.windows(2).all(|pair| pair[0] <= pair[1]);
     let ends = grid.starts.last().is_some_and(|last| *last as usize == grid.items.len());
     if grid.resolution != query.resolution || grid.starts.len() != n as usize + 1 || !in_order || !ends {
         let yours = format!("{} cells, starts {:?}", grid.resolution, grid.starts);
-        return Some((
-            yours,
-            format!("{n} cells, ascending starts, and the number of items as the last one"),
-            "",
-        ));
+        let expected = format!("{n} cells, ascending starts, and the number of items as the last one");
+        return Some((yours, expected, Vec::new()));
     }
-    if let Some((yours, expected)) = bounds_fault(&grid.bounds, &query.bounds) {
-        return Some((yours, expected, "bounds must contain all boxes that are not empty"));
-    }
-    for number in 0..n {
+    let cell = |number: u32| {
         let at = uvec3(
             number % grid.resolution.x,
             number / grid.resolution.x % grid.resolution.y,
             number / (grid.resolution.x * grid.resolution.y),
         );
-        let cell = grid.cell(at);
-        let listed = grid.primitives(number);
-        for (id, one) in query.bounds.iter().enumerate() {
-            let times = listed.iter().filter(|&&other| other == id as u32).count();
-            let describe = |times: usize| format!("primitive {id} is listed {times} times in cell {at}");
-            if one.is_empty() && times > 0 {
-                return Some((
-                    describe(times),
-                    describe(0),
-                    "you list an empty box or one with NaN: leave it out",
-                ));
-            }
-            // All cells of a grid over a single point are that point: one of them that lists the primitive is enough.
-            let elsewhere = || (0..n).any(|other| grid.primitives(other).contains(&(id as u32)));
-            let one_place = grid.bounds.min == grid.bounds.max;
-            if !one.is_empty() && cell.touches(one) && times != 1 && !(times == 0 && one_place && elsewhere())
-            {
-                let middle = cell.touches(&Aabb::new(0.5 * (one.min + one.max), 0.5 * (one.min + one.max)));
-                let diagnosis = match times {
-                    0 if !middle => {
-                        "you leave out a cell: all cells that a box overlaps or touches list it, not only the cell of its middle"
-                    }
-                    0 => "you leave out a primitive",
-                    _ => "you list a primitive twice in one cell",
-                };
-                return Some((describe(times), describe(1), diagnosis));
-            }
-            if times > 0 && is_far_off(&grid.bounds, &cell.to_box(), one) {
-                return Some((
-                    describe(times),
-                    describe(0),
-                    "you list a primitive in a cell that it does not overlap",
-                ));
-            }
-        }
-    }
-    None
+        (at, grid.cell(at), grid.primitives(number).to_vec())
+    };
+    listing_fault("cell", &grid.bounds, &query.bounds, &(0..n).map(cell).collect::<Vec<_>>())
 }
 
 pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
@@ -104,19 +62,29 @@ pub(super) fn grid_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckRes
 
 /// Trap A8: a large sphere of the first cell is hit in the third cell, and a small one in the second cell is nearer.
 pub(super) fn grid_hit_beyond_its_cell_waits(trial: &Trial<'_>) -> CheckResult {
-    let large = Thing::Sphere(Sphere { center: vec3(5.0, 2.0, 0.0), radius: 2.25 });
-    let scene = Scene::new(vec![large, sphere(3.5, 0.0, 0.0, 0.25), sphere(0.0, 3.0, 0.0, 0.5)]);
-    let [ray] = [Ray::new(vec3(-1.0, 0.0, 0.0), Vec3::X)];
-    // The large sphere is listed from the first cell on, as a longer primitive would be.
-    let bounds = Aabb::new(vec3(0.0, -4.0, -4.0), vec3(8.0, 4.5, 4.0));
-    let cells = filled(bounds, uvec3(4, 1, 1), &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
-    let hits = scene.hits(&ray);
-    let yours = trial.kit.grid_search(&[CellsQuery { cells, ray, hits: hits.clone() }]).remove(0);
-    judge("grid of 4 cells along x; all of them list primitive 0", &ray, &hits, &yours).map_err(|broken| {
-        broken.looks_like(Some(
-            "trap A8: the first hit lies beyond its cell, and a later cell has a nearer one: go on until the next cell begins behind the best hit",
-        ))
-    })
+    let mut asked = Asked::new();
+    for axis in 0..3 {
+        let turn = |v: Vec3| {
+            let mut turned = Vec3::ZERO;
+            (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
+            turned
+        };
+        let place = |center: Vec3, radius: f32| Thing::Sphere(Sphere { center: turn(center), radius });
+        let scene = Scene::new(vec![
+            place(vec3(5.0, 2.0, 0.0), 2.25),
+            place(vec3(3.5, 0.0, 0.0), 0.25),
+            place(vec3(0.0, 3.0, 0.0), 0.5),
+        ]);
+        // The large sphere is listed from the first cell on, as a longer primitive would be.
+        let bounds = Aabb::new(turn(vec3(0.0, -4.0, -4.0)), turn(vec3(8.0, 4.5, 4.0)));
+        let resolution = turn(vec3(4.0, 1.0, 1.0)).as_uvec3();
+        let cells = filled(bounds, resolution, &[vec![2, 0], vec![1, 0], vec![0], vec![0]]);
+        let ray = Ray::new(turn(vec3(-1.0, 0.0, 0.0)), turn(Vec3::X));
+        asked.ask("grid of 4 cells in a row; all of them list primitive 0", &cells, &scene, ray);
+        let control = filled(bounds, resolution, &[vec![0, 1, 2], vec![], vec![], vec![]]);
+        asked.control("grid", control, ray, (1.0, 3.0));
+    }
+    asked.judge(|queries| trial.kit.grid_search(queries))
 }
 
 fn bare_grid(bounds: Aabb, resolution: UVec3) -> Grid {
@@ -134,117 +102,197 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
     // A row of spheres of which the first is hit: the cells behind it must not be visited.
     let row = Scene::new((0..32).map(|i| sphere(i as f32, 0.0, 0.0, 0.25)).collect());
     let rays = [Ray::new(vec3(-2.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(40.0, 0.0, 0.0), Vec3::NEG_X)];
-    for query in grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1)) {
-        let ray = query.ray;
-        let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
-        judge_visits(
-            "grid over a row of 32 spheres",
-            &ray,
-            &parts::of_grid(&query.cells, &ray),
-            &yours,
-            true,
-        )?;
+    let queries = grid_queries(&row, &rays, around_loosely(&row.boxes()), uvec3(32, 1, 1));
+    all_hold(compare(&queries, trial.kit.grid_search(&queries), |query, yours| {
+        let parts = parts::of_grid(&query.cells, &query.ray);
+        judge_visits("grid over a row of 32 spheres", query, &parts, &yours)
+    }))
+}
+
+/// The visits of a search that steps across the farthest of the three faces. It begins at the `t` of the entry, or earlier by
+/// this share of it.
+fn across_the_farthest(query: &CellsQuery<Grid>, earlier: f64) -> Vec<u32> {
+    let (grid, ray) = (&query.cells, &query.ray);
+    let bounds = Cell::new(&grid.bounds);
+    let Some((enter, leave)) = parts::exactly(ray, &bounds) else { return Vec::new() };
+    let enter = enter * (1.0 - earlier);
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let share =
+        (origin + enter * direction - bounds.min) / (bounds.max - bounds.min) * grid.resolution.as_dvec3();
+    let mut cell = share.max(DVec3::ZERO).as_uvec3().min(grid.resolution - 1);
+    let mut visits = vec![grid.number(cell)];
+    loop {
+        let exit = |axis: usize| {
+            let far = grid.plane(axis, cell[axis] + u32::from(direction[axis] > 0.0));
+            (far - origin[axis]) / direction[axis]
+        };
+        let moving = (0..3).filter(|&axis| direction[axis] != 0.0);
+        let Some(axis) = moving.reduce(|p, q| if exit(q) > exit(p) { q } else { p }) else { return visits };
+        let at_the_end =
+            if direction[axis] > 0.0 { cell[axis] + 1 == grid.resolution[axis] } else { cell[axis] == 0 };
+        if exit(axis) > leave || at_the_end {
+            return visits;
+        }
+        cell[axis] = if direction[axis] > 0.0 { cell[axis] + 1 } else { cell[axis] - 1 };
+        visits.push(grid.number(cell));
     }
-    Ok(())
 }
 
 /// Whether the visits to empty cells are those of the ray.
 fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
     let parts = parts::of_grid(&query.cells, &query.ray);
-    let fault = |yours: String, expected: String, diagnosis: &'static str| {
-        let input =
-            format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
-        Err(Broken::with_texts(input, yours, expected, "every cell tested in double precision")
-            .looks_like(known(diagnosis)))
-    };
+    let is_entered = |visit: u32| parts.iter().any(|(cell, ..)| *cell == visit);
     // The search must visit each cell through whose inside the ray passes, and may visit cells that the ray touches.
-    if let Some((cell, near, far)) =
-        parts::inside_grid(&query.cells, &query.ray).iter().find(|(cell, ..)| !visits.contains(cell))
-    {
-        let expected = format!("a visit to {cell}, in which the ray is from t = {near:.3} to {far:.3}");
-        let reaches = query.ray.t_max.is_finite();
-        let diagnosis = match visits.is_empty() {
-            true => "you do not find the first cell: clip the ray to the grid's bounds, and start there",
-            false if reaches => "you leave out a cell within the ray's range",
-            false => "you leave out a cell: step along the axis whose plane comes first",
-        };
-        return fault(format!("visits to {visits:?}"), expected, diagnosis);
-    }
-    let mut last = f64::NEG_INFINITY;
-    for (index, visit) in visits.iter().enumerate() {
-        let Some((_, near, _)) = parts.iter().find(|(cell, ..)| cell == visit) else {
-            return fault(
-                format!("a visit to {visit}"),
-                "none".into(),
-                "you visit a cell that the ray does not enter",
-            );
-        };
-        if visits[..index].contains(visit) {
-            return fault(format!("{visit} is visited twice"), "once".into(), "you visit a cell twice");
+    let inside = parts::inside_grid(&query.cells, &query.ray);
+    let left_out = inside.iter().find(|(cell, ..)| !visits.contains(cell));
+    let missed = visits.iter().find(|&&visit| !is_entered(visit));
+    let twice = (0..visits.len()).find(|&index| visits[..index].contains(&visits[index]));
+    let near = |visit: &u32| parts.iter().find(|(cell, ..)| cell == visit).map(|(_, near, _)| *near);
+    let nears: Vec<f64> = visits.iter().filter_map(near).collect();
+    let backwards = nears.windows(2).any(|pair| pair[1] < pair[0] - 1e-2);
+    let (yours, expected) = match (left_out, missed, twice) {
+        (Some((cell, near, far)), ..) => (
+            format!("visits to {visits:?}"),
+            format!("a visit to {cell}, in which the ray is from t = {near:.3} to {far:.3}"),
+        ),
+        (_, Some(visit), _) => (format!("a visit to {visit}"), "none".into()),
+        (.., Some(index)) => (format!("{} is visited twice", visits[index]), "once".into()),
+        _ if backwards => {
+            (format!("visits to {visits:?}"), "cells in the order in which the ray enters them".into())
         }
-        if *near < last - 1e-2 {
-            return fault(
-                format!("visits to {visits:?}"),
-                "cells in the order in which the ray enters them".into(),
-                "you do not visit the cells in the order of t",
-            );
-        }
-        last = last.max(*near);
-    }
-    Ok(())
+        _ => return Ok(()),
+    };
+    let input = format!("grid of {} cells without primitives\n{}", query.cells.resolution, query.ray.paste());
+    Err(Broken::with_texts(input, yours, expected, "every cell tested in double precision").explained_by([
+        (
+            left_out.is_some() && visits.is_empty(),
+            "you do not find the first cell: clip the ray to the grid's bounds, and start there",
+        ),
+        (
+            [0.0, 1e-6].iter().any(|earlier| visits == across_the_farthest(query, *earlier)),
+            "you step across the farthest of the three faces: step along the axis whose plane comes first",
+        ),
+        (missed.is_some(), "you visit a cell that the ray does not enter"),
+        (twice.is_some(), "you visit a cell twice"),
+        (backwards, "you do not visit the cells in the order of t"),
+    ]))
 }
 
 /// Trap A8, second part: 250 cells along an axis.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResult {
-    // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along y, so that one
-    // axis takes twice as many steps as the other.
-    let bounds = Aabb::new(vec3(1.1, 2.3, -3.7), vec3(2.4, 3.6, -2.4));
-    let grid = bare_grid(bounds, uvec3(250, 125, 1));
-    // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
-    for off in [7e-7f32, -7e-7, 1.2e-6, -1.2e-6] {
-        let origin = vec3(1.1 - 0.5, 2.3 - 0.5 + off, -3.0);
-        let query =
-            CellsQuery { cells: grid.clone(), ray: Ray::new(origin, vec3(1.0, 1.0, 0.0)), hits: Vec::new() };
-        let yours = trial.kit.grid_search(std::slice::from_ref(&query)).remove(0);
-        let expected = diagonal(&query);
-        if let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) {
-            let describe = |cells: &[u32]| {
-                format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
-            };
-            let input =
-                format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
-            let broken = Broken::with_texts(
-                input,
-                describe(&yours.visits),
-                describe(&expected),
-                "planes in double precision",
-            );
-            return Err(broken.looks_like(Some(
+    // The cell sides are not powers of two, so that each step is rounded. Cells are twice as long along the second axis, so
+    // that one axis takes twice as many steps as the other.
+    let query = |(axes, off): ([usize; 2], f32)| {
+        let turn = |x: f32, y: f32, z: f32| {
+            let mut turned = Vec3::splat(z);
+            (turned[axes[0]], turned[axes[1]]) = (x, y);
+            turned
+        };
+        let bounds = Aabb::new(turn(1.1, 2.3, -3.7), turn(2.4, 3.6, -2.4));
+        let cells = bare_grid(bounds, turn(250.0, 125.0, 1.0).as_uvec3());
+        // Aim just beside corners: the distances that decide the next cell are small, but far above the error of an f64.
+        let ray = Ray::new(turn(1.1 - 0.5, 2.3 - 0.5 + off, -3.0), turn(1.0, 1.0, 0.0));
+        (CellsQuery { cells, ray, hits: Vec::new() }, axes)
+    };
+    let pairs = [[0, 1], [1, 2], [2, 0]];
+    let offs = [7e-7f32, -7e-7, 1.2e-6, -1.2e-6];
+    let asked: Vec<_> = pairs.into_iter().flat_map(|axes| offs.map(|off| (axes, off))).map(query).collect();
+    let queries: Vec<CellsQuery<Grid>> = asked.iter().map(|(query, _)| query.clone()).collect();
+    all_hold(compare(&asked, trial.kit.grid_search(&queries), |(query, axes), yours| {
+        let axes = *axes;
+        let expected = diagonal(query, axes);
+        let Some(at) = (0..expected.len()).find(|&i| yours.visits.get(i) != Some(&expected[i])) else {
+            return Ok(());
+        };
+        let describe = |cells: &[u32]| {
+            format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
+        };
+        let input = format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
+        let (yours, sums) = (yours.visits, added_up(query, axes));
+        let texts = (describe(&yours), describe(&expected));
+        Err(Broken::with_texts(input, texts.0, texts.1, "planes in double precision").explained_by([
+            (
+                sums.contains(&yours),
                 "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision",
-            )));
-        }
-    }
-    Ok(())
+            ),
+            (
+                in_single(query, axes) == yours,
+                "you compute the t of a plane in single precision, which cannot tell these corners apart: use double precision",
+            ),
+        ]))
+    }))
 }
 
-/// The cells along a ray whose direction has positive x and y, from the sorted planes.
-fn diagonal(query: &CellsQuery<Grid>) -> Vec<u32> {
+/// The visits of a ray whose direction is positive along two axes. `t` is that of the plane with an index across one of them.
+fn visits_by(query: &CellsQuery<Grid>, axes: [usize; 2], t: impl Fn(usize, u32) -> f32) -> Vec<u32> {
+    let grid = &query.cells;
+    let mut cell = UVec3::ZERO;
+    let mut visits = vec![grid.number(cell)];
+    loop {
+        let [p, q] = axes.map(|axis| t(axis, cell[axis] + 1));
+        let axis = if p < q { axes[0] } else { axes[1] };
+        if cell[axis] + 1 == grid.resolution[axis] {
+            return visits;
+        }
+        cell[axis] += 1;
+        visits.push(grid.number(cell));
+    }
+}
+
+/// The visits of searches that add up tDelta in single precision, with the first `t` and the step rounded once or computed
+/// in single precision.
+fn added_up(query: &CellsQuery<Grid>, axes: [usize; 2]) -> [Vec<u32>; 2] {
+    let (grid, ray) = (&query.cells, &query.ray);
+    [true, false].map(|rounded_once| {
+        let sums = [0, 1, 2].map(|axis| {
+            let (low, high) = (grid.bounds.min[axis], grid.bounds.max[axis]);
+            let n = grid.resolution[axis];
+            let (first, delta) = if rounded_once {
+                let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+                let size = (f64::from(high) - f64::from(low)) / f64::from(n);
+                (((grid.plane(axis, 1) - o) / d) as f32, (size / d) as f32)
+            } else {
+                let size = (high - low) / n as f32;
+                ((low + size - ray.origin[axis]) / ray.direction[axis], size / ray.direction[axis])
+            };
+            let mut sums = vec![f32::NAN, first];
+            (1..n as usize).for_each(|i| sums.push(sums[i] + delta));
+            sums
+        });
+        visits_by(query, axes, |axis, index| sums[axis][index as usize])
+    })
+}
+
+/// The visits of a search that computes the `t` of each plane in single precision.
+fn in_single(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
+    let (grid, ray) = (&query.cells, &query.ray);
+    visits_by(query, axes, |axis, index| {
+        (grid.plane(axis, index) as f32 - ray.origin[axis]) / ray.direction[axis]
+    })
+}
+
+/// The cells along a ray whose direction is positive along two axes, from the sorted planes.
+fn diagonal(query: &CellsQuery<Grid>, axes: [usize; 2]) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
     let t = |axis: usize, i: u32| {
         (grid.plane(axis, i) - f64::from(ray.origin[axis])) / f64::from(ray.direction[axis])
     };
-    let begin = t(0, 0).max(t(1, 0));
+    let [p, q] = axes;
+    let begin = t(p, 0).max(t(q, 0));
+    let end = t(p, grid.resolution[p]).min(t(q, grid.resolution[q]));
     let inner = |axis: usize| (1..grid.resolution[axis]).map(move |i| (axis, i));
     let mut cell = UVec3::ZERO;
-    let mut crossings: Vec<(f64, usize)> =
-        inner(0).chain(inner(1)).map(|(axis, i)| (t(axis, i), axis)).filter(|(t, _)| *t > begin).collect();
+    let mut crossings: Vec<(f64, usize)> = axes
+        .into_iter()
+        .flat_map(inner)
+        .map(|(axis, i)| (t(axis, i), axis))
+        .filter(|(t, _)| *t > begin && *t < end)
+        .collect();
     crossings.sort_by(|p, q| p.0.total_cmp(&q.0));
     let mut visits = vec![grid.number(cell)];
-    for (t_crossing, axis) in crossings {
-        if t_crossing < t(0, grid.resolution.x).min(t(1, grid.resolution.y)) {
-            cell[axis] += 1;
-            visits.push(grid.number(cell));
-        }
+    for (_, axis) in crossings {
+        cell[axis] += 1;
+        visits.push(grid.number(cell));
     }
     visits
 }
@@ -275,10 +323,11 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
         // Leave no room around the boxes, so that walls lie exactly in the faces of the grid.
         let boxes = scene.boxes();
         let all = checks::tree::around(&boxes);
-        let queries = grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution);
-        for (query, yours) in queries.iter().zip(trial.kit.grid_search(&queries)) {
-            judge(&format!("grid of {resolution} cells over {name}"), &query.ray, &query.hits, &yours)?;
+        let mut asked = Asked::new();
+        for query in grid_queries(&scene, &rays, (all, around_loosely(&boxes).1), resolution) {
+            asked.add(format!("grid of {resolution} cells over {name}"), query);
         }
+        asked.judge(|queries| trial.kit.grid_search(queries))?;
     }
     Ok(())
 }

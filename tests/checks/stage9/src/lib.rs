@@ -2,7 +2,8 @@
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
 //! `bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
-//! `searches` (calls a search and judges its answer), `parts` (the interval of a ray in each node), `lists` (judges the
+//! `searches` (calls a search and judges its answer),
+//! `search_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
 //! lists of cells).
 
 mod bsp_searches;
@@ -16,6 +17,7 @@ mod octrees;
 mod parts;
 mod resolutions;
 mod scenes;
+mod search_mistakes;
 mod searches;
 mod structures;
 

@@ -1,7 +1,6 @@
 //! The laws that all builders share: which primitives a cell lists.
 
 use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
 use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -39,8 +38,82 @@ pub(super) fn is_far_off(all: &Aabb, cell: &Aabb, one: &Aabb) -> bool {
     !(gap.max_element() <= room)
 }
 
-/// A fault of a structure: `(yours, expected, diagnosis)`.
-pub(super) type Fault = (String, String, &'static str);
+/// A fault of a structure: `(yours, expected, mistakes)`, each mistake with whether it is proven.
+pub(super) type Fault = (String, String, Vec<(bool, &'static str)>);
+
+/// A fault that proves its mistake.
+pub(super) fn fact(yours: String, expected: String, mistake: &'static str) -> Fault {
+    (yours, expected, vec![(true, mistake)])
+}
+
+/// A leaf, or a cell of a grid: its name, its place, and the primitives that it lists.
+pub(super) type Listed<N> = (N, Cell, Vec<u32>);
+
+/// The first fault in the lists of leaves or of cells, which are called `kind`.
+pub(super) fn listing_fault<N: std::fmt::Display>(
+    kind: &str,
+    bounds: &Aabb,
+    boxes: &[Aabb],
+    leaves: &[Listed<N>],
+) -> Option<Fault> {
+    if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
+        return Some(fact(yours, expected, "bounds must contain all boxes that are not empty"));
+    }
+    for (node, cell, listed) in leaves {
+        for (id, one) in boxes.iter().enumerate() {
+            let times = listed.iter().filter(|&&other| other == id as u32).count();
+            let describe = |times: usize| format!("primitive {id} is listed {times} times in {kind} {node}");
+            if one.is_empty() {
+                if times > 0 {
+                    let mistake = "you list an empty box or one with NaN: leave it out";
+                    return Some(fact(describe(times), describe(0), mistake));
+                }
+                continue;
+            }
+            let elsewhere = || leaves.iter().any(|(.., listed)| listed.contains(&(id as u32)));
+            // All cells of a grid over a single point are that point: one of them that lists the primitive is enough.
+            let at_one_point = bounds.min == bounds.max && times == 0;
+            if cell.touches(one) && times != 1 && !(at_one_point && elsewhere()) {
+                let touches = (0..3).any(|axis| {
+                    let [low, high] = [one.min[axis], one.max[axis]].map(f64::from);
+                    high == cell.min[axis] || low == cell.max[axis]
+                });
+                let missing = times == 0;
+                // Each cell lists only primitives that it overlaps, so that their places are right.
+                let elsewhere = || {
+                    let is_right =
+                        |cell: &Cell, id: u32| !is_far_off(bounds, &cell.to_box(), &boxes[id as usize]);
+                    let right = |(_, cell, listed): &Listed<N>| {
+                        listed.iter().all(|&id| (id as usize) < boxes.len() && is_right(cell, id))
+                    };
+                    leaves.iter().all(right) && elsewhere()
+                };
+                let nowhere = missing && !leaves.iter().any(|(.., listed)| listed.contains(&(id as u32)));
+                return Some((
+                    describe(times),
+                    describe(1),
+                    vec![
+                        (
+                            missing && touches && elsewhere(),
+                            "trap A5: a primitive that touches a plane belongs to both sides",
+                        ),
+                        (
+                            missing && elsewhere(),
+                            "a primitive that overlaps or touches several cells belongs to all of them",
+                        ),
+                        (nowhere, "you leave out a primitive: no cell lists it"),
+                        (!missing, "you list a primitive twice in one cell"),
+                    ],
+                ));
+            }
+            if times > 0 && is_far_off(bounds, &cell.to_box(), one) {
+                let mistake = "you list a primitive in a cell that it does not overlap";
+                return Some(fact(describe(times), describe(0), mistake));
+            }
+        }
+    }
+    None
+}
 
 /// Judges a tree of `n_nodes` nodes. If there is `nothing` to list, it must have no nodes; otherwise `fault` judges it.
 pub(super) fn judge_tree(
@@ -51,13 +124,20 @@ pub(super) fn judge_tree(
 ) -> CheckResult {
     let fault = match (nothing, n_nodes) {
         (true, 0) => None,
-        (true, n) => {
-            Some((format!("{n} nodes"), "no nodes".into(), "you make nodes although there are no primitives"))
-        }
+        (true, n) => Some(fact(
+            format!("{n} nodes"),
+            "no nodes".into(),
+            "you make nodes although there are no primitives",
+        )),
+        (false, 0) => Some(fact(
+            "no nodes".into(),
+            "at least one node".into(),
+            "you make no node although there are primitives",
+        )),
         (false, _) => fault(),
     };
-    fault.map_or(Ok(()), |(yours, expected, diagnosis)| {
-        Err(Broken::with_texts(describe(), yours, expected, source).looks_like(known(diagnosis)))
+    fault.map_or(Ok(()), |(yours, expected, mistakes)| {
+        Err(Broken::with_texts(describe(), yours, expected, source).explained_by(mistakes))
     })
 }
 
@@ -71,8 +151,9 @@ pub(super) fn ended<T>(
 ) -> Result<T, Broken> {
     kit_error::catch(build).map_err(|error| match error {
         KitError::Panicked { message, .. } => {
-            let says = if message.contains("references") { too_many } else { too_deep };
-            Broken::with_texts(input, message, "a tree", source).looks_like(Some(says))
+            let mistakes =
+                [(message.contains("references"), too_many), (message.contains("at depth"), too_deep)];
+            Broken::with_texts(input, message, "a tree", source).explained_by(mistakes)
         }
         error => kit_error::unwind(error),
     })
@@ -86,47 +167,7 @@ pub(super) fn judge_references(input: &str, yours: &[u32], most: usize, says: &'
     }
     let broken =
         Broken::with_texts(input, describe(yours.len()), format!("at most {}", describe(most)), "counted");
-    Err(broken.looks_like(Some(says)))
-}
-
-/// The first fault in the lists of leaves. Each leaf comes with its cell.
-pub(super) fn lists_fault(bounds: &Aabb, boxes: &[Aabb], leaves: &[(u32, Cell, Vec<u32>)]) -> Option<Fault> {
-    if let Some((yours, expected)) = bounds_fault(bounds, boxes) {
-        return Some((yours, expected, "bounds must contain all boxes that are not empty"));
-    }
-    for (node, cell, listed) in leaves {
-        for (id, one) in boxes.iter().enumerate() {
-            let times = listed.iter().filter(|&&other| other == id as u32).count();
-            let describe = |times: usize| format!("primitive {id} is listed {times} times in leaf {node}");
-            if one.is_empty() && times > 0 {
-                return Some((
-                    describe(times),
-                    describe(0),
-                    "you list an empty box or one with NaN: leave it out",
-                ));
-            }
-            if !one.is_empty() && cell.touches(one) && times != 1 {
-                let touches = (0..3).any(|axis| {
-                    let [low, high] = [one.min[axis], one.max[axis]].map(f64::from);
-                    high == cell.min[axis] || low == cell.max[axis]
-                });
-                let diagnosis = match times {
-                    0 if touches => "trap A5: a primitive that touches a plane belongs to both sides",
-                    0 => "a primitive that overlaps several cells belongs to all of them",
-                    _ => "you list a primitive twice in one leaf",
-                };
-                return Some((describe(times), describe(1), diagnosis));
-            }
-            if times > 0 && is_far_off(bounds, &cell.to_box(), one) {
-                return Some((
-                    describe(times),
-                    describe(0),
-                    "you list a primitive in a leaf that it does not overlap",
-                ));
-            }
-        }
-    }
-    None
+    Err(broken.explained_by([(yours.len() > most, says)]))
 }
 
 /// Long thin boxes, each along an axis through the whole cube, crossing each other: at each level of a tree most of them

@@ -1,17 +1,17 @@
 //! The laws of the octree: which primitives each leaf lists, and two searches.
 
-use super::lists::{Fault, ended, infinite, judge_references, judge_tree, lists_fault, some_boxes};
+use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
 use super::parts;
 use super::scenes::{Scene, Thing, sphere};
-use super::searches::{Searcher, agrees, judge, judge_visits, queries, spheres_and_rays};
+use super::searches::{Asked, Case, Searcher, agrees, judge_visits, queries, spheres_and_rays};
 use super::structures::octree;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
 use glam::{Vec3, vec3};
 use proptest::prelude::Strategy;
 use raykata::aabb::Aabb;
-use raykata::kit::{CellsAnswer, CellsQuery, OctreeQuery, kit_error};
+use raykata::kit::{CellsAnswer, OctreeQuery, kit_error};
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
@@ -39,9 +39,22 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
     });
     if deepest > query.max_depth {
         let expected = format!("at most {}", query.max_depth);
-        return Some((format!("a node at depth {deepest}"), expected, "the tree is deeper than max_depth"));
+        return Some(fact(
+            format!("a node at depth {deepest}"),
+            expected,
+            "the tree is deeper than max_depth",
+        ));
     }
-    lists_fault(&yours.bounds, &query.bounds, &leaves)
+    let sides = yours.bounds.max - yours.bounds.min;
+    // Rounding changes a side by far less than a hundredth.
+    if sides.min_element() < 0.99 * sides.max_element() {
+        return Some(fact(
+            format!("bounds with the sides {sides}"),
+            "a cube".into(),
+            "the root cell must be a cube",
+        ));
+    }
+    listing_fault("leaf", &yours.bounds, &query.bounds, &leaves)
 }
 
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
@@ -58,7 +71,10 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     let even = (0..64).map(|i| Aabb::new(at(i), at(i) + 0.5));
     let dense =
         (0..8).map(|i| Aabb::new(Vec3::splat(6.0) + 0.125 * at(i), Vec3::splat(6.02) + 0.125 * at(i)));
-    let query = OctreeQuery { bounds: even.chain(dense).collect(), leaf_size: 2, max_depth: 8 };
+    // A second box in another cell, which then holds exactly leaf_size boxes.
+    let pair = [Aabb::new(at(5) + 0.125, at(5) + 0.25)];
+    let bounds = even.chain(dense).chain(pair).collect();
+    let query = OctreeQuery { bounds, leaf_size: 2, max_depth: 8 };
     let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
     judge_octree(&query, &yours)?;
     let most = yours.nodes.iter().map(|node| match node {
@@ -71,10 +87,10 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
     if most <= 2 && depth > 3 && needless.is_none() {
         return Ok(());
     }
-    let diagnosis = match needless {
-        Some(_) => "you divide cells that hold leaf_size or fewer primitives",
-        None => "you do not divide all cells with more than leaf_size primitives",
-    };
+    let mistakes = [
+        (needless.is_some(), "you divide cells that hold leaf_size or fewer primitives"),
+        (most > 2, "you do not divide all cells with more than leaf_size primitives"),
+    ];
     let yours = format!("up to {most} primitives per leaf, {depth} levels, {n} nodes");
     let expected =
         "at most 2 per leaf, more levels where boxes are dense, and no division of cells with 2 or fewer";
@@ -84,7 +100,7 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
         expected,
         "counted",
     )
-    .looks_like(Some(diagnosis)))
+    .explained_by(mistakes))
 }
 
 fn is_inner(octree: &Octree, node: u32) -> bool {
@@ -127,7 +143,7 @@ pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckR
 }
 
 /// Rays along the edges and through the corners at which octants meet, with zeros of both signs in their directions.
-fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> CheckResult {
+fn along_edges(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     // Leave out the sphere in the middle, where octants meet.
     let things: Vec<Thing> = (0..27)
         .filter(|i| *i != 13)
@@ -143,51 +159,64 @@ fn along_edges(trial: &Trial<'_>, searcher: Searcher, says: &'static str) -> Che
             [through(0.0), through(2.0), through(4.0), Ray::new(Vec3::splat(4.0), direction)]
         })
         .collect();
-    let answers = match kit_error::catch(|| searcher.ask(trial.kit, &scene, &rays)) {
-        Ok(answers) => answers,
+    let name = "26 spheres, rays along axes and diagonals".to_owned();
+    let judge = || searcher.judge(trial.kit, &[Case::new(&name, &scene, &rays)]);
+    match kit_error::catch(judge) {
+        Ok(outcomes) => all_hold(outcomes),
         Err(kit_error::KitError::Panicked { message, .. }) => {
-            let input = format!("{} over 26 spheres, rays along axes and diagonals", searcher.name());
-            return Err(Broken::with_texts(input, message, "an answer", "brute force").looks_like(Some(says)));
+            let endless = message.contains("does not end");
+            let input = format!("{} over {name}", searcher.name());
+            Err(Broken::with_texts(input, message, "an answer", "brute force").explained_by([(
+                endless,
+                "your search goes on without an end: a step leads back into the cell that the ray has left, or stays in it",
+            )]))
         }
         Err(error) => kit_error::unwind(error),
-    };
-    for (ray, yours) in rays.iter().zip(&answers) {
-        judge(&format!("{} over 26 spheres", searcher.name()), ray, &scene.hits(ray), yours)
-            .map_err(|broken| broken.looks_like(Some(says)))?;
     }
-    Ok(())
 }
 
 pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
-    let says = "a point on a face belongs to the cell that the ray is about to enter: choose it by the sign of d, and set the point exactly on the face";
-    along_edges(trial, Searcher::OctreeByCells, says)
+    along_edges(trial, Searcher::OctreeByCells)
 }
 
 pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> CheckResult {
-    let says = "trap A9: octants that the ray enters at the same t need an order, too, and a ray in the plane of a face gives 0 / 0";
-    along_edges(trial, Searcher::Octree, says)
+    along_edges(trial, Searcher::Octree)
 }
 
 /// Trap A9: a large sphere that overlaps the first octant is hit in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResult {
-    let says = "trap A9: the first hit lies beyond its octant, and the next octant has a nearer one: go on until the next octant begins behind the best hit";
-    let large = Thing::Sphere(Sphere { center: vec3(7.0, 4.0, 1.0), radius: 3.75 });
-    let scene = Scene::new(vec![large, sphere(4.5, 1.0, 1.0, 0.25)]);
-    let ray = Ray::new(vec3(-1.0, 1.0, 1.0), Vec3::X);
-    let mut cells = Octree::new(Aabb::new(Vec3::ZERO, Vec3::splat(8.0)));
-    let first = cells.divide(0, 1, 1);
-    cells.set_leaf(first, &[0]);
-    cells.set_leaf(first + 1, &[0, 1]);
-    let query = CellsQuery { cells, ray, hits: scene.hits(&ray) };
-    let queries = std::slice::from_ref(&query);
-    for (name, yours) in [
-        ("from the root down", trial.kit.octree_search(queries)),
-        ("cell by cell", trial.kit.octree_by_cells(queries)),
-    ] {
-        let what = format!("octree, {name}; primitive 0 overlaps two octants along x");
-        judge(&what, &ray, &query.hits, &yours[0]).map_err(|broken| broken.looks_like(Some(says)))?;
+    // The same along each axis, in both directions.
+    let (mut down, mut along) = (Asked::new(), Asked::new());
+    for axis in 0..3 {
+        for flipped in [false, true] {
+            let turn = |v: Vec3| {
+                let mut turned = Vec3::ZERO;
+                let v = if flipped { vec3(8.0 - v.x, v.y, v.z) } else { v };
+                (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
+                turned
+            };
+            let place = |center: Vec3, radius: f32| Thing::Sphere(Sphere { center: turn(center), radius });
+            let scene = Scene::new(vec![place(vec3(7.0, 4.0, 1.0), 3.75), place(vec3(4.5, 1.0, 1.0), 0.25)]);
+            let (from, to) = (turn(vec3(-1.0, 1.0, 1.0)), turn(vec3(0.0, 1.0, 1.0)));
+            let ray = Ray::new(from, to - from);
+            let mut cells = Octree::new(Aabb::new(Vec3::ZERO, Vec3::splat(8.0)));
+            let first = cells.divide(0, 1, 1);
+            let octant = 1 << axis;
+            let (near, far) = if flipped { (first + octant, first) } else { (first, first + octant) };
+            cells.set_leaf(near, &[0]);
+            cells.set_leaf(far, &[0, 1]);
+            let what = |name: &str| format!("octree, {name}; primitive 0 overlaps two octants");
+            down.ask(what("from the root down"), &cells, &scene, ray);
+            along.ask(what("cell by cell"), &cells, &scene, ray);
+            let mut control = Octree::new(cells.bounds);
+            control.divide(0, 1, 1);
+            control.set_leaf(near, &[0, 1, 2]);
+            down.control("octree, from the root down", control.clone(), ray, (1.0, 5.0));
+            along.control("octree, cell by cell", control, ray, (1.0, 5.0));
+        }
     }
-    Ok(())
+    down.judge(|queries| trial.kit.octree_search(queries))?;
+    along.judge(|queries| trial.kit.octree_by_cells(queries))
 }
 
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
@@ -195,17 +224,15 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
     let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
     let cells = octree(&scene.boxes(), 4);
     let queries = queries(&cells, &scene, &rays);
-    let by_cells = trial.kit.octree_by_cells(&queries);
-    for (query, (down, along)) in
-        queries.iter().zip(trial.kit.octree_search(&queries).into_iter().zip(by_cells))
-    {
+    all_hold(compare(&queries, trial.kit.octree_search(&queries), |query, yours| {
         let parts = parts::of_octree(&cells, &query.ray);
-        judge_visits("octree over 128 spheres, from the root down", &query.ray, &parts, &down, true)?;
+        judge_visits("octree over 128 spheres, from the root down", query, &parts, &yours)
+    }))?;
+    all_hold(compare(&queries, trial.kit.octree_by_cells(&queries), |query, yours| {
         // Judge the visits to leaves only: each way down to a leaf visits the nodes above it again.
+        let parts = parts::of_octree(&cells, &query.ray);
         let leaves = parts::of_leaves(&cells, &parts);
-        let visits = along.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
-        let along = CellsAnswer { visits, ..along };
-        judge_visits("octree over 128 spheres, cell by cell", &query.ray, &parts, &along, true)?;
-    }
-    Ok(())
+        let visits = yours.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
+        judge_visits("octree over 128 spheres, cell by cell", query, &parts, &CellsAnswer { visits, ..yours })
+    }))
 }

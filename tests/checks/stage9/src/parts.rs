@@ -1,10 +1,11 @@
 //! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
+use super::search_mistakes;
 use super::searches::Parts;
 use checks::double::box_interval;
 use glam::uvec3;
 use raykata::aabb::Aabb;
-use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree, OctreeNode};
+use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode};
 use raykata::ray::Ray;
 
 /// The interval of a ray in a cell that is widened a little, so that cells that the ray only touches are included.
@@ -17,6 +18,143 @@ fn part_of(ray: &Ray, cell: &Cell, room: f64) -> Option<(f64, f64)> {
     let (near, far) = box_interval(ray, &wide);
     let (near, far) = (near.max(f64::from(ray.t_min)), far.min(f64::from(ray.t_max)));
     (near <= far).then_some((near, far))
+}
+
+/// The interval of a ray in a closed cell, in double precision and without room.
+pub(super) fn exactly(ray: &Ray, cell: &Cell) -> Option<(f64, f64)> {
+    let (mut t, mut t_end) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    for axis in 0..3 {
+        let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+        let (low, high) = (cell.min[axis] - o, cell.max[axis] - o);
+        if d == 0.0 {
+            (t, t_end) = if low <= 0.0 && 0.0 <= high { (t, t_end) } else { (f64::INFINITY, t_end) };
+        } else {
+            (t, t_end) = (t.max((low / d).min(high / d)), t_end.min((low / d).max(high / d)));
+        }
+    }
+    (t <= t_end && t < f64::INFINITY).then_some((t, t_end))
+}
+
+/// A cell that a ray enters: the interval of the ray, and the primitives that the cell lists.
+pub(super) struct Leaf {
+    pub enter: f64,
+    pub exit: f64,
+    pub ids: Vec<u32>,
+}
+
+/// The leaves in the order in which the ray enters them.
+fn in_order(mut leaves: Vec<Leaf>) -> Vec<Leaf> {
+    leaves.sort_by(|p, q| {
+        (p.enter, p.exit).partial_cmp(&(q.enter, q.exit)).unwrap_or(std::cmp::Ordering::Equal)
+    });
+    leaves
+}
+
+/// The cells of a structure as a ray goes through them, and the mistakes that are possible there.
+pub(super) trait Structure {
+    /// The leaves that the ray enters, in their order.
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf>;
+
+    /// The primitives that a cell or a node lists; none for an inner node.
+    fn listed(&self, node: u32) -> &[u32];
+
+    /// The known mistakes of this structure's searches, each with whether it finds this hit.
+    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)>;
+}
+
+impl Structure for Grid {
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
+        let leaf = |(number, cell): (u32, Cell)| {
+            let (enter, exit) = exactly(ray, &cell)?;
+            Some(Leaf { enter, exit, ids: self.primitives(number).to_vec() })
+        };
+        in_order(numbered(self).filter_map(leaf).collect())
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        self.primitives(node)
+    }
+
+    fn mistakes(&self, _: &Ray, _: &[f32], _: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
+        Vec::new()
+    }
+}
+
+impl Structure for Octree {
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.walk(usize::MAX, |node, cell, _| {
+            if let OctreeNode::Leaf { first, count } = self.nodes[node as usize]
+                && let Some((enter, exit)) = exactly(ray, &cell)
+            {
+                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
+            }
+        });
+        in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            OctreeNode::Leaf { first, count } => self.primitives(first, count),
+            OctreeNode::Inner { .. } => &[],
+        }
+    }
+
+    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
+        search_mistakes::of_octree(self, ray, hits, found)
+    }
+}
+
+impl Structure for KdTree {
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.walk(usize::MAX, |node, cell, _| {
+            if let KdNode::Leaf { first, count } = self.nodes[node as usize]
+                && let Some((enter, exit)) = exactly(ray, &cell)
+            {
+                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
+            }
+        });
+        in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            KdNode::Leaf { first, count } => self.primitives(first, count),
+            KdNode::Inner { .. } => &[],
+        }
+    }
+
+    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
+        search_mistakes::of_kd_tree(self, ray, hits, found)
+    }
+}
+
+impl Structure for Bsp {
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        self.walk(|node, above, _| {
+            let BspNode::Leaf { first, count } = self.nodes[node as usize] else { return };
+            let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+            let (enter, exit) =
+                above.iter().fold(range, |part, (plane, side)| on_side(ray, plane, *side, part, 0.0));
+            if enter <= exit {
+                leaves.push(Leaf { enter, exit, ids: self.primitives(first, count).to_vec() });
+            }
+        });
+        in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            BspNode::Leaf { first, count } => self.primitives(first, count),
+            BspNode::Inner { .. } => &[],
+        }
+    }
+
+    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
+        search_mistakes::of_bsp(self, ray, hits, found)
+    }
 }
 
 fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, Cell)> {
@@ -68,7 +206,7 @@ pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray) -> Parts {
     bsp.walk(|node, above, _| {
         let mut part = (f64::from(ray.t_min), f64::from(ray.t_max));
         for (plane, side) in above {
-            part = on_side(ray, plane, *side, part);
+            part = on_side(ray, plane, *side, part, (-16f64).exp2());
         }
         if part.0 <= part.1 {
             parts.push((node, part.0, part.1));
@@ -77,10 +215,11 @@ pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray) -> Parts {
     parts
 }
 
-fn on_side(ray: &Ray, plane: &CutPlane, side: f64, (t, t_end): (f64, f64)) -> (f64, f64) {
+/// The part of an interval on one side of a plane, with `relative` room for rounding.
+fn on_side(ray: &Ray, plane: &CutPlane, side: f64, (t, t_end): (f64, f64), relative: f64) -> (f64, f64) {
     let (height, rate) =
         (side * plane.distance(ray.origin), side * plane.normal.dot(ray.direction.as_dvec3()));
-    let room = (-16f64).exp2() * (1.0 + height.abs());
+    let room = relative * (1.0 + height.abs());
     match rate {
         0.0 if height >= -room => (t, t_end),
         0.0 => (f64::INFINITY, f64::NEG_INFINITY),

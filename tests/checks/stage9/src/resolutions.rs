@@ -1,10 +1,10 @@
 //! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::slabs_interval;
 use checks::generate::point;
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::{Arguments, Paste};
 use glam::{UVec3, Vec3, uvec3, vec3};
 use proptest::prelude::*;
@@ -17,8 +17,7 @@ pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> C
         bounds: Aabb::new(p.round(), p.round() + size.abs().round()),
     });
     let empty = SlabQuery { ray: raykata::ray::Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY };
-    judge_spans(trial, &[empty]).into_iter().collect::<CheckResult>()?;
-    trial.forall(1500, inputs, |queries| judge_spans(trial, queries))
+    trial.forall_and(&[empty], 1500, inputs, |queries| judge_spans(trial, queries))
 }
 
 fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
@@ -41,22 +40,54 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
         if fits {
             return Ok(());
         }
-        let diagnosis = match yours {
-            Some((t, t_end)) if t.is_nan() || t_end.is_nan() => {
-                "you return NaN: 0 / 0 for a ray in the plane of a face"
+        // The interval without the axes along which the ray does not move.
+        let mut open = query.bounds;
+        for axis in 0..3 {
+            if query.ray.direction[axis] == 0.0 {
+                (open.min[axis], open.max[axis]) = (f32::NEG_INFINITY, f32::INFINITY);
             }
-            Some(_) if query.bounds.is_empty() => "you return a span for an empty cell",
-            Some((t, t_end)) if t < range.0 - room(range.0) || t_end > range.1 + room(range.1) => {
-                "you ignore the range of the ray"
-            }
-            _ if query.ray.direction.to_array().contains(&0.0) => {
-                "a ray along a face is between the two planes for every t or for no t: compare its origin with them; the cell is closed"
-            }
-            None if near == far => "you return None for a ray that touches the cell: the cell is closed",
-            _ => "",
-        };
+        }
+        let (near_open, far_open) = slabs_interval(&query.ray, &open);
+        let unasked = yours.is_some_and(|(t, t_end)| {
+            close(t, near_open.max(range.0)) && close(t_end, far_open.min(range.1))
+        });
+        let along_a_face = (0..3).any(|axis| {
+            let (at, bounds) = (query.ray.origin[axis], query.bounds);
+            query.ray.direction[axis] == 0.0 && (at == bounds.min[axis] || at == bounds.max[axis])
+        });
+        let parallel = query.ray.direction.to_array().contains(&0.0);
+        let is_none = yours.is_none();
+        let mistakes = [
+            (
+                yours.is_some_and(|(t, t_end)| t.is_nan() || t_end.is_nan()),
+                "you return NaN: 0 / 0 for a ray in the plane of a face",
+            ),
+            (!is_none && query.bounds.is_empty(), "you return a span for an empty cell"),
+            (
+                yours
+                    .is_some_and(|(t, t_end)| t < range.0 - room(range.0) || t_end > range.1 + room(range.1)),
+                "you ignore the range of the ray",
+            ),
+            (
+                parallel && unasked,
+                "a ray along a face is between the two planes for every t or for no t: you do not compare its origin with them",
+            ),
+            (
+                is_none && along_a_face,
+                "you return None for a ray along a face, in its plane: the cell is closed",
+            ),
+            (
+                is_none && parallel,
+                "you return None for a ray along a face: between the two planes it is inside for every t",
+            ),
+            (
+                parallel,
+                "your answer is wrong for a ray along a face: its direction is 0 there, so compare its origin with both planes",
+            ),
+            (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
+        ];
         let expected = (expected.0 <= expected.1).then_some(expected);
-        Err(Broken::new(query.call("span"), yours, expected, "double precision").looks_like(known(diagnosis)))
+        Err(Broken::new(query.call("span"), yours, expected, "double precision").explained_by(mistakes))
     })
 }
 
@@ -83,19 +114,27 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
             if cubes && 0.5 * wanted <= n && n <= 2.0 * wanted {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if !cubes && yours.x == yours.y && yours.y == yours.z => {
-                    "you make as many cells on every axis: a longer side needs more"
-                }
-                () if !cubes => "your cells are not nearly cubes",
-                () if (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6 && query.density != 1.0 => {
-                    "you leave out the density"
-                }
-                () if n < wanted => {
-                    "you make too few cells: the product over the three axes must be about density · n"
-                }
-                () => "you make too many cells: the product over the three axes must be about density · n",
-            };
+            let mistakes = [
+                (
+                    !cubes && yours.x == yours.y && yours.y == yours.z,
+                    "you make as many cells on every axis: a longer side needs more",
+                ),
+                (
+                    cubes
+                        && (n * f64::from(query.density) / wanted - 1.0).abs() < 0.6
+                        && query.density != 1.0,
+                    "you leave out the density",
+                ),
+                (!cubes, "your cells are not nearly cubes"),
+                (
+                    n < wanted,
+                    "you make too few cells: the product over the three axes must be about density · n",
+                ),
+                (
+                    n > wanted,
+                    "you make too many cells: the product over the three axes must be about density · n",
+                ),
+            ];
             let expected = format!("about {wanted} cells that are nearly cubes");
             Err(Broken::with_texts(
                 describe(query),
@@ -103,7 +142,7 @@ pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
                 expected,
                 "the definition",
             )
-            .looks_like(Some(diagnosis)))
+            .explained_by(mistakes))
         })
     })
 }
@@ -126,30 +165,30 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Chec
         (query(Vec3::splat(1e30), 8, 1.0), UVec3::splat(2)),
         (query(vec3(1e6, 1.0, 1.0), 1000, 1.0), uvec3(256, 1, 1)),
     ];
-    for (query, expected) in cases {
-        let yours = trial.kit.grid_resolution(std::slice::from_ref(&query))[0];
+    let queries = cases.map(|(query, _)| query);
+    let judge = |(query, expected): &(ResolutionQuery, UVec3), yours: UVec3| {
         // Accept rounding up or down. A flat axis has exactly one cell, and the limit holds.
         let fits = (0..3).all(|axis| match expected[axis] {
             1 => yours[axis] == 1,
             n => yours[axis].abs_diff(n) <= 1.max(n / 8) && (1..=256).contains(&yours[axis]),
         });
-        if !fits {
-            let diagnosis = match () {
-                () if yours.min_element() == 0 => "you return an axis without a cell: at least 1",
-                () if yours.max_element() > 256 => {
-                    "you return more cells along an axis than MOST_CELLS_ALONG"
-                }
-                () if query.bounds.is_empty() || query.n_primitives == 0 => {
-                    "an empty box, or one without primitives, gets one cell"
-                }
-                () => {
-                    "a flat box has no volume: use only the thick axes, whose product is an area or a length"
-                }
-            };
-            let describe = describe(&query);
-            let broken = Broken::new(describe, yours, expected, "by hand");
-            return Err(broken.looks_like(Some(diagnosis)));
+        if fits {
+            return Ok(());
         }
-    }
-    Ok(())
+        let size = query.bounds.max - query.bounds.min;
+        let flat = size.min_element() < 1e-4 * size.max_element();
+        Err(Broken::new(describe(query), yours, expected, "by hand").explained_by([
+            (yours.max_element() > 256, "you return more cells along an axis than MOST_CELLS_ALONG"),
+            (
+                flat && yours.max_element() <= 256,
+                "a flat box has no volume: use only the thick axes, whose product is an area or a length",
+            ),
+            (
+                query.bounds.is_empty() || query.n_primitives == 0,
+                "an empty box, or one without primitives, gets one cell",
+            ),
+            (yours.min_element() == 0, "you return an axis without a cell: at least 1"),
+        ]))
+    };
+    all_hold(compare(&cases, trial.kit.grid_resolution(&queries), judge))
 }

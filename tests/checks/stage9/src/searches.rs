@@ -1,10 +1,11 @@
 //! The laws that the five searches of cells share.
 
+use super::parts::Structure;
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
+use super::search_mistakes::{FIRST_CELL_ONLY, facts, in_cells};
 use super::structures;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::paste::Paste;
 use glam::{UVec3, Vec3, vec3};
 use raykata::aabb::Aabb;
@@ -35,32 +36,146 @@ impl Searcher {
         }
     }
 
-    /// Searches for all rays at once, in a structure over `scene` that the checks have built.
-    pub(super) fn ask(self, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
-        let depth = match self {
+    /// The depth of a structure over a scene.
+    fn depth(self) -> usize {
+        match self {
             Searcher::Grid | Searcher::OctreeByCells | Searcher::Octree => 3,
             Searcher::KdTree => 7,
             Searcher::Bsp => 6,
-        };
-        self.ask_to(depth, kit, scene, rays)
-    }
-
-    /// The same in a tree that is divided to this depth; 0 is one leaf.
-    fn ask_to(self, depth: usize, kit: &dyn Kit, scene: &Scene, rays: &[Ray]) -> Vec<CellsAnswer> {
-        let boxes = scene.boxes();
-        match self {
-            Searcher::Grid => {
-                let bounds = structures::around_loosely(&boxes);
-                kit.grid_search(&grid_queries(scene, rays, bounds, UVec3::new(5, 4, 3)))
-            }
-            Searcher::OctreeByCells => {
-                kit.octree_by_cells(&queries(&structures::octree(&boxes, depth), scene, rays))
-            }
-            Searcher::Octree => kit.octree_search(&queries(&structures::octree(&boxes, depth), scene, rays)),
-            Searcher::KdTree => kit.kd_search(&queries(&structures::kd_tree(&boxes, depth), scene, rays)),
-            Searcher::Bsp => kit.bsp_search(&queries(&structures::bsp(&scene.hulls(), depth), scene, rays)),
         }
     }
+
+    /// Searches for the rays of each case, in a structure over its scene that the checks have built, and judges the answers.
+    pub(super) fn judge(self, kit: &dyn Kit, cases: &[Case<'_>]) -> Vec<CheckResult> {
+        let octrees = || Asked::over(self, cases, |scene, depth| structures::octree(&scene.boxes(), depth));
+        match self {
+            Searcher::Grid => {
+                let mut asked = Asked::new();
+                for Case { name, scene, rays, one_leaf } in cases {
+                    let bounds = structures::around_loosely(&scene.boxes());
+                    let resolution = if *one_leaf { UVec3::ONE } else { UVec3::new(5, 4, 3) };
+                    for query in grid_queries(scene, rays, bounds, resolution) {
+                        asked.add(format!("grid over {name}"), query);
+                    }
+                }
+                asked.judge_each(|queries| kit.grid_search(queries))
+            }
+            Searcher::OctreeByCells => octrees().judge_each(|queries| kit.octree_by_cells(queries)),
+            Searcher::Octree => octrees().judge_each(|queries| kit.octree_search(queries)),
+            Searcher::KdTree => {
+                Asked::over(self, cases, |scene, depth| structures::kd_tree(&scene.boxes(), depth))
+                    .judge_each(|queries| kit.kd_search(queries))
+            }
+            Searcher::Bsp => Asked::over(self, cases, |scene, depth| structures::bsp(&scene.hulls(), depth))
+                .judge_each(|queries| kit.bsp_search(queries)),
+        }
+    }
+}
+
+/// Rays at a scene, in a structure that is divided, or in one with one leaf.
+pub(super) struct Case<'a> {
+    name: String,
+    scene: &'a Scene,
+    rays: &'a [Ray],
+    one_leaf: bool,
+}
+
+impl<'a> Case<'a> {
+    pub(super) fn new(name: impl Into<String>, scene: &'a Scene, rays: &'a [Ray]) -> Self {
+        Case { name: name.into(), scene, rays, one_leaf: false }
+    }
+}
+
+/// Queries to a search, each with the text for its message.
+pub(super) struct Asked<S> {
+    what: Vec<String>,
+    queries: Vec<CellsQuery<S>>,
+}
+
+impl<S: Structure + Clone> Asked<S> {
+    pub(super) fn new() -> Self {
+        Asked { what: Vec::new(), queries: Vec::new() }
+    }
+
+    /// The rays of each case in the structure over its scene.
+    fn over(searcher: Searcher, cases: &[Case<'_>], build: impl Fn(&Scene, usize) -> S) -> Self {
+        let mut asked = Asked::new();
+        for Case { name, scene, rays, one_leaf } in cases {
+            let depth = if *one_leaf { 0 } else { searcher.depth() };
+            for query in queries(&build(scene, depth), scene, rays) {
+                asked.add(format!("{} over {name}", searcher.name()), query);
+            }
+        }
+        asked
+    }
+
+    /// A ray in a structure whose first leaf on the way lists 0, 1 and 2, of which 1 is nearest. All three are hit between
+    /// these two `t`, in this leaf. A right answer here refutes the mistakes in testing the list of a leaf.
+    pub(super) fn control(&mut self, what: &str, cells: S, ray: Ray, (t, t_end): (f32, f32)) {
+        let hits = [0.75, 0.25, 0.875].map(|share| t + share * (t_end - t)).to_vec();
+        self.add(format!("{what}; the first leaf lists three primitives"), CellsQuery { cells, ray, hits });
+    }
+
+    pub(super) fn add(&mut self, what: impl Into<String>, query: CellsQuery<S>) {
+        self.what.push(what.into());
+        self.queries.push(query);
+    }
+
+    /// Asks for the hit of one ray with a scene.
+    pub(super) fn ask(&mut self, what: impl Into<String>, cells: &S, scene: &Scene, ray: Ray) {
+        self.add(what, CellsQuery { cells: cells.clone(), ray, hits: scene.hits(&ray) });
+    }
+
+    /// Judges the answers of a search. A mistake is named only if it explains all wrong answers.
+    pub(super) fn judge(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> CheckResult {
+        all_hold(self.judge_each(search))
+    }
+
+    fn judge_each(&self, search: impl Fn(&[CellsQuery<S>]) -> Vec<CellsAnswer>) -> Vec<CheckResult> {
+        let answers = search(&self.queries);
+        let found = |answer: &CellsAnswer| answer.hit.map(|hit| (hit.primitive, hit.t));
+        let is_right =
+            |query: &CellsQuery<S>, answer: &CellsAnswer| found(answer) == closest(&query.hits, &query.ray);
+        let pairs = || self.queries.iter().zip(&answers);
+        if pairs().all(|(query, answer)| is_right(query, answer)) {
+            return vec![Ok(()); answers.len()];
+        }
+        // A wrong search that gives another answer than a right one of the student is not the student's.
+        let formulas = |query: &CellsQuery<S>, answer: &CellsAnswer| {
+            let mut all = in_cells(&query.cells.leaves(&query.ray), &query.ray, &query.hits, found(answer));
+            // A search that visits two leaves searches more than the first cell.
+            let n_leaves = answer.visits.iter().filter(|node| !query.cells.listed(**node).is_empty()).count();
+            all.iter_mut().for_each(|one| one.0 &= n_leaves < 2 || one.1 != FIRST_CELL_ONLY);
+            all.extend(query.cells.mistakes(&query.ray, &query.hits, found(answer)));
+            all
+        };
+        let mut possible: Vec<bool> = Vec::new();
+        for (query, answer) in pairs().filter(|(query, answer)| is_right(query, answer)).take(200) {
+            let given = formulas(query, answer);
+            possible.resize(given.len(), true);
+            possible.iter_mut().zip(&given).for_each(|(possible, (gives, _))| *possible &= gives);
+        }
+        let judge = |((query, answer), what): ((&CellsQuery<S>, &CellsAnswer), &String)| {
+            if is_right(query, answer) {
+                return Ok(());
+            }
+            let mut proven = formulas(query, answer);
+            proven.iter_mut().zip(&possible).for_each(|(mistake, possible)| mistake.0 &= possible);
+            let input = (&query.ray, &query.hits[..]);
+            let calls = (&answer.tests[..], &answer.visits[..]);
+            proven.extend(facts(found(answer), calls, input, |node| query.cells.listed(node)));
+            let expected = closest(&query.hits, &query.ray);
+            Err(Broken::new(describe(what, query), found(answer), expected, "brute force, (primitive, t)")
+                .explained_by(proven))
+        };
+        pairs().zip(&self.what).map(judge).collect()
+    }
+}
+
+fn describe<S>(what: &str, query: &CellsQuery<S>) -> String {
+    let hits = query.hits.iter().enumerate().filter(|(_, t)| t.is_finite()).take(8);
+    let hits: Vec<String> = hits.map(|(i, t)| format!("{i} at t = {t}")).collect();
+    format!("{what}\n{}\nhits: {}", query.ray.paste(), hits.join(", "))
 }
 
 /// One query per ray.
@@ -94,41 +209,6 @@ pub(super) fn spheres_and_rays(places: &[Vec3], step: usize, x: f32) -> (Scene, 
     (Scene::new(spheres.collect()), eyes.into_iter().flat_map(at).collect())
 }
 
-/// Compares the answer with that of brute force.
-pub(super) fn judge(what: &str, ray: &Ray, hits: &[f32], yours: &CellsAnswer) -> CheckResult {
-    let expected = closest(hits, ray);
-    let found = yours.hit.map(|hit| (hit.primitive, hit.t));
-    if found == expected {
-        return Ok(());
-    }
-    let tested = expected.is_some_and(|(primitive, _)| yours.tests.contains(&primitive));
-    let diagnosis = match (found, expected) {
-        (Some((_, t)), _) if !ray.contains(t) => "you return a hit outside the ray's range",
-        (Some((_, t)), Some((_, best))) if t == best => {
-            "of two hits at the same t the smaller primitive number wins"
-        }
-        (Some(_), Some(_)) if tested => {
-            "you keep the farther of two hits: keep the best hit so far, over all cells"
-        }
-        (Some(_), Some(_)) => "you stop before a cell with a nearer hit",
-        (None, Some(_)) if tested => "you find a hit and reject it: it counts wherever its cell ends",
-        (None, Some(_)) if yours.visits.is_empty() => {
-            "you visit no cell although the ray enters the structure's bounds"
-        }
-        (None, Some(_)) => "you leave out a cell that the ray passes through",
-        _ => "",
-    };
-    let hits: Vec<String> = hits
-        .iter()
-        .enumerate()
-        .filter(|(_, t)| t.is_finite())
-        .take(8)
-        .map(|(i, t)| format!("{i} at t = {t}"))
-        .collect();
-    let input = format!("{what}\n{}\nhits: {}", ray.paste(), hits.join(", "));
-    Err(Broken::new(input, found, expected, "brute force, (primitive, t)").looks_like(known(diagnosis)))
-}
-
 /// Compares a search with brute force, in random scenes and in degenerate ones.
 pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     // Three spheres in a row in one leaf, the nearest of them listed last; and a large sphere that overlaps many cells,
@@ -137,66 +217,78 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
     let large = Thing::Sphere(Sphere { center: vec3(9.0, 4.0, 0.0), radius: 4.25 });
     let small = (0..8).map(|i| sphere(7.0, 0.8 * (i % 4) as f32, (i / 4) as f32, 0.25));
     let through = Scene::new([large].into_iter().chain(small).collect());
-    let ray = Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X);
-    let in_a_row = searcher.ask_to(0, trial.kit, &row, &[ray]);
-    let passing = searcher.ask(trial.kit, &through, &[ray]);
-    for (name, scene, yours) in
-        [("three spheres in a row", row, in_a_row), ("a large sphere and eight small ones", through, passing)]
-    {
-        let [yours] = &yours[..] else { continue };
-        judge(&format!("{} over {name}", searcher.name()), &ray, &scene.hits(&ray), yours)?;
-    }
+    let rays = [Ray::new(vec3(-3.0, 0.0, 0.0), Vec3::X), Ray::new(vec3(9.0, 0.0, 0.0), Vec3::NEG_X)];
+    let in_a_row = Case { one_leaf: true, ..Case::new("three spheres in a row", &row, &rays) };
+    let passing = Case::new("a large sphere and eight small ones", &through, &rays[..1]);
+    // And rays from all directions at both scenes, which refute or confirm a mistake that one answer suggests.
+    let around = |at: Vec3| {
+        let look = move |forward: Vec3| Ray::new(at - 20.0 * forward, forward);
+        checks::nasty::directions().into_iter().map(look).collect::<Vec<Ray>>()
+    };
+    let (at_row, at_small) = (around(vec3(2.0, 0.1, 0.2)), around(vec3(7.0, 0.9, 0.4)));
+    let others =
+        [Case::new("three spheres in a row", &row, &at_row), Case::new("nine spheres", &through, &at_small)];
+    let cases: Vec<Case<'_>> = [in_a_row, passing].into_iter().chain(others).collect();
+    all_hold(searcher.judge(trial.kit, &cases))?;
     trial.forall(500, scenes(), |cases| {
-        let one = |(scene, ray): &(Scene, Ray)| {
-            let answer = searcher.ask(trial.kit, scene, std::slice::from_ref(ray)).remove(0);
-            let what = format!("{} over {} primitives", searcher.name(), scene.things.len());
-            judge(&what, ray, &scene.hits(ray), &answer)
-        };
-        cases.iter().map(one).collect()
+        let name = |scene: &Scene| format!("{} primitives", scene.things.len());
+        let case = |(scene, ray)| Case::new(name(scene), scene, std::slice::from_ref(ray));
+        searcher.judge(trial.kit, &cases.iter().map(|(scene, ray)| case((scene, ray))).collect::<Vec<_>>())
     })?;
-    for (name, scene, rays) in odd_scenes() {
-        let answers = searcher.ask(trial.kit, &scene, &rays);
-        for (ray, answer) in rays.iter().zip(&answers) {
-            judge(&format!("{} over {name}", searcher.name()), ray, &scene.hits(ray), answer)?;
-        }
-    }
-    Ok(())
+    let odd = odd_scenes();
+    odd.iter().try_for_each(|(name, scene, rays)| {
+        all_hold(searcher.judge(trial.kit, &[Case::new(*name, scene, rays)]))
+    })
 }
 
 /// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
 pub(super) type Parts = Vec<(u32, f64, f64)>;
 
-/// Judges the visits of a search: the ray must enter each visited node before its hit. `parts` are all nodes that the
-/// ray enters or touches.
-pub(super) fn judge_visits(
+/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit. `parts` are all
+/// nodes that the ray enters or touches.
+pub(super) fn judge_visits<S>(
     what: &str,
-    ray: &Ray,
+    query: &CellsQuery<S>,
     parts: &Parts,
     yours: &CellsAnswer,
-    fewest: bool,
 ) -> CheckResult {
+    let ray = &query.ray;
+    let input = || format!("{what}\n{}", ray.paste());
+    // A search that visits nothing is not a search.
+    if yours.hit.is_none() || yours.visits.is_empty() {
+        let found = yours.hit.map(|hit| (hit.primitive, hit.t));
+        let expected = format!("{:?} after at least one visit", closest(&query.hits, ray));
+        let yours = format!("{found:?} after {} visits", yours.visits.len());
+        return Err(
+            Broken::with_texts(input(), yours, expected, "brute force, (primitive, t)").explained_by([])
+        );
+    }
     let end = yours.hit.map_or(f64::INFINITY, |hit| f64::from(hit.t)).min(f64::from(ray.t_max));
     // Allow 2⁻¹⁴, which is far more than rounding errors and far less than a cell.
     let room = (-14f64).exp2();
-    let input = || format!("{what}\n{}", ray.paste());
-    for visit in &yours.visits {
-        let Some((_, enter, _)) = parts.iter().find(|(node, ..)| node == visit) else {
-            let broken =
-                Broken::with_texts(input(), format!("a visit to {visit}"), "none", "the ray misses it");
-            return Err(broken.looks_like(Some("you visit a cell that the ray does not enter")));
-        };
-        if *enter > end + room * end.abs() {
-            let yours = format!("a visit to {visit}, which begins at t = {enter:.4}");
-            let expected = format!("none beyond the hit at t = {end}");
-            let broken = Broken::with_texts(input(), yours, expected, "counted");
-            return Err(broken.looks_like(Some(
-                "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
-            )));
-        }
-        if fewest && yours.visits.iter().filter(|other| *other == visit).count() > 1 {
-            let broken = Broken::with_texts(input(), format!("{visit} is visited again"), "once", "counted");
-            return Err(broken.looks_like(Some("you visit a cell several times")));
-        }
-    }
-    Ok(())
+    let enter = |visit: u32| parts.iter().find(|(node, ..)| *node == visit).map(|(_, enter, _)| *enter);
+    let is_behind = |enter: f64| enter > end + room * end.abs();
+    let again = |visit: u32| yours.visits.iter().filter(|other| **other == visit).count() > 1;
+    let missed = yours.visits.iter().copied().find(|&visit| enter(visit).is_none());
+    let behind =
+        yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
+    let twice = yours.visits.iter().copied().find(|&visit| again(visit));
+    let (yours, expected, source) = match (missed, behind, twice) {
+        (Some(visit), ..) => (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it"),
+        (None, Some((visit, t)), _) => (
+            format!("a visit to {visit}, which begins at t = {t:.4}"),
+            format!("none beyond the hit at t = {end}"),
+            "counted",
+        ),
+        (None, None, Some(visit)) => (format!("{visit} is visited again"), "once".to_owned(), "counted"),
+        (None, None, None) => return Ok(()),
+    };
+    Err(Broken::with_texts(input(), yours, expected, source).explained_by([
+        (missed.is_some(), "you visit a cell that the ray does not enter"),
+        (
+            behind.is_some(),
+            "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
+        ),
+        (twice.is_some(), "you visit a cell several times"),
+    ]))
 }
