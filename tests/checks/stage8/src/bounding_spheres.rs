@@ -95,7 +95,7 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
     // Jung's theorem: if no two points are farther apart than `widest`, the smallest sphere around them has a
     // radius of √(3/8) · widest at most. Its diameter is at least `widest`; half of that is demanded here, because
     // another check judges whether all points are inside.
-    let most = 2.0 * (3.0f64 / 8.0).sqrt() * widest + 16.0 * U * reach(points);
+    let most = 2.0 * (3.0f64 / 8.0).sqrt() * widest + 16.0 * U * reach(points) + f64::from(f32::MIN_POSITIVE);
     let radius = f64::from(sphere.radius);
     if 0.25 * widest <= radius && radius <= most {
         return Ok(());
@@ -114,7 +114,7 @@ fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
     )
     .explained_by([
         (
-            is_large && center <= 16.0 * U * reach,
+            is_large && reach > 0.0 && center <= 16.0 * U * reach,
             "your sphere is too large, because its centre is the origin: use the centre of the points' box",
         ),
         (
@@ -228,12 +228,11 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
              earlier t",
         ),
         (
-            (length - 1.0).abs() > 0.01
-                && right.is_some_and(|right| right > ray.t_min && is(Some(length * f64::from(right)))),
+            (length - 1.0).abs() > 1e-6 && is(entered(ends.map(|ends| ends.map(|end| length * end)))),
             "your t has another unit, that of the world: it counts lengths of direction",
         ),
         (
-            is(entered(roots(&ray, &sphere, radius))),
+            is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),
             "you use the radius in place of its square: the distance from the centre is squared, too",
         ),
         (
@@ -241,14 +240,14 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
             "you return a t before t_min: a ray that starts inside the sphere enters it at t_min",
         ),
         (
-            starts_inside && is(ends.map(|ends| ends[1])),
+            starts_inside && is(ends.map(|ends| ends[1].min(t_max))),
             "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min",
         ),
         (
             starts_inside && yours.is_none(),
             "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min",
         ),
-        (is(ends.map(|ends| ends[1])), "your t is later than the entry, which is the nearer root"),
+        (is(ends.map(|ends| ends[1].min(t_max))), "your t is later than the entry, which is the nearer root"),
         (
             found && ends.is_some_and(|ends| ends[1] < t_min),
             "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min",
@@ -256,6 +255,10 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
         (
             found && ends.is_some_and(|ends| ends[0] > t_max),
             "you return an entry for a sphere that lies beyond t_max",
+        ),
+        (
+            is(entered(roots(&ray, &sphere, 4.0 * radius * radius))),
+            "your sphere is too large: you compare with twice the radius",
         ),
         (found && ends.is_none(), "you return an entry for a sphere that lies beside the ray"),
     ]

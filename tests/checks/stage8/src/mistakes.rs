@@ -78,6 +78,8 @@ pub(super) fn normals_of_cuboid(cuboid: &Cuboid, at: DVec3) -> WrongNormals {
 /// The real roots of `a t² + 2 b t + c`.
 fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
     let discriminant = b * b - a * c;
+    // A ray through an apex has a discriminant of 0, up to rounding errors.
+    let discriminant = if discriminant.abs() < 1e-12 * b * b { 0.0 } else { discriminant };
     match a == 0.0 {
         true if b == 0.0 => Vec::new(),
         true => vec![-c / (2.0 * b)],
@@ -142,7 +144,15 @@ pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> M
         (only(&[base], &side), "you leave out the end at `top`: a ray can enter or leave through it"),
         (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
         (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
-        (only(&[], &endless), "your cylinder has no ends: it goes on beyond `base` and `top`"),
+        (
+            yours.is_none() && endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)),
+            "you give up because the ray enters the infinite cylinder before t_min: it can still enter through an end, or \
+             leave",
+        ),
+        (
+            only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3)),
+            "your cylinder has no ends: it goes on beyond `base` and `top`",
+        ),
     ]
 }
 
@@ -163,7 +173,7 @@ pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>) -> Mistakes 
     let line = &AroundAxis::new(ray, solid.apex, solid.base);
     let (radius, height) = (f64::from(solid.radius), line.axis.length());
     let within = |slope: f64, low: f64, high: f64| {
-        line.cone(slope).into_iter().filter(move |t| (low..=high).contains(&line.height(*t)))
+        line.cone(slope).into_iter().filter(move |t| (low - 1e-9..=high + 1e-9).contains(&line.height(*t)))
     };
     let base = |radius: f64| Some(line.at_height(1.0)).filter(|t| line.distance(*t) <= radius);
     let slope = radius / height;

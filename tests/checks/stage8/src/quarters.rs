@@ -61,10 +61,16 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     if corners(&got) != corners(&expected) {
         let turned = unturned(&got) == unturned(&expected);
         return Err(match turned {
-            true => unlike(
+            true => Unlike::new(
                 "triangles with corners in the opposite order",
                 "corners in the order of the old triangle",
-                "you reverse the corners of some triangles: all four keep the order of the old triangle",
+                vec![
+                    (
+                        true,
+                        "you reverse the corners of some triangles: all four keep the order of the old triangle",
+                    ),
+                    (true, wiring),
+                ],
             ),
             false => wrong(),
         });

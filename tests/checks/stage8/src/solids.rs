@@ -180,9 +180,14 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
     // The length of the direction that the student's function received.
     let length = f64::from(scaled.speed) * ray.direction.as_dvec3().length();
     let counts_from = |factor: f64| {
-        exact.is_some_and(|exact| (factor - 1.0).abs() > 0.01 && near(factor * f64::from(exact)))
+        exact.is_some_and(|exact| (factor - 1.0).abs() > 1e-6 && near(factor * f64::from(exact)))
     };
     let is_far = !S::FLAT && last().is_some_and(near);
+    // The answer of a student who uses another range.
+    let is_range = |t_min, t_max| {
+        let wrong = solid.meet(&ray.with_range(t_min, t_max)).and_then(|meeting| meeting.t);
+        yours.is_some() == wrong.is_some() && wrong.is_none_or(|wrong| near(wrong.into()))
+    };
     let is_small = exact.is_some_and(|t| t > 0.0 && scaled.t_scale() * t < 0.01);
     vec![
         (
@@ -195,6 +200,14 @@ fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>
             (lost || is_far) && is_small,
             "you drop the hit by a fixed epsilon: t is small because direction is long or the solid small, not \
              because the ray starts there",
+        ),
+        (
+            ray.t_min != 0.0 && is_range(0.0, ray.t_max),
+            "you use 0 in place of t_min: a hit outside of the ray's range does not count, so test ray.contains(t)",
+        ),
+        (
+            ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY),
+            "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)",
         ),
         (
             lost && inside && !S::FLAT,

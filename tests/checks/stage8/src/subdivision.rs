@@ -347,11 +347,18 @@ impl<'a> Step<'a> {
             among.iter().all(|other| (weight(other) - weight(&among[0])).abs() <= NEAR_WEIGHT)
                 && !self.takes_of_others(index, &rest)
         };
+        // If all other vertices are neighbours, uneven weights are the only sign of positions from after the step.
+        let has_others = around.len() + 1 < self.mesh.positions.len();
+        let from_before = (
+            self.takes_of_others(index, &[&around[..], &[vertex]].concat())
+                || (!has_others && !border && !is_even(&around)),
+            FROM_BEFORE,
+        );
         let adds_up = (sum - 1.0).abs() <= NEAR_WEIGHT;
         let mistakes = vec![
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
-            (self.takes_of_others(index, &[&around[..], &[vertex]].concat()), FROM_BEFORE),
+            from_before,
             (border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))), BORDER),
             (
                 border && !own_only && is_even(&along),
@@ -385,18 +392,30 @@ impl<'a> Step<'a> {
         }
         let around: Vec<u32> = third.iter().copied().chain([p, q]).collect();
         let has = |vertex: usize, old: &u32| self.weights[vertex][*old as usize].abs() > NEAR_WEIGHT;
+        // Whether the ends have different weights.
+        let mixed = fresh.clone().any(|vertex| {
+            around.iter().all(|old| has(vertex, old))
+                && (self.weights[vertex][p as usize] - self.weights[vertex][q as usize]).abs() > NEAR_WEIGHT
+        });
         // A new vertex that depends on both ends, on the third corners, and on no other vertex.
         let of_these = fresh.clone().any(|vertex| {
             around.iter().all(|old| has(vertex, old)) && !self.takes_of_others(vertex, &around)
         });
         let mistakes = vec![
             (border && of_these, BORDER),
+            (!border && !mixed && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
             (
                 !border && fresh.clone().any(|vertex| self.takes(vertex, &ends)),
                 "you use the midpoint for an inner edge: there the two third corners have weights, too",
             ),
-            (fresh.all(|vertex| self.takes_of_others(vertex, &around)), FROM_BEFORE),
-            (!border && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
+            (
+                !border
+                    && (around.len() == self.mesh.positions.len()
+                        || fresh.any(|vertex| {
+                            has(vertex, &p) && has(vertex, &q) && self.takes_of_others(vertex, &around)
+                        })),
+                FROM_BEFORE,
+            ),
         ];
         Err(Unlike::new(
             format!("no new vertex for the edge {p} {q}"),
