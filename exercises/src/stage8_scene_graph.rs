@@ -67,8 +67,9 @@ pub fn bounds_to_world(to_world: &Affine3A, bounds: &Aabb) -> Aabb {
 
 /// Computes a sphere that contains all `points`, of which there is at least one.
 ///
-/// It need not be the smallest such sphere, but its radius must be at most twice as large. The sphere around the centre
-/// of the points' bounding box is small enough. No point may lie outside, also not by a rounding error.
+/// It need not be the smallest such sphere, but its radius must be at most twice as large, apart from a few rounding
+/// errors of the coordinates. The sphere around the centre of the points' bounding box is small enough. No point may lie
+/// outside, also not by a rounding error.
 ///
 /// Pitfall: a radius that is rounded to nearest is too small in half of all cases. Round it up.
 pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
@@ -77,7 +78,8 @@ pub fn bounding_sphere(points: &[Vec3]) -> Sphere {
 
 /// Computes the `t` at which `ray` enters the sphere: the slab test's counterpart for bounding spheres.
 ///
-/// The result lies in `t_min..=t_max` and counts lengths of the direction. It is `t_min` if the ray starts inside, and
+/// The result lies in `t_min..=t_max` and counts lengths of the direction, which may have any length but 0; the radius is
+/// above 0. The result is `t_min` if the ray starts inside, and
 /// `None` if the sphere lies beside the ray, behind it or beyond `t_max`. The surface belongs to the sphere. The result
 /// must not be later than the exact entry, and may be earlier by a few rounding errors.
 ///

@@ -10,7 +10,8 @@
 //! All functions have the same contract. `t` counts lengths of the direction, which may have any length but 0. A hit
 //! counts if [`Ray::contains`] accepts its `t`. From inside a solid the hit is the point where the ray leaves. The
 //! normal has unit length and points out of the solid; at edges, rims and tips each of the possible normals is right.
-//! The result is `None` for a ray or shape with NaN or infinite coordinates, and for a direction of 0.
+//! The result is `None` for a ray or shape with NaN or infinite coordinates, and for a direction of 0. Otherwise radii
+//! are above 0, axes and normals have any length but 0, and `min` is not above `max`: nothing else is asked.
 
 use glam::{DVec3, Vec3};
 use raykata::kit::SolidHit;

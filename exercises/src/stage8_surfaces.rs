@@ -22,6 +22,8 @@ pub fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3 {
 /// Computes one step of Loop subdivision, which replaces each triangle by four. The old vertices keep their numbers and
 /// move; after them comes one new vertex per edge, which the triangles of the edge share.
 ///
+/// Each edge belongs to one triangle (a border) or to two, and two borders meet at each vertex of a border.
+///
 /// - New vertex of an edge `p q` between two triangles with the third corners `r` and `s`: `3/8 (p + q) + 1/8 (r + s)`.
 /// - New vertex of a border edge, which has one triangle only: its midpoint `1/2 (p + q)`.
 /// - Old vertex `p` with `n` neighbours `pᵢ`: `(1 - n β) p + β Σ pᵢ` with `β = 3/16` for `n = 3` and `3 / (8 n)`

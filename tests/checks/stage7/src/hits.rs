@@ -2,7 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::judge::compare_formulas;
 use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{HitsQuery, MaterialHits, RayCounts};
@@ -184,8 +184,8 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
     let query = drawn();
     let yours = trial.kit.rays_of_hits(std::slice::from_ref(&query)).remove(0);
     if yours != DRAWN {
-        let mistake = MISTAKES.iter().find(|(counts, _)| *counts == yours).map(|(_, diagnosis)| *diagnosis);
-        return Err(broken(&query, yours, DRAWN, "counted by hand").looks_like(mistake));
+        let mistakes = MISTAKES.iter().map(|(counts, text)| (*counts == yours, *text));
+        return Err(broken(&query, yours, DRAWN, "counted by hand").explained_by(mistakes));
     }
     let singles = single_hits_and_places();
     let queries: Vec<HitsQuery> = singles.iter().map(|(query, _)| query.clone()).collect();
@@ -211,7 +211,8 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
             }
             match yours == sum {
                 true => Ok(()),
-                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")),
+                false => Err(broken(query, yours, sum, "the sum of your counts for single hits and samples")
+                    .explained_by([])),
             }
         };
         queries.iter().zip(&parts).zip(whole).map(judge).collect()
@@ -219,47 +220,82 @@ pub(super) fn rays_of_hits_are_exact(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> CheckResult {
-    // Powers of two, so that every quotient is exact.
-    let cases = [
-        (1.0, 0.5, 4),
-        (1.0, 0.25, 16),
-        (0.5, 0.5, 1),
-        (0.25, 1.0, 1),
-        (0.0, 0.5, 1),
-        (0.0, 0.0, 1),
-        (5.0, 2.0, 7),
-        (1.0, 1.0 / 1024.0, 1 << 20),
-        (1.0, 0.0, u32::MAX),
-        (1e30, 1e-30, u32::MAX),
+    // Eighths, so that every square of a quotient is exact or far from a whole number; and special numbers.
+    let chosen = [
+        (1.0, 0.5),
+        (1.0, 0.25),
+        (0.5, 0.5),
+        (0.25, 1.0),
+        (0.0, 0.5),
+        (0.0, 0.0),
+        (5.0, 2.0),
+        (1.0, 1.0 / 1024.0),
+        (1.0, 0.0),
+        (1e30, 1e-30),
+        (1e-30, 1e-30),
+        (8192.0, 0.125),
     ];
-    let queries = cases.map(|(deviation, error, _)| (deviation, error));
-    for ((deviation, error, expected), yours) in cases.into_iter().zip(trial.kit.samples_for_error(&queries))
-    {
-        if yours != expected {
-            let root = f64::from(deviation) / f64::from(error);
-            let diagnosis = match () {
-                () if yours == 0 => "you return 0: one sample is the minimum",
-                () if expected == 1 => "one sample is enough here",
-                () if expected == u32::MAX => "no number of samples is enough: return u32::MAX",
-                () if f64::from(yours) == (root * root).recip().ceil() => {
-                    "you divide the error by the deviation: it is deviation / error"
-                }
-                () if f64::from(yours) == (root * root).floor() + 1.0 => {
-                    "you return one sample too many: if (deviation / error)² is whole, it is the answer"
-                }
-                () if f64::from(yours) == root.ceil() => {
-                    "you do not square deviation / error: the error falls with √n, not with n"
-                }
-                () if f64::from(yours) == (root * root).floor() => {
-                    "you round down, so the error is still too large: round up"
-                }
-                () => "",
-            };
-            let input = format!("samples_for_error({deviation:?}, {error:?})");
-            return Err(
-                Broken::new(input, yours, expected, "deviation / √n <= error").looks_like(known(diagnosis))
-            );
-        }
+    let inputs = (0..64u32, 0..64u32, -40..=40i32).prop_map(|(deviation, error, exponent)| {
+        let scale = 2f32.powi(exponent - 3);
+        (scale * deviation as f32, scale * error as f32)
+    });
+    trial.forall_and(&chosen, 500, inputs, |queries| {
+        compare_formulas(queries, trial.kit.samples_for_error(queries), judge_samples, sample_mistakes)
+    })
+}
+
+/// Whether the mean of `n` samples is good enough. The products are exact, or far from equal.
+fn is_enough((deviation, error): (f32, f32), n: f64) -> bool {
+    f64::from(deviation).powi(2) <= n * f64::from(error).powi(2)
+}
+
+fn judge_samples(query: &(f32, f32), yours: u32) -> CheckResult {
+    let (deviation, error) = *query;
+    let most = u32::MAX;
+    let enough = is_enough(*query, yours.into());
+    let fewer = yours > 1 && is_enough(*query, f64::from(yours) - 1.0);
+    if yours >= 1 && (enough || yours == most) && !fewer {
+        return Ok(());
     }
-    Ok(())
+    let expected = match () {
+        () if yours == 0 => "1 or more".to_owned(),
+        () if fewer => format!("less: {} samples are enough", yours - 1),
+        () => format!(
+            "more than {yours}: the error is still {:e}",
+            f64::from(deviation) / f64::from(yours).sqrt()
+        ),
+    };
+    let input = format!("samples_for_error({deviation:?}, {error:?})");
+    Err(Broken::with_texts(input, format!("{yours}"), expected, "deviation / √n <= error"))
+}
+
+/// Wrong formulas, each with whether it gives this answer.
+fn sample_mistakes((deviation, error): &(f32, f32), yours: &u32) -> Vec<(bool, &'static str)> {
+    let ratio = f64::from(*deviation) / f64::from(*error);
+    let whole = |n: f64| n as u32;
+    let is = |wrong: u32| *yours == wrong || (*yours == 1 && wrong == 0);
+    let square = ratio * ratio;
+    vec![
+        (*yours == whole(square.ceil()), "you return 0 if the deviation is 0: one sample is the minimum"),
+        (is(whole(square.recip().ceil())), "you divide the error by the deviation: it is deviation / error"),
+        (
+            is(whole(square.floor() + 1.0)),
+            "you return one sample too many: if (deviation / error)² is whole, it is the answer",
+        ),
+        (is(whole(ratio.ceil())), "you do not square deviation / error: the error falls with √n, not with n"),
+        (
+            is(whole(ratio.sqrt().ceil())),
+            "you take the root of deviation / error: the error falls with √n, so solve for n by squaring",
+        ),
+        (is(whole(square.floor())), "you round down, so the error is still too large: round up"),
+        (is(whole(square.round())), "you round to nearest, so the error can be too large: round up"),
+        (
+            is(if *error == 0.0 { 1 } else { whole(square.ceil()).max(1) }),
+            "you return 1 for an error of 0: no number of samples is enough, so return u32::MAX",
+        ),
+        (
+            is(if *error == 0.0 { u32::MAX } else { whole(square.ceil()).max(1) }),
+            "you return u32::MAX for an error of 0 also if the deviation is 0: one sample is enough then",
+        ),
+    ]
 }

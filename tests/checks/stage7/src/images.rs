@@ -1,8 +1,8 @@
 //! Checks of `texel` and `texture_color`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
 use raykata::kit::{KitError, TexelQuery, TextureQuery, kit_error};
@@ -39,43 +39,83 @@ pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
     let wrap = prop_oneof![Just(Wrap::Repeat), Just(Wrap::Clamp), Just(Wrap::Mirror)];
     let queries =
         (-REACH..REACH, 1..9u32, wrap).prop_map(|(index, size, wrap)| TexelQuery { index, size, wrap });
-    let judge = |queries: &[TexelQuery]| {
-        compare(queries, trial.kit.texel(queries), |query, yours| {
-            let expected = row(query.size, query.wrap, REACH)[(query.index + REACH) as usize];
-            if yours == expected {
-                return Ok(());
-            }
-            let remainder = query.index % i64::from(query.size);
-            let size = i64::from(query.size);
-            let yours_64 = i64::from(yours);
-            let diagnosis = match query.wrap {
-                _ if yours_64 >= size && query.wrap != Wrap::Repeat => {
-                    "you return an index of size or more: the last one is size - 1"
-                }
-                Wrap::Repeat | Wrap::Mirror if yours_64 == query.index.clamp(0, size - 1) => {
-                    "you continue the border, as Wrap::Clamp does"
-                }
-                Wrap::Clamp | Wrap::Mirror if yours_64 == query.index.rem_euclid(size) => {
-                    "you repeat the image, as Wrap::Repeat does"
-                }
-                Wrap::Repeat if query.index < 0 && i64::from(yours) != remainder => {
-                    "the remainder of a negative number is negative: use rem_euclid"
-                }
-                Wrap::Mirror if yours + 1 == expected || yours == expected + 1 => {
-                    "you are off by one: Wrap::Mirror shows each border pixel twice in a row"
-                }
-                _ => "",
-            };
-            let input = format!("texel({}, {}, Wrap::{:?})", query.index, query.size, query.wrap);
-            Err(Broken::new(input, yours, expected, "counted step by step").looks_like(known(diagnosis)))
-        })
-    };
     // Indices at which each known mistake gives another column.
-    let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)];
-    judge(&drawn.map(|(index, wrap)| TexelQuery { index, size: 4, wrap }))
-        .into_iter()
-        .collect::<CheckResult>()?;
-    trial.forall(3000, queries, judge)
+    let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)]
+        .map(|(index, wrap)| TexelQuery { index, size: 4, wrap });
+    trial.forall_and(&drawn, 3000, queries, |queries| {
+        compare_formulas(queries, trial.kit.texel(queries), judge_texel, texel_mistakes)
+    })
+}
+
+fn judge_texel(query: &TexelQuery, yours: u32) -> CheckResult {
+    let expected = row(query.size, query.wrap, REACH)[(query.index + REACH) as usize];
+    if yours == expected {
+        return Ok(());
+    }
+    let input = format!("texel({}, {}, Wrap::{:?})", query.index, query.size, query.wrap);
+    Err(Broken::new(input, yours, expected, "counted step by step"))
+}
+
+/// Wrong formulas, each with whether it gives this answer.
+fn texel_mistakes(query: &TexelQuery, yours: &u32) -> Vec<(bool, &'static str)> {
+    let TexelQuery { index, size, wrap } = *query;
+    let of = |wrap| i64::from(row(size, wrap, REACH)[(index + REACH) as usize]);
+    let (expected, size) = (of(wrap), i64::from(size));
+    let is = |wrong: i64| *yours == wrong as u32;
+    // A formula that is wrong for one wrap mode only.
+    let only = |mode: Wrap, wrong: i64| is(if wrap == mode { wrong } else { expected });
+    let period = (2 * size - 2).max(1);
+    let once = index.rem_euclid(period);
+    let twice = index.rem_euclid(2 * size);
+    let remainder = "you are wrong for negative indices: the remainder of a negative number is negative, so use rem_euclid";
+    vec![
+        (
+            only(Wrap::Clamp, index.clamp(0, size)),
+            "you return an index of size or more: the last one is size - 1",
+        ),
+        (only(Wrap::Repeat, index % size), remainder),
+        (
+            only(Wrap::Repeat, index.abs() % size),
+            "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other \
+             end, so use rem_euclid",
+        ),
+        (
+            only(Wrap::Mirror, once.min(period - once)),
+            "you are off by one: Wrap::Mirror shows each border pixel twice in a row, and you show it once",
+        ),
+        (
+            only(Wrap::Mirror, {
+                let there = index.abs() % (2 * size);
+                there.min(2 * size - 1 - there)
+            }),
+            "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row",
+        ),
+        (
+            only(Wrap::Mirror, twice.min(2 * size - twice)),
+            "you are off by one on the way back: Wrap::Mirror shows each border pixel twice in a row",
+        ),
+        (
+            only(Wrap::Repeat, of(Wrap::Clamp)),
+            "you continue the border for Wrap::Repeat, as Wrap::Clamp does",
+        ),
+        (
+            only(Wrap::Mirror, of(Wrap::Clamp)),
+            "you continue the border for Wrap::Mirror, as Wrap::Clamp does",
+        ),
+        (only(Wrap::Clamp, of(Wrap::Repeat)), "you repeat the image for Wrap::Clamp, as Wrap::Repeat does"),
+        (only(Wrap::Mirror, of(Wrap::Repeat)), "you repeat the image for Wrap::Mirror, as Wrap::Repeat does"),
+        (is(of(Wrap::Clamp)), "you continue the border for each wrap mode, as Wrap::Clamp does"),
+        (is(of(Wrap::Repeat)), "you repeat the image for each wrap mode, as Wrap::Repeat does"),
+        (is(of(Wrap::Mirror)), "you mirror the image for each wrap mode, as Wrap::Mirror does"),
+        (
+            is(match wrap {
+                Wrap::Repeat => of(Wrap::Clamp),
+                Wrap::Clamp => of(Wrap::Repeat),
+                Wrap::Mirror => expected,
+            }),
+            "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does",
+        ),
+    ]
 }
 
 fn texture(width: u32, height: u32, wrap: Wrap) -> Texture {
@@ -139,40 +179,48 @@ pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult
         })
     };
     let signs = [-1, 1];
-    // The colour 3/8 right of and 1/3 below the centre of the first pixel, computed once in double precision.
-    let corner_to_corner = DVec3::new(0.255_556, 0.402_778, 0.238_889);
-    let diagnosis = match () {
-        () if all(&|[column, row]| color([column, 2 - row])) => {
-            "your image is upside down: v points up, and rows are stored from the top"
-        }
-        () if all(&|[column, row]| {
-            let number = 3 * column + row;
-            color([number % 4, number / 4])
-        }) =>
-        {
-            "you read the pixels column by column: they are stored row by row"
-        }
-        () if [2.0, 2.2, 0.5, 1.0 / 2.2]
-            .into_iter()
-            .any(|power| all(&|pixel| color(pixel).map(|channel| channel.powf(power)))) =>
-        {
-            "you apply gamma: the pixels are linear light already"
-        }
-        () if signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y))) => {
-            "you are half a pixel off: the colour of a pixel belongs to its centre"
-        }
-        () if signs.iter().any(|&one| shifted(one, 0) || shifted(0, one)) => {
-            "you are half a pixel off along one axis: the colour of a pixel belongs to its centre"
-        }
-        () if apart(yours[0], corner_to_corner) < NEAR_A_MISTAKE => {
-            "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the \
-             image"
-        }
-        () if yours[wrong].is_nan() => "you return NaN",
-        () => "",
-    };
+    // From the first centre to the last one there are 3 pixels along u and 2 along v.
+    let stretched = all(&|[column, row]| {
+        let (x, y) = ((column as f64 + 0.5) * 3.0 / 4.0, (row as f64 + 0.5) * 2.0 / 3.0);
+        let (left, top) = (x.floor() as i64, y.floor() as i64);
+        let along = |row| color([left, row]).lerp(color([left + 1, row]), x.fract());
+        along(top).lerp(along(top + 1), y.fract())
+    });
+    let is_power = |power: f64| all(&|pixel| color(pixel).map(|channel| channel.powf(power)));
     let broken = broken(&queries[wrong], yours[wrong], color(pixels[wrong]), "the pixel's colour");
-    Err(broken.looks_like(known(diagnosis)))
+    // Each mistake is compared with all twelve colours.
+    Err(broken.explained_by([
+        (
+            all(&|[column, row]| color([column, 2 - row])),
+            "your image is upside down: v points up, and rows are stored from the top",
+        ),
+        (all(&|[column, row]| color([3 - column, row])), "your image is reversed: u points to the right"),
+        (
+            all(&|[column, row]| {
+                let number = 3 * column + row;
+                color([number % 4, number / 4])
+            }),
+            "you read the pixels column by column: they are stored row by row",
+        ),
+        (
+            [2.0, 2.2, 0.5, 1.0 / 2.2].into_iter().any(is_power),
+            "you apply gamma: the pixels are linear light already",
+        ),
+        (
+            signs.iter().any(|&x| signs.iter().any(|&y| shifted(x, y))),
+            "you are half a pixel off: the colour of a pixel belongs to its centre",
+        ),
+        (
+            signs.iter().any(|&one| shifted(one, 0) || shifted(0, one)),
+            "you are half a pixel off along one axis: the colour of a pixel belongs to its centre",
+        ),
+        (
+            stretched,
+            "you stretch uv from the first to the last pixel centre: (0, 0) and (1, 1) are corners of the \
+             image",
+        ),
+        ((0..12).all(|i| yours[i].is_nan()), "you return NaN"),
+    ]))
 }
 
 /// Points on an image of 4 by 3 pixels with [`Wrap::Mirror`]: between four pixels, at the upper left corner, and outside.
@@ -280,20 +328,23 @@ fn judge_stretch(stretch: &Stretch, queries: &[TextureQuery], yours: &[Vec3]) ->
         let other = |wrap: &Wrap| at(&Texture { wrap: *wrap, ..stretch.texture.clone() }, column, row);
         let another = WRAPS.iter().any(|wrap| apart(yours[0], other(wrap)) < NEAR);
         let broken = broken(&queries[0], yours[0], pixel, "the pixel's colour, at its centre");
-        return Err(broken.looks_like(another.then_some(ANOTHER_WRAP)));
+        return Err(broken.explained_by([(another, ANOTHER_WRAP)]));
     }
-    for (first, diagnosis) in [
-        (1, "between the centres of two columns the colour must change linearly along x"),
-        (4, "between the centres of two rows the colour must change linearly along y"),
+    for (first, law) in [
+        (1, "linear along x between the centres of two columns"),
+        (4, "linear along y between the centres of two rows"),
     ] {
         let mean = 0.5 * (yours[first].as_dvec3() + yours[first + 2].as_dvec3());
         // Each of the three is rounded as NEAR allows.
         if !(apart(yours[first + 1], mean) < NEAR) {
             let ends = [&queries[first], &queries[first + 2]].map(|query| query.uv);
             let source = "the mean of your colours at the ends of an interval";
-            let broken = broken(&queries[first + 1], yours[first + 1], mean, source);
-            let diagnosis = format!("{diagnosis}; the ends are {:?} and {:?}", ends[0], ends[1]);
-            return Err(broken.looks_like(Some(diagnosis)));
+            let mut broken = broken(&queries[first + 1], yours[first + 1], mean, source);
+            broken.input += &format!(
+                ",\nin the middle between {:?} and {:?}: the colour must be {law}",
+                ends[0], ends[1]
+            );
+            return Err(broken.explained_by([]));
         }
     }
     Ok(())
@@ -309,10 +360,11 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
         (0..3).find(|&i| !(apart(yours[i], DVec3::from_array(colors[i])) < near))
     };
     if let Some(wrong) = unlike(&COLORS, NEAR) {
-        let mistake = MISTAKES.iter().find(|(colors, _)| unlike(colors, NEAR_A_MISTAKE).is_none());
+        let mistakes =
+            MISTAKES.iter().map(|(colors, text)| (unlike(colors, NEAR_A_MISTAKE).is_none(), *text));
         let expected = DVec3::from_array(COLORS[wrong]);
         let broken = broken(&drawn[wrong], yours[wrong], expected, "double precision");
-        return Err(broken.looks_like(mistake.map(|(_, diagnosis)| *diagnosis)));
+        return Err(broken.explained_by(mistakes));
     }
     trial.forall(2000, stretches(), |stretches| {
         let queries: Vec<TextureQuery> = stretches.iter().flat_map(Stretch::queries).collect();
@@ -324,52 +376,80 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
     let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -0.0, 1e-40];
+    let mut outcomes = Vec::new();
     for wrap in WRAPS {
         let image = texture(3, 2, wrap);
-        let query = |u, v| TextureQuery { texture: image.clone(), uv: vec2(u, v) };
-        // Test one coordinate at a time first, so that the message shows which one is wrong.
+        // Test ordinary coordinates and one strange coordinate at a time first, so that the message shows which one is
+        // wrong.
+        let ordinary = [(0.5, 0.75), (0.5, 0.25)];
         let single = strange.iter().flat_map(|&share| [(share, 0.5), (0.5, share)]);
-        for (u, v) in single.chain(strange.iter().flat_map(|&u| strange.map(|v| (u, v)))) {
-            let input = format!("texture_color of 3 by 2 pixels, Wrap::{wrap:?}, at {:?}", vec2(u, v));
-            let yours = match kit_error::catch(|| trial.kit.texture_color(&[query(u, v)])[0]) {
-                Ok(color) => color,
-                Err(KitError::Panicked { message, place }) => {
-                    let yours = format!("a panic at {place}: {message}");
-                    let broken = Broken::with_texts(input, yours, "a colour", "the definition");
-                    let overflow = message.contains("overflow");
-                    return Err(broken.looks_like(overflow.then_some(
-                        "an integer overflows: compute the next column and row with saturating_add",
-                    )));
-                }
-                Err(error) => kit_error::unwind(error),
-            };
-            if !(yours.min_element() >= -1e-6 && yours.max_element() <= 1.0 + 1e-6) {
-                let broken = Broken::new(
-                    input,
-                    yours,
-                    "a colour between those of the image",
-                    "bilinear interpolation",
-                );
-                return Err(broken.looks_like(Some(match (u.is_finite(), v.is_finite()) {
-                    (true, true) => "coordinate * size overflows: test is_finite after the product",
-                    _ => "a coordinate that is NaN or infinite counts as 0",
-                })));
-            }
-            let finite = [u, v].map(|share| if share.is_finite() { share } else { 0.0 });
-            if (u.is_finite() && v.is_finite()) || finite.iter().any(|share| share.abs() > 1.0) {
-                continue;
-            }
-            let [expected, top] =
-                [finite[1], 1.0].map(|v| trial.kit.texture_color(&[query(finite[0], v)])[0]);
-            if !(apart(yours, expected.as_dvec3()) < NEAR) {
-                let source = "your own colour with 0 in place of NaN or infinity";
-                let broken = Broken::new(input, yours, expected, source);
-                let upper = !v.is_finite() && apart(yours, top.as_dvec3()) < NEAR;
-                return Err(broken.looks_like(upper.then_some(
-                    "you treat an invalid v as 1: it counts as 0, the lower border of the image",
-                )));
-            }
-        }
+        let both = strange.iter().flat_map(|&u| strange.map(|v| (u, v)));
+        outcomes.extend(
+            ordinary.into_iter().chain(single).chain(both).map(|(u, v)| judge_strange(trial, &image, u, v)),
+        );
     }
-    Ok(())
+    all_hold(outcomes)
+}
+
+/// Judges a colour at strange coordinates. The middle of a pixel has its colour.
+fn judge_strange(trial: &Trial<'_>, image: &Texture, u: f32, v: f32) -> CheckResult {
+    let query = |u, v| TextureQuery { texture: image.clone(), uv: vec2(u, v) };
+    let ask = |u, v| trial.kit.texture_color(&[query(u, v)])[0];
+    let input = format!("texture_color of 3 by 2 pixels, Wrap::{:?}, at {:?}", image.wrap, vec2(u, v));
+    let yours = match kit_error::catch(|| ask(u, v)) {
+        Ok(color) => color,
+        Err(KitError::Panicked { message, place }) => {
+            let yours = format!("a panic at {place}: {message}");
+            return Err(Broken::with_texts(input, yours, "a colour", "the definition").explained_by([(
+                message.contains("overflow"),
+                "an integer overflows: compute the next column and row with saturating_add",
+            )]));
+        }
+        Err(error) => kit_error::unwind(error),
+    };
+    let is_finite = u.is_finite() && v.is_finite();
+    // A coordinate that is NaN or infinite counts as 0, and so does one that overflows.
+    let overflows = [u * 3.0, v * 2.0].iter().any(|product| product.is_infinite()) && is_finite;
+    if !(yours.min_element() >= -1e-6 && yours.max_element() <= 1.0 + 1e-6) {
+        let expected = "a colour between those of the image";
+        return Err(Broken::new(input, yours, expected, "bilinear interpolation").explained_by([
+            (overflows, "coordinate * size overflows: test is_finite after the product"),
+            (
+                !is_finite,
+                "a coordinate that is NaN or infinite counts as 0: you return no colour of the image",
+            ),
+            (
+                !is_finite || overflows,
+                "a coordinate that is NaN or infinite counts as 0, also after the product with the size",
+            ),
+        ]));
+    }
+    if u == 0.5 && is_finite && (v == 0.75 || v == 0.25) {
+        let expected = at(image, 1, if v == 0.75 { 0 } else { 1 });
+        return match apart(yours, expected) < NEAR {
+            true => Ok(()),
+            false => Err(Broken::new(input, yours, expected.as_vec3(), "the pixel's colour, at its centre")
+                .explained_by([])),
+        };
+    }
+    let finite = |share: f32| if share.is_finite() { share } else { 0.0 };
+    if is_finite || finite(u).abs() > 1.0 || finite(v).abs() > 1.0 {
+        return Ok(());
+    }
+    let (expected, top) = (ask(finite(u), finite(v)), ask(finite(u), 1.0));
+    if apart(yours, expected.as_dvec3()) < NEAR {
+        return Ok(());
+    }
+    let source = "your own colour with 0 in place of NaN or infinity";
+    Err(Broken::new(input, yours, expected, source).explained_by([
+        (
+            !v.is_finite() && apart(yours, top.as_dvec3()) < NEAR,
+            "you treat an invalid v as 1: it counts as 0, the lower border of the image",
+        ),
+        (
+            u.is_infinite() || v.is_infinite(),
+            "you do not replace infinity: a coordinate that is NaN or infinite counts as 0",
+        ),
+        (true, "a coordinate that is NaN or infinite counts as 0: you use another number in its place"),
+    ]))
 }

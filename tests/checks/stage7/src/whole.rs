@@ -2,8 +2,8 @@
 
 use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
 use glam::Vec3;
 use raykata::camera::{Lens, Shutter};
 use raykata::effects::{Effect, Effects, LightEffects, MaterialEffects};
@@ -23,9 +23,27 @@ fn plain() -> Effects {
     }
 }
 
-fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagnosis: &str) -> CheckResult {
-    let yours = trial.kit.effects(&[scene]).remove(0);
-    if yours == *expected {
+/// A scene, its effects, and the mistakes in an answer, each with whether it explains that answer.
+struct Case {
+    what: &'static str,
+    scene: Scene,
+    expected: Effects,
+    mistakes: fn(&Effects, &Effects) -> Vec<(bool, &'static str)>,
+}
+
+/// Judges all scenes, and names a mistake that explains all wrong answers.
+fn judge_all(trial: &Trial<'_>, cases: &[Case]) -> CheckResult {
+    let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
+    let answers = cases.iter().zip(trial.kit.effects(&scenes));
+    let outcomes = answers.map(|(case, yours)| {
+        judge(case.what, &yours, &case.expected)
+            .map_err(|broken| broken.explained_by((case.mistakes)(&yours, &case.expected)))
+    });
+    all_hold(outcomes.collect())
+}
+
+fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckResult {
+    if yours == expected {
         return Ok(());
     }
     let part = |effects: &Effects| match () {
@@ -39,59 +57,118 @@ fn judge(trial: &Trial<'_>, what: &str, scene: Scene, expected: &Effects, diagno
             effects.lens, effects.motion, effects.indirect_light
         ),
     };
-    let broken =
-        Broken::with_texts(format!("effects of {what}"), part(&yours), part(expected), "the definition");
-    Err(broken.looks_like(known(diagnosis)))
+    Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition"))
+}
+
+/// The mistakes in scenes with one sphere, which has material 1.
+fn of_plain_scenes(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static str)> {
+    let lit = expected.materials[1].clone();
+    let all_materials = Effects { materials: vec![lit.clone(), lit], ..expected.clone() };
+    let still_lit: Vec<LightEffects> =
+        expected.lights.iter().copied().filter(|light| light.samples > 0).collect();
+    let moved_up = MaterialEffects { lights: vec![0], ..MaterialEffects::default() };
+    let dropped = Effects { lights: still_lit, ..expected.clone() };
+    let renumbered = Effects { materials: vec![MaterialEffects::default(), moved_up], ..dropped.clone() };
+    vec![
+        (
+            *yours == all_materials,
+            "materials[0] needs nothing, because no shape of the scene has it: analyse only materials of shown shapes",
+        ),
+        (
+            *yours == Effects { indirect_light: false, ..expected.clone() },
+            "copy indirect_light from the scene: you return false",
+        ),
+        (
+            *yours == Effects { indirect_light: true, ..expected.clone() },
+            "copy indirect_light from the scene: you return true",
+        ),
+        (
+            yours.lights.len() < expected.lights.len() && (*yours == dropped || *yours == renumbered),
+            "a black light needs nothing but keeps its entry: there is one entry per light of the scene",
+        ),
+        (
+            *yours == Effects { lights: Vec::new(), ..expected.clone() },
+            "you leave out the lights: there is one entry per light of the scene",
+        ),
+        (
+            *yours == Effects { materials: Vec::new(), ..expected.clone() },
+            "you leave out the materials: there is one entry per material of the scene",
+        ),
+    ]
 }
 
 pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckResult {
     let scene = one_sphere(Material::default());
-    judge(
-        trial,
-        "a diffuse sphere under a light",
-        scene.clone(),
-        &plain(),
-        "materials[0] needs nothing, because no shape of the scene has it",
-    )?;
-    let indirect = Scene { indirect_light: true, ..scene };
-    let as_it_says = "copy indirect_light from the scene";
-    let expected = Effects { indirect_light: true, ..plain() };
-    judge(trial, "the same with indirect light", indirect, &expected, as_it_says)?;
-
-    let mut dark = one_sphere(Material::default());
+    let mut dark = scene.clone();
     dark.lights.insert(0, light(Vec3::ZERO, 1.0));
-    let mut expected = plain();
-    expected.lights.insert(0, LightEffects::default());
-    expected.materials[1].lights = vec![1];
-    let in_place =
-        "a black light needs nothing but keeps its entry: there is one entry per light of the scene";
-    judge(trial, "a diffuse sphere under a black light and a white one", dark, &expected, in_place)
+    let mut of_dark = plain();
+    of_dark.lights.insert(0, LightEffects::default());
+    of_dark.materials[1].lights = vec![1];
+    let case = |what, scene, expected| Case { what, scene, expected, mistakes: of_plain_scenes };
+    judge_all(
+        trial,
+        &[
+            case("a diffuse sphere under a light", scene.clone(), plain()),
+            case(
+                "the same with indirect light",
+                Scene { indirect_light: true, ..scene },
+                Effects { indirect_light: true, ..plain() },
+            ),
+            case("a diffuse sphere under a black light and a white one", dark, of_dark),
+        ],
+    )
+}
+
+/// The mistakes in scenes with parts that are not shown.
+fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static str)> {
+    let nothing = MaterialEffects::default();
+    let is_same = Effects {
+        materials: expected.materials.clone(),
+        smooth_meshes: expected.smooth_meshes.clone(),
+        ..yours.clone()
+    } == *expected;
+    let same_length = yours.materials.len() == expected.materials.len()
+        && yours.smooth_meshes.len() == expected.smooth_meshes.len();
+    let mut pairs = yours.materials.iter().zip(&expected.materials);
+    let wrong = |(one, other): (&MaterialEffects, &MaterialEffects)| one != other;
+    let extra = pairs.clone().any(|(one, other)| one != other && *other == nothing);
+    let only_extra = pairs.clone().filter(|pair| wrong(*pair)).all(|(_, other)| *other == nothing);
+    let lost = pairs.any(|(one, other)| one != other && *one == nothing);
+    let smooth = yours.smooth_meshes.iter().zip(&expected.smooth_meshes).any(|(one, other)| *one && !*other);
+    vec![
+        (
+            is_same && same_length && only_extra && (extra || smooth),
+            "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()",
+        ),
+        (
+            is_same && same_length && lost && !extra && !smooth,
+            "you analyse one material per shape: a mesh can have several materials, so use all of shape.materials",
+        ),
+        (
+            !same_length,
+            "you leave out entries: there is one per material and one per mesh of the scene, in order",
+        ),
+    ]
 }
 
 pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult {
-    let shown = "only shapes that a root reaches are shown: use scene.shown()";
     let mut scene = one_sphere(Material::default());
     scene.materials.push(Material { mirror: Vec3::ONE, ..Material::default() });
     scene.material_names.push("mirror".into());
     let mut expected = plain();
     expected.materials.push(MaterialEffects::default());
-    judge(
-        trial,
-        "a diffuse sphere, and a mirror material that no shape has",
-        scene.clone(),
-        &expected,
-        shown,
-    )?;
+    let case = |what, scene: &Scene, expected: &Effects| Case {
+        what,
+        scene: scene.clone(),
+        expected: expected.clone(),
+        mistakes: of_hidden_parts,
+    };
+    let mut cases =
+        vec![case("a diffuse sphere, and a mirror material that no shape has", &scene, &expected)];
 
     // Add a node with this mirror that no root reaches.
     scene.nodes.push(super::scenes::sphere(2));
-    judge(
-        trial,
-        "a diffuse sphere, and a mirror sphere that no root reaches",
-        scene.clone(),
-        &expected,
-        shown,
-    )?;
+    cases.push(case("a diffuse sphere, and a mirror sphere that no root reaches", &scene, &expected));
 
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
@@ -100,7 +177,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
         materials: Vec::new(),
     });
     expected.smooth_meshes = vec![false];
-    judge(trial, "a diffuse sphere, and a smooth mesh that no node holds", scene.clone(), &expected, shown)?;
+    cases.push(case("a diffuse sphere, and a smooth mesh that no node holds", &scene, &expected));
 
     // Show the mesh; half of it has the mirror material.
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 2], face_materials: vec![0, 1], ..one_triangle() };
@@ -109,70 +186,149 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     expected.materials[2] = MaterialEffects { mirror: true, ..expected.materials[1].clone() };
-    let several = "a mesh can have several materials: use all of shape.materials";
-    judge(trial, "a diffuse sphere, and a mesh that is half a mirror", scene, &expected, several)
+    cases.push(case("a diffuse sphere, and a mesh that is half a mirror", &scene, &expected));
+    judge_all(trial, &cases)
 }
 
-pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> CheckResult {
-    let still = one_sphere(Material::default());
-    let mut moving = still.clone();
-    moving.nodes[0].transform_end = Some(glam::Affine3A::from_translation(Vec3::X));
-    let with = |scene: &Scene, lens: Option<f32>, shutter: Option<(f32, f32)>| {
-        let mut scene = scene.clone();
-        scene.camera.lens = lens.map(|aperture| Lens { aperture, focal_distance: 3.0 });
-        scene.camera.shutter = shutter.map(|(open, close)| Shutter { open, close });
-        scene
-    };
-    let mut elsewhere = with(&still, None, Some((0.0, 1.0)));
-    elsewhere.nodes.push(moving.nodes[0].clone());
-    let mut in_place = with(&moving, None, Some((0.0, 1.0)));
-    in_place.nodes[0].transform_end = Some(in_place.nodes[0].transform);
-    let lens = Effects { lens: true, ..plain() };
-    let motion = Effects { motion: true, ..plain() };
-    let cases = [
-        ("a lens of aperture 0", with(&still, Some(0.0), None), plain(), "an aperture of 0 is a pinhole"),
-        (
-            "a lens",
-            with(&still, Some(0.1), None),
-            lens,
-            "an aperture above 0 blurs, with or without a shutter",
-        ),
-        ("a shutter, and a sphere at rest", with(&still, None, Some((0.0, 1.0))), plain(), "no shape moves"),
-        (
-            "a moving sphere without a shutter",
-            with(&moving, None, None),
-            plain(),
-            "without a shutter all rays have time 0",
-        ),
-        (
-            "a moving sphere, and a shutter that closes at the time at which it opens",
-            with(&moving, None, Some((0.5, 0.5))),
-            plain(),
-            "all rays have the same time",
-        ),
-        (
-            "a moving sphere, and a shutter",
-            with(&moving, None, Some((0.25, 0.5))),
-            motion,
-            "it moves while the shutter is open, with or without a lens",
-        ),
-        (
-            "a shutter, and a moving sphere that no root reaches",
-            elsewhere,
-            plain(),
-            "a shape that no root reaches does not count: use scene.shown()",
-        ),
-        (
-            "a shutter, and a sphere whose transform is the same at both times",
-            in_place,
-            plain(),
-            "equal transforms at both times are no motion: use shape.moves of scene.shown()",
-        ),
-    ];
-    for (what, scene, expected, diagnosis) in cases {
-        judge(trial, what, scene, &expected, diagnosis)?;
+/// A scene with a lens, a shutter and a sphere that may move.
+struct Filmed {
+    what: &'static str,
+    /// The aperture of the lens.
+    lens: Option<f32>,
+    /// When the shutter opens and closes.
+    shutter: Option<(f32, f32)>,
+    sphere: Moving,
+    /// The effects `lens` and `motion`.
+    expected: [bool; 2],
+}
+
+/// How the sphere moves.
+#[derive(Clone, Copy, PartialEq)]
+enum Moving {
+    /// It has one transform.
+    No,
+    /// It has two transforms.
+    Yes,
+    /// It has two equal transforms.
+    InPlace,
+    /// A second sphere, which no root reaches, has two transforms.
+    Elsewhere,
+}
+
+const FILMED: [Filmed; 11] = {
+    const fn filmed(
+        what: &'static str,
+        lens: Option<f32>,
+        shutter: Option<(f32, f32)>,
+        sphere: Moving,
+        expected: [bool; 2],
+    ) -> Filmed {
+        Filmed { what, lens, shutter, sphere, expected }
     }
-    Ok(())
+    let open = Some((0.0, 1.0));
+    [
+        filmed("a lens of aperture 0", Some(0.0), None, Moving::No, [false, false]),
+        filmed("a lens", Some(0.1), None, Moving::No, [true, false]),
+        filmed("a lens with a tiny aperture", Some(1e-7), None, Moving::No, [true, false]),
+        filmed("a shutter, and a sphere at rest", None, open, Moving::No, [false, false]),
+        filmed("a moving sphere without a shutter", None, None, Moving::Yes, [false, false]),
+        filmed(
+            "a moving sphere, and a shutter that closes at the time at which it opens",
+            None,
+            Some((0.5, 0.5)),
+            Moving::Yes,
+            [false, false],
+        ),
+        filmed("a moving sphere, and a shutter", None, Some((0.25, 0.5)), Moving::Yes, [false, true]),
+        filmed("a moving sphere, a lens and a shutter", Some(0.1), open, Moving::Yes, [true, true]),
+        filmed("a moving sphere and a lens", Some(0.1), None, Moving::Yes, [true, false]),
+        filmed(
+            "a shutter, and a moving sphere that no root reaches",
+            None,
+            open,
+            Moving::Elsewhere,
+            [false, false],
+        ),
+        filmed(
+            "a shutter, and a sphere whose transform is the same at both times",
+            None,
+            open,
+            Moving::InPlace,
+            [false, false],
+        ),
+    ]
+};
+
+impl Filmed {
+    fn scene(&self) -> Scene {
+        let mut scene = one_sphere(Material::default());
+        let moved = Some(glam::Affine3A::from_translation(Vec3::X));
+        match self.sphere {
+            Moving::No => {}
+            Moving::Yes => scene.nodes[0].transform_end = moved,
+            Moving::InPlace => scene.nodes[0].transform_end = Some(scene.nodes[0].transform),
+            Moving::Elsewhere => {
+                let node = Node { transform_end: moved, ..scene.nodes[0].clone() };
+                scene.nodes.push(node);
+            }
+        }
+        scene.camera.lens = self.lens.map(|aperture| Lens { aperture, focal_distance: 3.0 });
+        scene.camera.shutter = self.shutter.map(|(open, close)| Shutter { open, close });
+        scene
+    }
+
+    /// Mistakes, each with whether it gives this answer.
+    fn mistakes(&self, yours: &Effects) -> Vec<(bool, &'static str)> {
+        let [lens, motion] = self.expected;
+        let is = |lens, motion| *yours == Effects { lens, motion, ..plain() };
+        let (has_lens, has_shutter) = (self.lens.is_some(), self.shutter.is_some());
+        let opens = self.shutter.is_some_and(|(open, close)| close > open);
+        let moves = self.sphere == Moving::Yes;
+        let two_transforms = moves || self.sphere == Moving::InPlace;
+        vec![
+            (is(has_lens, motion), "an aperture of 0 is a pinhole: you test only whether there is a lens"),
+            (
+                is(self.lens.is_some_and(|aperture| aperture > 1e-5), motion),
+                "you compare the aperture with a fixed limit: every aperture above 0 blurs",
+            ),
+            (is(lens && has_shutter, motion), "an aperture above 0 blurs, with or without a shutter"),
+            (is(false, motion), "you never set lens: an aperture above 0 blurs"),
+            (
+                is(lens, motion && has_lens),
+                "a shape that moves while the shutter is open is blurred, with or without a lens",
+            ),
+            (
+                is(lens, has_shutter && moves),
+                "you ignore when the shutter closes: all rays have the same time if it closes as it opens",
+            ),
+            (is(lens, opens), "you ignore the shapes: no shape moves in some of the scenes"),
+            (is(lens, moves), "without a shutter all rays have time 0: you test only whether a shape moves"),
+            (
+                is(lens, opens && self.sphere != Moving::No),
+                "you count nodes: a shape that no root reaches does not count, so use shape.moves of scene.shown()",
+            ),
+            (
+                is(lens, opens && two_transforms),
+                "equal transforms at both times are no motion: use shape.moves of scene.shown()",
+            ),
+            (is(lens, opens && (moves || self.sphere == Moving::Elsewhere)), ELSEWHERE),
+            (
+                is(lens, false),
+                "you never set motion: a shape that moves while the shutter is open is blurred",
+            ),
+        ]
+    }
+}
+
+const ELSEWHERE: &str = "a shape that no root reaches does not count: use scene.shown()";
+
+pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> CheckResult {
+    let scenes: Vec<Scene> = FILMED.iter().map(Filmed::scene).collect();
+    let law = |filmed: &Filmed, yours: Effects| {
+        let [lens, motion] = filmed.expected;
+        judge(filmed.what, &yours, &Effects { lens, motion, ..plain() })
+    };
+    all_hold(compare_formulas(&FILMED, trial.kit.effects(&scenes), law, Filmed::mistakes))
 }
 
 pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> CheckResult {
@@ -183,43 +339,53 @@ pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> CheckR
     let scenes: Vec<Scene> = (0..1u32 << BUILT.len())
         .map(|bits| subset(!bits).fold(all.clone(), |scene, effect| effect.removed_from(&scene)))
         .collect();
-    for (bits, effects) in trial.kit.effects(&scenes).into_iter().enumerate() {
+    let judge = |(bits, effects): (usize, Effects)| {
         let wanted: Vec<Effect> = subset(bits as u32).collect();
-        for effect in BUILT {
-            // Roughness matters only for reflected and refracted rays.
-            let possible = effect != Effect::Glossy
-                || wanted.contains(&Effect::Mirrors)
-                || wanted.contains(&Effect::Transmission);
-            let expected = wanted.contains(&effect) && possible;
-            if effects.calls_for(effect) != expected {
-                let names: Vec<String> = wanted.iter().map(Effect::to_string).collect();
-                let says = |calls: bool| {
-                    format!("{} {effect}", if calls { "calls for" } else { "does not call for" })
-                };
-                let input = format!("effects of a scene with exactly these: {}", names.join(", "));
-                let broken =
-                    Broken::with_texts(input, says(!expected), says(expected), "how the scene was made");
-                return Err(broken.looks_like(Some(clue(effect, expected))));
-            }
-        }
-    }
-    Ok(())
+        // Roughness matters only for reflected and refracted rays.
+        let spawns = wanted.contains(&Effect::Mirrors) || wanted.contains(&Effect::Transmission);
+        let expected = |effect| wanted.contains(&effect) && (effect != Effect::Glossy || spawns);
+        let wrong: Vec<Effect> =
+            BUILT.into_iter().filter(|effect| effects.calls_for(*effect) != expected(*effect)).collect();
+        let Some(&first) = wrong.first() else { return Ok(()) };
+        let names: Vec<String> = wanted.iter().map(Effect::to_string).collect();
+        let says = |calls: bool| format!("{} {first}", if calls { "calls for" } else { "does not call for" });
+        let input = format!("effects of a scene with exactly these: {}", names.join(", "));
+        let (yours, right) = (says(!expected(first)), says(expected(first)));
+        let broken = Broken::with_texts(input, yours, right, "how the scene was made");
+        // Name an effect only if it is the only one that is wrong in this scene.
+        let clue = match wrong[..] {
+            [only] => clue(only, expected(only)),
+            _ => "",
+        };
+        Err(broken.explained_by([(!clue.is_empty(), clue)]))
+    };
+    all_hold(trial.kit.effects(&scenes).into_iter().enumerate().map(judge).collect())
 }
 
-/// The diagnosis for an effect that is missing or that the scene does not need: what the effect depends on.
-fn clue(effect: Effect, missed: bool) -> String {
-    let depends_on = match effect {
-        Effect::Shadows => "lights that emit light and cast shadows",
-        Effect::AreaLights => "area lights and quality.light_samples",
-        Effect::Mirrors => "material.mirror, and fresnel of materials with transmission",
-        Effect::Transmission => "material.transmission",
-        Effect::Glossy => "the roughness of materials that reflect or refract rays",
-        Effect::Lens => "the aperture of the lens",
-        Effect::Motion => "shapes that move while the shutter is open",
-        Effect::SmoothNormals => "smooth meshes that are shown",
-        Effect::Textures => "images of materials that are shown",
-        Effect::IndirectLight => "scene.indirect_light",
-    };
-    let fate = if missed { "missing" } else { "not needed here" };
-    format!("{effect}: {fate}; this effect depends only on {depends_on}")
+/// What an effect depends on that is missing in some scenes, or that some scenes do not need.
+fn clue(effect: Effect, missed: bool) -> &'static str {
+    macro_rules! clues {
+        ($($effect:ident: $name:literal, $depends_on:literal;)*) => {
+            match (effect, missed) {
+                $((Effect::$effect, true) => {
+                    concat!($name, ": missing; this effect depends only on ", $depends_on)
+                }
+                (Effect::$effect, false) => {
+                    concat!($name, ": not needed here; this effect depends only on ", $depends_on)
+                })*
+            }
+        };
+    }
+    clues! {
+        Shadows: "shadows", "lights that emit light and cast shadows";
+        AreaLights: "area lights", "area lights and quality.light_samples";
+        Mirrors: "mirrors", "material.mirror, and fresnel of materials with transmission";
+        Transmission: "transmission", "material.transmission";
+        Glossy: "glossy", "the roughness of materials that reflect or refract rays";
+        Lens: "lens", "the aperture of the lens";
+        Motion: "motion", "shapes that move while the shutter is open";
+        SmoothNormals: "smooth normals", "smooth meshes that are shown";
+        Textures: "textures", "images of materials that are shown";
+        IndirectLight: "indirect light", "scene.indirect_light";
+    }
 }

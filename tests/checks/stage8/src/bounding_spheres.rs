@@ -2,163 +2,305 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
+use checks::double::U;
 use checks::generate::{direction, point, sphere};
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{call, list};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use oracle::exact::{Body, meet};
 use proptest::prelude::*;
 use raykata::kit::BoundingSphereQuery;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
+/// Points on a grid or of any kind, at any size, often in a plane, on a line or all equal; and points far from the origin.
 fn clouds() -> impl Strategy<Value = Vec<Vec3>> + Clone {
-    prop::collection::vec(point(8), 1..12)
+    let points = prop_oneof![3 => point(8), 1 => nasty::lattice(2), 1 => nasty::unit()];
+    let cloud = prop::collection::vec(points, 1..12);
+    let flat = prop_oneof![3 => Just(Vec3::ONE), 1 => Just(Vec3::new(1.0, 0.0, 1.0)), 1 => Just(Vec3::Y)];
+    let any = (cloud, flat, nasty::any_scale())
+        .prop_map(|(points, flat, scale)| points.into_iter().map(|point| scale * flat * point).collect());
+    let far = prop::collection::vec(point(8), 1..12).prop_map(|points| {
+        points.into_iter().map(|point| 0.1 * point + Vec3::new(148_376.0, 1_234.0, -223_423.0)).collect()
+    });
+    prop_oneof![3 => any, 1 => far]
+}
+
+/// The largest coordinate, whose rounding errors a sphere may add to its radius.
+fn reach(points: &[Vec3]) -> f64 {
+    points.iter().map(|point| f64::from(point.abs().max_element())).fold(0.0, f64::max)
 }
 
 pub(super) fn sphere_holds_all_points(trial: &Trial<'_>) -> CheckResult {
-    let judge = |points: &Vec<Vec3>, sphere: Sphere| {
-        let center = sphere.center.as_dvec3();
-        let outside =
-            points.iter().find(|point| !(point.as_dvec3().distance(center) <= f64::from(sphere.radius)));
-        let Some(outside) = outside else { return Ok(()) };
-        let beyond = outside.as_dvec3().distance(center) - f64::from(sphere.radius);
-        let diagnosis = if beyond < 1e-5 {
-            "your radius is too small by a rounding error: compute it in double and round up"
-        } else {
-            "your radius is too small: it is the largest distance of a point from the centre"
-        };
-        Err(Broken::with_texts(
-            format!("bounding_sphere(&{})", list(points)),
-            format!("radius {:?} around {}, and {outside} lies outside", sphere.radius, sphere.center),
-            "a sphere that contains all points",
-            "double precision",
-        )
-        .looks_like(Some(diagnosis)))
-    };
-    trial.forall(1000, clouds(), |queries| compare(queries, trial.kit.bounding_sphere(queries), judge))?;
-    let far = clouds().prop_map(|points| {
-        points.into_iter().map(|point| 0.1 * point + Vec3::new(148_376.0, 1_234.0, -223_423.0)).collect()
-    });
-    trial
-        .forall(300, far, |queries: &[Vec<Vec3>]| compare(queries, trial.kit.bounding_sphere(queries), judge))
-}
-
-pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(500, clouds(), |queries| {
-        compare(queries, trial.kit.bounding_sphere(queries), |points, sphere| {
-            let pairs = points.iter().flat_map(|p| points.iter().map(move |q| p.distance(*q)));
-            let widest = pairs.fold(0.0, f32::max);
-            // Jung's theorem: if no two points are farther apart than `widest`, the smallest sphere around them has a
-            // radius of √(3/8) · widest at most.
-            let most = 2.0 * (3.0f32 / 8.0).sqrt() * widest + 1e-5;
-            if sphere.radius <= most {
-                return Ok(());
-            }
-            Err(Broken::with_texts(
-                format!("bounding_sphere(&{})", list(points)),
-                format!("radius {:?}", sphere.radius),
-                format!("{most} at most, twice that of the smallest sphere"),
-                "Jung's theorem",
-            )
-            .looks_like(Some(
-                "your sphere is too large: use the centre of the points' box, and do not include the origin",
-            )))
-        })
+    let corner = vec![Vec3::ZERO, Vec3::new(4.0, 2.0, 1.0), Vec3::X];
+    trial.forall_and(&[corner], 1300, clouds(), |queries| {
+        compare(queries, trial.kit.bounding_sphere(queries), judge_cover)
     })
 }
 
-fn judge_entries(trial: &Trial<'_>, queries: &[BoundingSphereQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.enter_bounding_sphere(queries), |query, yours| {
-        let BoundingSphereQuery { ray, sphere } = *query;
+fn judge_cover(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
+    let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
+    let distances = || points.iter().map(|point| point.as_dvec3().distance(center));
+    let Some(outside) = points.iter().zip(distances()).find(|(_, distance)| !(*distance <= radius)) else {
+        return Ok(());
+    };
+    let farthest = distances().fold(0.0, f64::max);
+    // Rounding errors of the usual formulas: a few of the coordinates, and a few of the radius.
+    let near = |right: f64| (radius - right).abs() <= 16.0 * U * (reach(points) + right);
+    let min = points.iter().copied().fold(Vec3::INFINITY, Vec3::min).as_dvec3();
+    let max = points.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max).as_dvec3();
+    let mean = distances().sum::<f64>() / points.len() as f64;
+    let ends = [points[0], points[points.len() - 1]].map(|point| point.as_dvec3());
+    Err(Broken::with_texts(
+        format!("bounding_sphere(&{})", list(points)),
+        format!("radius {radius:?} around {}, and {} lies outside", sphere.center, outside.0),
+        "a sphere that contains all points",
+        "double precision",
+    )
+    .explained_by([
+        (near(farthest), "your radius is too small by a rounding error: compute it in double and round up"),
+        (
+            near(0.5 * (max - min).max_element()),
+            "your radius is half the longest side of the box: its corners lie outside",
+        ),
+        (
+            near(0.5 * (max - min).min_element()),
+            "your radius is half the shortest side of the box: its corners lie outside",
+        ),
+        (near(mean), "your radius is the mean distance from the centre: take the largest"),
+        (
+            near(0.5 * ends[0].distance(ends[1]))
+                && (center - 0.5 * (ends[0] + ends[1])).length() <= 16.0 * U * reach(points),
+            "your sphere contains the first and the last point only",
+        ),
+        (
+            near(distances().fold(f64::INFINITY, f64::min)),
+            "your radius is the smallest distance from the centre",
+        ),
+        (near(distances().next().unwrap_or(0.0)), "your radius is the distance of the first point"),
+        (near(0.5 * farthest), "your radius is half the largest distance from the centre"),
+        (near(farthest * farthest), "your radius is the square of the largest distance"),
+    ]))
+}
+
+pub(super) fn sphere_is_small(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(500, clouds(), |queries| compare(queries, trial.kit.bounding_sphere(queries), judge_size))
+}
+
+fn judge_size(points: &Vec<Vec3>, sphere: Sphere) -> CheckResult {
+    let all: Vec<DVec3> = points.iter().map(|point| point.as_dvec3()).collect();
+    let pairs = all.iter().flat_map(|p| all.iter().map(move |q| p.distance(*q)));
+    let widest = pairs.fold(0.0, f64::max);
+    // Jung's theorem: if no two points are farther apart than `widest`, the smallest sphere around them has a
+    // radius of √(3/8) · widest at most. Its diameter is at least `widest`; half of that is demanded here, because
+    // another check judges whether all points are inside.
+    let most = 2.0 * (3.0f64 / 8.0).sqrt() * widest + 16.0 * U * reach(points) + f64::from(f32::MIN_POSITIVE);
+    let radius = f64::from(sphere.radius);
+    if 0.25 * widest <= radius && radius <= most {
+        return Ok(());
+    }
+    let [center, reach] = [sphere.center.as_dvec3().length(), reach(points)];
+    let farthest = all.iter().map(|point| point.distance(sphere.center.as_dvec3())).fold(0.0, f64::max);
+    let with_origin = all.iter().copied().chain([DVec3::ZERO]);
+    let (min, max) =
+        with_origin.fold((DVec3::ZERO, DVec3::ZERO), |(min, max), point| (min.min(point), max.max(point)));
+    let is_large = radius > most;
+    Err(Broken::with_texts(
+        format!("bounding_sphere(&{})", list(points)),
+        format!("radius {radius:?}"),
+        format!("{:?} to {most:?}, twice the radius of the smallest sphere", 0.25 * widest),
+        "Jung's theorem",
+    )
+    .explained_by([
+        (
+            is_large && reach > 0.0 && center <= 16.0 * U * reach,
+            "your sphere is too large, because its centre is the origin: use the centre of the points' box",
+        ),
+        (
+            is_large && (sphere.center.as_dvec3() - 0.5 * (min + max)).length() <= 16.0 * U * reach,
+            "your sphere is too large, because your box includes the origin: start the minimum at infinity",
+        ),
+        (
+            is_large && radius > 1.5 * farthest,
+            "your sphere is too large: its radius is far above the largest distance of a point from its centre",
+        ),
+    ]))
+}
+
+/// A sphere and a ray at any size. The coordinates are multiplied by `size`, and the direction by `speed`.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    plain: BoundingSphereQuery,
+    size: f32,
+    speed: f32,
+}
+
+impl Entry {
+    fn asked(&self) -> BoundingSphereQuery {
+        let BoundingSphereQuery { ray, sphere } = self.plain;
+        let t_scale = self.size / self.speed;
+        let scaled = Ray { origin: self.size * ray.origin, direction: self.speed * ray.direction, ..ray };
+        BoundingSphereQuery {
+            ray: scaled.with_range(t_scale * ray.t_min, t_scale * ray.t_max),
+            sphere: Sphere { center: self.size * sphere.center, radius: self.size * sphere.radius },
+        }
+    }
+}
+
+/// The roots of the line and a sphere in double precision; `None` if the line misses it.
+fn roots(ray: &Ray, sphere: &Sphere, squared_radius: f64) -> Option<[f64; 2]> {
+    let (direction, to_center) = (ray.direction.as_dvec3(), sphere.center.as_dvec3() - ray.origin.as_dvec3());
+    let (a, b) = (direction.length_squared(), to_center.dot(direction));
+    let discriminant = a * squared_radius - to_center.cross(direction).length_squared();
+    (discriminant >= 0.0).then(|| [-1.0, 1.0].map(|sign| (b + sign * discriminant.sqrt()) / a))
+}
+
+fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
+    let asked: Vec<BoundingSphereQuery> = queries.iter().map(Entry::asked).collect();
+    compare(queries, trial.kit.enter_bounding_sphere(&asked), |entry, yours| {
+        let BoundingSphereQuery { ray, sphere } = entry.plain;
+        // All sizes are powers of two, so the answer for the plain query is exactly this.
+        let t_scale = entry.size / entry.speed;
+        let yours = yours.map(|t| t / t_scale);
         let first =
             |radius: f32| meet(&ray, Body::Sphere(Sphere { radius, ..sphere })).and_then(|meeting| meeting.t);
         let starts_inside = |radius: f32| (ray.at(ray.t_min) - sphere.center).length() < radius;
         let near = |t: f32, right: f32| (t - right).abs() <= 1e-4 * right.abs().max(1.0);
         let (smaller, larger) = (0.999 * sphere.radius, 1.001 * sphere.radius);
-        let broken = |expected: String, diagnosis: &'static str| {
-            let input = call("enter_bounding_sphere", &[&ray, &sphere]);
-            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "exact arithmetic")
-                .looks_like(Some(diagnosis)))
+        let describe = |t: Option<f32>| format!("{:?}", t.map(|t| t_scale * t));
+        let broken = |right: Option<f32>, remark: &str| {
+            let asked = entry.asked();
+            let input = call("enter_bounding_sphere", &[&asked.ray, &asked.sphere]);
+            let expected = format!("{}{remark}", describe(right));
+            Err(Broken::with_texts(input, describe(yours), expected, "exact arithmetic")
+                .explained_by(mistakes(entry, yours, right)))
         };
         if starts_inside(smaller) {
             return match yours {
                 Some(t) if t == ray.t_min => Ok(()),
-                _ => broken(
-                    format!("Some({:?})", ray.t_min),
-                    "a ray that starts inside the sphere enters it at t_min",
-                ),
+                _ => broken(Some(ray.t_min), ""),
             };
         }
         match (first(smaller), first(larger), yours) {
             // The ray passes through the inside: the entry must not be late.
-            (Some(_), Some(early), None) => {
-                broken(format!("Some({early:?})"), "you return None, but the ray enters the sphere")
-            }
+            (Some(_), Some(early), None) => broken(Some(early), ""),
             (Some(late), Some(early), Some(t)) => {
                 let exact = first(sphere.radius).unwrap_or(late);
-                let length = ray.direction.length();
-                let other_units = near(t / length, exact) || near(t, exact * length);
-                if t > exact {
-                    let diagnosis = match () {
-                        () if near(t, exact) => {
-                            "you are late by a rounding error, and a search would skip a hit at this t: \
-                             return a slightly earlier t"
-                        }
-                        () if other_units => "your t has another unit: it counts lengths of direction",
-                        () => "your t is later than the entry, which is the nearer root",
-                    };
-                    return broken(format!("Some({exact:?}), or a little less"), diagnosis);
-                }
                 // Accept any answer for a ray whose range ends between the two spheres.
-                if t >= ray.t_min && (t >= early || near(t, early) || starts_inside(larger)) {
-                    return Ok(());
+                let is_late = t > exact;
+                let is_early = t < ray.t_min || !(t >= early || near(t, early) || starts_inside(larger));
+                match is_late || is_early {
+                    true => broken(Some(exact), ", or a little less"),
+                    false => Ok(()),
                 }
-                let diagnosis = match () {
-                    () if t < ray.t_min => "you return a t before t_min: clamp the entry to t_min",
-                    () if other_units => "your t has another unit: it counts lengths of direction",
-                    () => "your t is much too early: the entry is the nearer root",
-                };
-                broken(format!("Some({exact:?})"), diagnosis)
             }
-            (None, None, Some(_)) if !starts_inside(larger) => broken(
-                "None".into(),
-                "you return an entry, but the sphere lies beside the ray, behind it or beyond t_max",
-            ),
+            (None, None, Some(_)) if !starts_inside(larger) => broken(None, ""),
             _ => Ok(()),
         }
     })
 }
 
-fn entries(aimed: bool) -> impl Strategy<Value = BoundingSphereQuery> + Clone {
-    (point(8), direction(), sphere(), 0..4u32).prop_map(move |(origin, direction, sphere, range)| {
-        let to_center = sphere.center - origin;
-        let direction = if aimed && to_center != Vec3::ZERO {
-            to_center + 0.5 * sphere.radius * direction.normalize()
-        } else {
-            direction
-        };
-        let (t_min, t_max) =
-            [(0.0, f32::INFINITY), (0.5, f32::INFINITY), (0.0, 0.75), (0.0, 16.0)][range as usize];
-        BoundingSphereQuery { ray: Ray::new(origin, direction).with_range(t_min, t_max), sphere }
-    })
+/// The known mistakes, each with whether it gives the answer `yours` in place of `right`.
+fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool, &'static str)> {
+    let BoundingSphereQuery { ray, sphere } = entry.plain;
+    let radius = f64::from(sphere.radius);
+    let (t_min, t_max) = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let ends = roots(&ray, &sphere, radius * radius);
+    // Wrong methods may round in another way; single precision has errors of some roundings.
+    let near = |t: f64, wrong: f64| (t - wrong).abs() <= 1e-4 * wrong.abs().max(1.0);
+    let is = |wrong: Option<f64>| match (yours, wrong) {
+        (None, None) => true,
+        (Some(t), Some(wrong)) => near(f64::from(t), wrong),
+        _ => false,
+    };
+    let entered = |ends: Option<[f64; 2]>| {
+        ends.and_then(|[enter, leave]| (leave >= t_min && enter <= t_max).then(|| enter.max(t_min)))
+    };
+    let length = f64::from(entry.speed) * ray.direction.as_dvec3().length();
+    let starts_inside = right == Some(ray.t_min);
+    let found = yours.is_some() && right.is_none();
+    let late = matches!((yours, right), (Some(yours), Some(right)) if yours > right && near(yours.into(), right.into()));
+    vec![
+        (
+            late,
+            "you are late by a rounding error, and a search would skip a hit at this t: return a slightly \
+             earlier t",
+        ),
+        (
+            (length - 1.0).abs() > 1e-6 && is(entered(ends.map(|ends| ends.map(|end| length * end)))),
+            "your t has another unit, that of the world: it counts lengths of direction",
+        ),
+        (
+            is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),
+            "you use the radius in place of its square: the distance from the centre is squared, too",
+        ),
+        (
+            starts_inside && is(ends.map(|ends| ends[0])),
+            "you return a t before t_min: a ray that starts inside the sphere enters it at t_min",
+        ),
+        (
+            starts_inside && is(ends.map(|ends| ends[1].min(t_max))),
+            "you return where the ray leaves: a ray that starts inside the sphere enters it at t_min",
+        ),
+        (
+            starts_inside && yours.is_none(),
+            "you return None for a ray that starts inside: a ray that starts inside the sphere enters it at t_min",
+        ),
+        (is(ends.map(|ends| ends[1].min(t_max))), "your t is later than the entry, which is the nearer root"),
+        (
+            found && ends.is_some_and(|ends| ends[1] < t_min),
+            "you return an entry for a sphere that lies behind the ray: the ray leaves it before t_min",
+        ),
+        (
+            found && ends.is_some_and(|ends| ends[0] > t_max),
+            "you return an entry for a sphere that lies beyond t_max",
+        ),
+        (
+            is(entered(roots(&ray, &sphere, 4.0 * radius * radius))),
+            "your sphere is too large: you compare with twice the radius",
+        ),
+        (found && ends.is_none(), "you return an entry for a sphere that lies beside the ray"),
+    ]
+}
+
+fn entries(aimed: bool) -> impl Strategy<Value = Entry> + Clone {
+    let directions = prop_oneof![3 => direction(), 1 => nasty::unit()];
+    // The fourth power of a size, times the square of a speed, is a normal number in single precision.
+    let scales = prop_oneof![
+        2 => (Just(1.0f32), Just(1.0f32)),
+        1 => (nasty::scale(-20..=20), nasty::scale(-12..=12)),
+    ];
+    (point(8), directions, sphere(), 0..4u32, scales).prop_map(
+        move |(origin, direction, sphere, range, (size, speed))| {
+            let to_center = sphere.center - origin;
+            let direction = if aimed && to_center != Vec3::ZERO {
+                to_center + 0.5 * sphere.radius * direction.normalize()
+            } else {
+                direction
+            };
+            let (t_min, t_max) =
+                [(0.0, f32::INFINITY), (0.5, f32::INFINITY), (0.0, 0.75), (0.0, 16.0)][range as usize];
+            let ray = Ray::new(origin, direction).with_range(t_min, t_max);
+            Entry { plain: BoundingSphereQuery { ray, sphere }, size, speed }
+        },
+    )
+}
+
+/// The unit sphere, and a ray along the x axis from here.
+fn along_x(from: f32) -> Entry {
+    let sphere = Sphere { center: Vec3::ZERO, radius: 1.0 };
+    let ray = Ray::new(Vec3::new(from, 0.0, 0.0), Vec3::X);
+    Entry { plain: BoundingSphereQuery { ray, sphere }, size: 1.0, speed: 1.0 }
 }
 
 pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> CheckResult {
     // S3: the ray starts inside, and the centre lies behind it.
-    let facing_away = BoundingSphereQuery {
-        ray: Ray::new(Vec3::new(0.5, 0.0, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
-    };
-    judge_entries(trial, &[facing_away]).into_iter().collect::<CheckResult>()?;
-    trial.forall(3000, entries(true), |queries| judge_entries(trial, queries))
+    let facing_away = along_x(0.5);
+    trial.forall_and(&[facing_away], 3000, entries(true), |queries| judge_entries(trial, queries))
 }
 
 pub(super) fn enter_bounding_sphere_passes_what_is_missed(trial: &Trial<'_>) -> CheckResult {
-    let behind = BoundingSphereQuery {
-        ray: Ray::new(Vec3::new(5.0, 0.0, 0.0), Vec3::X),
-        sphere: Sphere { center: Vec3::ZERO, radius: 1.0 },
-    };
-    judge_entries(trial, &[behind]).into_iter().collect::<CheckResult>()?;
-    trial.forall(3000, entries(false), |queries| judge_entries(trial, queries))
+    let behind = along_x(5.0);
+    trial.forall_and(&[behind], 3000, entries(false), |queries| judge_entries(trial, queries))
 }

@@ -1,9 +1,9 @@
 //! Checks of `bounds_to_world`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
-use checks::judge::{compare, known};
+use checks::judge::compare;
 use checks::paste::call;
 use glam::{Affine3A, Mat3, Vec3};
 use oracle::splitmix::Random;
@@ -13,11 +13,25 @@ use raykata::kit::BoundsQuery;
 /// Transforms of all kinds and boxes of all sizes.
 fn moved(trial: &Trial<'_>) -> Vec<BoundsQuery> {
     let mut random = Random::new(trial.seed, 12);
-    let draw = |_| {
-        let size = 10f32.powf(4.0 * random.signed());
-        let matrix = Mat3::from_cols(random.in_cube(), random.in_cube(), random.in_cube());
+    let draw = |i: i32| {
+        // One query of eight has a size between 2⁻⁶⁰ and 2⁶⁰.
+        let any_size = 2f32.powi(random.below(121) as i32 - 60);
+        let size = if i % 8 == 0 { any_size } else { 10f32.powf(4.0 * random.signed()) };
+        let mut matrix = Mat3::from_cols(random.in_cube(), random.in_cube(), random.in_cube());
+        let (mut p, mut q) = (size * random.in_cube(), size * random.in_cube());
+        let axis = random.below(3) as usize;
+        match i % 5 {
+            // Quarter turns and scales along the axes, with zeros.
+            0 => {
+                let turn = |column: usize| random.signed() * Vec3::AXES[(column + axis) % 3];
+                matrix = Mat3::from_cols_array_2d(&[0, 1, 2].map(turn).map(|column| column.to_array()));
+            }
+            // Flat boxes, and boxes at the origin.
+            1 => q[axis] = p[axis],
+            2 => p[axis] = 0.0,
+            _ => {}
+        }
         let to_world = Affine3A::from_mat3_translation(matrix, size * random.in_cube());
-        let (p, q) = (size * random.in_cube(), size * random.in_cube());
         BoundsQuery { to_world, bounds: Aabb::new(p.min(q), p.max(q)) }
     };
     let mut queries: Vec<BoundsQuery> = (0..2000).map(draw).collect();
@@ -55,60 +69,93 @@ pub(super) fn boxes_hold_what_they_should_after_transforms(trial: &Trial<'_>) ->
             if yours_low <= low + slack && yours_high >= high - slack {
                 continue;
             }
-            let off = (yours_low - low).max(high - yours_high) / (U * size);
-            let diagnosis = match () {
-                () if off.is_nan() => "you return NaN",
-                () if off < 8.0 => "your box is too small by a rounding error: round outwards",
-                () => {
-                    "your box is much too small: after a rotation any of the eight corners can be the \
-                     farthest"
-                }
-            };
             let axis = ["x", "y", "z"][row];
+            let off = |row: usize| {
+                let (low, high, size) = ends(query, row);
+                (f64::from(yours.min[row]) - low).max(high - f64::from(yours.max[row])) / (U * size)
+            };
+            // Move the smallest and the largest corner, as this mistake does.
+            let corners = [query.bounds.min, query.bounds.max]
+                .map(|corner| query.to_world.as_daffine3().transform_point3(corner.as_dvec3()));
+            let is_between = |yours: Vec3, wrong: [f64; 3]| {
+                (0..3).all(|row| (f64::from(yours[row]) - wrong[row]).abs() <= 16.0 * U * ends(query, row).2)
+            };
+            let two_corners = is_between(yours.min, corners[0].min(corners[1]).to_array())
+                && is_between(yours.max, corners[0].max(corners[1]).to_array());
+            let exchanged =
+                is_between(yours.min, corners[0].to_array()) && is_between(yours.max, corners[1].to_array());
             return Err(Broken::with_texts(
                 describe(query),
                 format!("{yours_low} to {yours_high} along {axis}"),
                 format!("{low} to {high}, or more"),
                 "double precision",
             )
-            .looks_like(Some(diagnosis)));
+            .explained_by([
+                (yours.min.is_nan() || yours.max.is_nan(), "you return NaN"),
+                (
+                    (0..3).all(|row| off(row) < 8.0),
+                    "your box is too small by a rounding error: round outwards",
+                ),
+                (
+                    two_corners,
+                    "your box is much too small, because you transform two corners only: after a rotation any of the \
+                     eight can be the farthest",
+                ),
+                (
+                    exchanged,
+                    "your box is inside out, because you transform two corners only: after a rotation any of the eight \
+                     can be the farthest",
+                ),
+            ]));
         }
         Ok(())
     };
-    compare(&queries, trial.kit.bounds_to_world(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.bounds_to_world(&queries), judge))
 }
 
 pub(super) fn boxes_have_little_room_after_transforms(trial: &Trial<'_>) -> CheckResult {
-    let queries = moved(trial);
-    let judge = |query: &BoundsQuery, yours: Aabb| {
-        for row in 0..3 {
-            let (low, high, size) = ends(query, row);
-            // Allow six rounding errors of each term (three products, three sums), one float outwards, and a small
-            // reserve.
-            let room = 16.0 * U * size;
-            let (yours_low, yours_high) = (f64::from(yours.min[row]), f64::from(yours.max[row]));
-            if yours_low >= low - room && yours_high <= high + room {
-                continue;
-            }
-            let axis = ["x", "y", "z"][row];
-            let diagnosis =
-                "your box is larger than the rounding errors require, so rays enter it without need";
-            return Err(Broken::with_texts(
-                describe(query),
-                format!("{yours_low} to {yours_high} along {axis}"),
-                format!("{low} to {high}, and {room:.1e} on either side at most"),
-                "double precision",
-            )
-            .looks_like(known(diagnosis)));
-        }
-        Ok(())
-    };
-    compare(&queries, trial.kit.bounds_to_world(&queries), judge).into_iter().collect::<CheckResult>()?;
-    let empty = BoundsQuery { to_world: Affine3A::from_scale(Vec3::splat(2.0)), bounds: Aabb::EMPTY };
-    let yours = trial.kit.bounds_to_world(&[empty])[0];
-    if yours.min.cmpgt(yours.max).all() {
-        return Ok(());
+    let mut queries = moved(trial);
+    // Empty boxes: infinite, and inside out along a single axis.
+    let to_world = Affine3A::from_scale(Vec3::splat(2.0));
+    queries.push(BoundsQuery { to_world, bounds: Aabb::EMPTY });
+    for axis in Vec3::AXES {
+        queries.push(BoundsQuery { to_world, bounds: Aabb::new(axis, Vec3::ONE - axis) });
     }
-    let broken = Broken::new(describe(&empty), yours, "an empty box", "the definition");
-    Err(broken.looks_like(Some("an empty box stays empty: its corners are infinite, and ∞ - ∞ is NaN")))
+    let outcomes = compare(&queries, trial.kit.bounds_to_world(&queries), judge_room);
+    all_hold(outcomes)
+}
+
+fn judge_room(query: &BoundsQuery, yours: Aabb) -> CheckResult {
+    if query.bounds.min.cmpgt(query.bounds.max).any() {
+        if yours.min.cmpgt(yours.max).any() {
+            return Ok(());
+        }
+        let nan = yours.min.is_nan() || yours.max.is_nan();
+        return Err(Broken::new(describe(query), yours, "an empty box", "the definition").explained_by([
+            (nan, "an empty box stays empty: its corners are infinite, and ∞ - ∞ or 0 · ∞ is NaN"),
+            (true, "an empty box stays empty: min is above max on some axis, so return Aabb::EMPTY"),
+        ]));
+    }
+    for row in 0..3 {
+        let (low, high, size) = ends(query, row);
+        // Allow six rounding errors of each term (three products, three sums), one float outwards, and a small
+        // reserve.
+        let room = 16.0 * U * size;
+        let (yours_low, yours_high) = (f64::from(yours.min[row]), f64::from(yours.max[row]));
+        if yours_low >= low - room && yours_high <= high + room {
+            continue;
+        }
+        let axis = ["x", "y", "z"][row];
+        return Err(Broken::with_texts(
+            describe(query),
+            format!("{yours_low} to {yours_high} along {axis}"),
+            format!("{low} to {high}, and {room:.1e} on either side at most"),
+            "double precision",
+        )
+        .explained_by([(
+            yours_low <= low + room && yours_high >= high - room,
+            "your box is larger than the rounding errors require, so rays enter it without need",
+        )]));
+    }
+    Ok(())
 }

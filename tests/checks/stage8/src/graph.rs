@@ -1,8 +1,8 @@
 //! Checks of `closest_hit_in_graph` with tables that hold the answers of `enter` and `hit`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::{compare, known};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use checks::tree::closest_of;
 use glam::Vec3;
 use oracle::splitmix::Random;
@@ -102,23 +102,56 @@ pub(super) fn graph_finds_the_closest_hit(trial: &Trial<'_>) -> CheckResult {
         if found == expected {
             return Ok(());
         }
-        let diagnosis = match (found, expected) {
-            (Some(found), Some(right)) if found.t == right.t => {
-                "of two hits at the same t you return the larger number: the smaller one wins"
-            }
-            (Some(found), Some(right)) if found.t > right.t => {
-                "you leave out a nearer hit, or you replace it by a farther one"
-            }
-            (None, Some(_)) => "you lose a hit: test the node's own primitives and those of its children",
-            _ => "",
-        };
         let named = |hit: Option<PrimitiveHit>| {
             hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
         };
         Err(Broken::with_texts(describe(query), named(found), named(expected), "brute force")
-            .looks_like(known(diagnosis)))
+            .explained_by(lost_hits(query, found, expected, &yours.asked)))
     };
-    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
+}
+
+/// The mistakes for a wrong closest hit, each with whether it explains this one. `asked` lists the primitives that were
+/// tested.
+fn lost_hits(
+    query: &GraphQuery,
+    found: Option<PrimitiveHit>,
+    expected: Option<PrimitiveHit>,
+    asked: &[u32],
+) -> Vec<(bool, &'static str)> {
+    let nodes = &query.graph.nodes;
+    let Some(right) = expected else { return Vec::new() };
+    let holder = nodes.iter().position(|node| node.primitives.contains(&right.primitive)).unwrap_or(0);
+    let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
+    let above: Vec<usize> = std::iter::successors(parent(holder), |node| parent(*node)).collect();
+    let is_tested = asked.contains(&right.primitive);
+    vec![
+        (
+            is_tested && found.is_some_and(|found| found.t == right.t && found.primitive > right.primitive),
+            "of two hits at the same t you return the larger number: the smaller one wins",
+        ),
+        (
+            is_tested && found.is_some(),
+            "you test the nearest primitive, but you replace it by another one: keep the nearest hit",
+        ),
+        (is_tested && found.is_none(), "you test the nearest primitive, but you do not return its hit"),
+        (
+            !is_tested && !nodes[holder].children.is_empty(),
+            "you do not test the own primitives of a node that has children: a node can have both",
+        ),
+        (
+            !is_tested && above.len() > 1,
+            "you do not test primitives more than one level below the root: visit the children of children, too",
+        ),
+        (
+            !is_tested && above.iter().any(|node| !nodes[*node].primitives.is_empty()),
+            "you do not visit the children of a node that has primitives of its own: a node can have both",
+        ),
+        (
+            !is_tested && found.is_some(),
+            "you leave out a nearer hit: you have a hit and do not test a primitive that is nearer",
+        ),
+    ]
 }
 
 pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> CheckResult {
@@ -132,20 +165,38 @@ pub(super) fn graph_asks_for_everything_without_savings(trial: &Trial<'_>) -> Ch
         if n_boxes == 0 && asked == all {
             return Ok(());
         }
-        let diagnosis = match () {
-            () if n_boxes > 0 => "you call enter although `volumes` is off",
-            () if asked.len() > all.len() => "you test a primitive twice",
-            () => "you leave out a primitive: without `volumes` and `skip` every primitive is tested",
-        };
+        let is_twice = asked.windows(2).any(|pair| pair[0] == pair[1]);
+        let left_out = all.iter().any(|primitive| !asked.contains(primitive));
+        let below_a_hit = all.iter().filter(|primitive| !asked.contains(primitive)).all(|primitive| {
+            // The nodes above the one that holds this primitive.
+            let nodes = &query.graph.nodes;
+            let holder = nodes.iter().position(|node| node.primitives.contains(primitive)).unwrap_or(0);
+            let parent = |node: usize| nodes.iter().position(|other| other.children.contains(&(node as u32)));
+            let hits = |node: usize| {
+                nodes[node].primitives.iter().any(|&p| query.ray.contains(query.table.primitives[p as usize]))
+            };
+            std::iter::successors(parent(holder), |node| parent(*node)).any(hits)
+        });
         Err(Broken::with_texts(
             describe(query),
             format!("{n_boxes} volumes and the primitives {asked:?}"),
             format!("no volume and the primitives {all:?}"),
             "the definition",
         )
-        .looks_like(Some(diagnosis)))
+        .explained_by([
+            (n_boxes > 0, "you call enter although `volumes` is off"),
+            (is_twice, "you test a primitive twice"),
+            (
+                left_out && below_a_hit && n_boxes == 0,
+                "you leave out a primitive below a node with a hit of its own: its children can be nearer",
+            ),
+            (
+                left_out && n_boxes == 0,
+                "you leave out a primitive: without `volumes` and `skip` every primitive is tested",
+            ),
+        ]))
     };
-    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
 }
 
 pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
@@ -155,10 +206,11 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
     let judge = |query: &GraphQuery, yours: GraphAnswer| {
         let GraphQuery { graph, ray, table, .. } = query;
         // Visit the nodes whose own volume, and all volumes above it, are entered.
-        let (mut boxes, mut expected) = (0, Vec::new());
+        let (mut boxes, mut leaves, mut expected) = (0, 0, Vec::new());
         let mut waiting: Vec<u32> = if graph.nodes.is_empty() { Vec::new() } else { vec![0] };
         while let Some(index) = waiting.pop() {
             boxes += 1;
+            leaves += u64::from(graph.nodes[index as usize].children.is_empty());
             let (near, far) = table.boxes[index as usize];
             let enter = near.max(ray.t_min);
             if enter <= far && enter < ray.t_max {
@@ -173,97 +225,148 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
         if (n_boxes, &asked) == (boxes, &expected) {
             return Ok(());
         }
-        let diagnosis = match () {
-            () if asked.len() > expected.len() => "you test primitives in a volume that the ray misses",
-            () if n_boxes > boxes => "you test a volume twice, or a volume below one that the ray misses",
-            () if n_boxes < boxes => {
-                "you do not test all volumes: the root has one, too, and so has each leaf"
-            }
-            () => "you leave out primitives that the ray may hit",
-        };
+        let is_twice = asked.windows(2).any(|pair| pair[0] == pair[1]);
+        let extra = asked.iter().any(|primitive| !expected.contains(primitive));
         Err(Broken::with_texts(
             describe(query),
             format!("{n_boxes} volumes, primitives {asked:?}"),
             format!("{boxes} volumes, primitives {expected:?}"),
             "the definition",
         )
-        .looks_like(Some(diagnosis)))
+        .explained_by([
+            (is_twice, "you test a primitive twice"),
+            (n_boxes + 1 == boxes, "you do not test the volume of the root: the root has one, too"),
+            (
+                n_boxes + leaves == boxes || (boxes == 1 && n_boxes == 1 && leaves == 1),
+                "you do not test the volumes of leaves: the root has one, and so has each leaf",
+            ),
+            (extra, "you test primitives in a volume that the ray misses"),
+            (n_boxes > boxes && !extra, "you test a volume twice, or a volume below one that the ray misses"),
+        ]))
     };
-    compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge).into_iter().collect()
+    all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
 }
 
-/// A root with `n` children one behind the other along the ray, each with one primitive at its centre. The root lists
-/// them in the given order.
+/// The numbers of the nodes one behind the other along the ray. They differ from the order along the ray, so that a search
+/// that sorts by number is noticed.
+const NUMBERS: [u32; 4] = [2, 4, 1, 3];
+
+/// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
+/// lists them in the given order.
 fn row(order: &[u32], savings: Savings) -> GraphQuery {
-    let n = order.len();
+    let n = order.len() as u32;
+    // The places along the ray in the order of their nodes' numbers.
+    let mut places: Vec<u32> = (0..n).collect();
+    places.sort_by_key(|place| NUMBERS[*place as usize]);
+    let number = |place: u32| places.iter().position(|other| *other == place).unwrap_or(0) as u32 + 1;
     let mut nodes =
-        vec![GraphNode { children: order.iter().map(|child| child + 1).collect(), primitives: vec![] }];
-    nodes.extend(
-        (0..n as u32).map(|primitive| GraphNode { children: Vec::new(), primitives: vec![primitive] }),
-    );
+        vec![GraphNode { children: order.iter().map(|place| number(*place)).collect(), primitives: vec![] }];
+    nodes.extend(places.iter().map(|place| GraphNode { children: Vec::new(), primitives: vec![*place] }));
     let mut boxes = vec![(1.0, n as f32 + 1.0)];
-    boxes.extend((0..n).map(|i| (i as f32 + 1.0, i as f32 + 1.75)));
-    let primitives = (0..n).map(|i| i as f32 + 1.5).collect();
+    boxes.extend(places.iter().map(|place| (*place as f32 + 1.0, *place as f32 + 1.75)));
+    let primitives = (0..n).map(|place| place as f32 + 1.5).collect();
     let ray = Ray::new(Vec3::ZERO, Vec3::X);
     GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
 }
 
-/// Compares the primitives that are tested, in order, with the expected ones. Each case has a diagnosis.
-fn judge_orders(trial: &Trial<'_>, cases: &[(GraphQuery, Vec<u32>, &'static str)]) -> CheckResult {
+/// A query, the primitives to test in order, and the orders that mistakes give.
+type Case<'a> = (GraphQuery, &'a [u32], &'a [(&'a [u32], &'static str)]);
+
+/// Compares the primitives that are tested, in order, with the expected ones.
+fn judge_orders(trial: &Trial<'_>, cases: &[Case<'_>]) -> CheckResult {
     let queries: Vec<GraphQuery> = cases.iter().map(|(query, ..)| query.clone()).collect();
-    compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, diagnosis), yours| {
-        if yours.asked == *expected {
-            return Ok(());
-        }
-        Err(Broken::with_texts(
-            describe(query),
-            format!("tested the primitives {:?}", yours.asked),
-            format!("{expected:?}"),
-            "the definition",
-        )
-        .looks_like(known(diagnosis)))
-    })
-    .into_iter()
-    .collect()
+    let outcomes =
+        compare(cases, trial.kit.closest_hit_in_graph(&queries), |(query, expected, mistakes), yours| {
+            if yours.asked == *expected {
+                return Ok(());
+            }
+            Err(Broken::with_texts(
+                describe(query),
+                format!("tested the primitives {:?}", yours.asked),
+                format!("{expected:?}"),
+                "the definition",
+            )
+            .explained_by(mistakes.iter().map(|(wrong, text)| (yours.asked == *wrong, *text))))
+        });
+    all_hold(outcomes)
 }
 
 pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> CheckResult {
-    let beyond = "skip a volume that begins beyond the closest hit: it cannot contain a closer hit";
+    let never = "skip a volume that begins beyond the closest hit: it cannot contain a closer hit, and you decide that when \
+        you are about to visit it";
+    let sorted = "you sort the children although `sort` is off: visit them as listed";
+    let always = "you skip a volume although `skip` is off";
+    let at_the_hit =
+        "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t";
     let mut meets_again = row(&[0, 1], SKIP);
     // The second volume begins at the t of the first hit and has a hit at the same t, so it must be visited.
-    (meets_again.table.boxes[2], meets_again.table.primitives[1]) = ((1.5, 2.0), 1.5);
+    for (node, bounds) in meets_again.graph.nodes.iter().zip(&mut meets_again.table.boxes) {
+        if node.primitives == [1] {
+            *bounds = (1.5, 2.0);
+        }
+    }
+    meets_again.table.primitives[1] = 1.5;
     judge_orders(
         trial,
         &[
-            (row(&[0, 1, 2, 3], SKIP), vec![0], beyond),
-            (
-                row(&[3, 2, 1, 0], SKIP),
-                vec![3, 2, 1, 0],
-                "you sort the children although `sort` is off: visit them as listed",
-            ),
-            (row(&[1, 3, 0, 2], SKIP), vec![1, 0], beyond),
-            (row(&[0, 1, 2], VOLUMES), vec![0, 1, 2], "you skip a volume although `skip` is off"),
-            (
-                meets_again,
-                vec![0, 1],
-                "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same \
-                 t",
-            ),
+            (row(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
+            (row(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
+            (row(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
+            (row(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
+            (meets_again, &[0, 1], &[(&[0], at_the_hit)]),
         ],
     )
 }
 
 pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResult {
-    let order = "visit first the child that the ray enters first";
+    let listed =
+        "you visit the children as listed: with `sort`, visit first the child that the ray enters first";
+    let backwards = "you visit the farthest child first: visit first the child that the ray enters first";
+    let numbers = "you sort the children by their numbers: visit first the child that the ray enters first";
+    let never = "you sort, but you do not skip: skip a volume that begins beyond the closest hit";
+    let to_skip = "you sort only if `skip` is on: with `sort` and without `skip`, visit all four children, the nearest first";
+    let nearest_only = "you bring only the nearest child to the front: with `sort` and without `skip`, visit all four \
+        children, the nearest first";
+    let always = "you skip a volume although `skip` is off";
     judge_orders(
         trial,
         &[
-            (row(&[3, 2, 1, 0], ALL), vec![0], order),
-            (row(&[1, 3, 0, 2], ALL), vec![0], order),
+            (
+                row(&[3, 2, 1, 0], ALL),
+                &[0],
+                &[
+                    (&[3, 2, 1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                ],
+            ),
+            (
+                row(&[1, 3, 0, 2], ALL),
+                &[0],
+                &[
+                    (&[1, 0], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0], numbers),
+                    (&[1, 0], numbers),
+                    (&[0, 1, 2, 3], never),
+                    (&[1, 3, 0, 2], "you neither sort nor skip"),
+                ],
+            ),
             (
                 row(&[3, 1, 0, 2], SORT),
-                vec![0, 1, 2, 3],
-                "with `sort` and without `skip`, visit all four children, the nearest first",
+                &[0, 1, 2, 3],
+                &[
+                    (&[3, 1, 0, 2], to_skip),
+                    (&[3, 1, 0, 2], listed),
+                    (&[3, 2, 1, 0], backwards),
+                    (&[2, 0, 3, 1], numbers),
+                    (&[1, 3, 0, 2], numbers),
+                    (&[0, 3, 1, 2], nearest_only),
+                    (&[0, 1, 3, 2], nearest_only),
+                    (&[0], always),
+                ],
             ),
         ],
     )

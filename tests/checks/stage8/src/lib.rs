@@ -1,7 +1,7 @@
 //! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
-//! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `hard`, `flat` (pitfalls of
+//! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
 //! their formulas) · `surfaces` (patches) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod bounding_spheres;
@@ -9,6 +9,7 @@ mod boxes;
 mod flat;
 mod graph;
 mod hard;
+mod mistakes;
 mod quarters;
 mod solid;
 mod solids;

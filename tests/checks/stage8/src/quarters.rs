@@ -1,6 +1,6 @@
 //! Checks the triangles of a subdivision step by their connections, not by their positions.
 
-use super::subdivision::Unlike;
+use super::subdivision::{Unlike, unlike};
 use raykata::mesh::Mesh;
 use std::collections::BTreeSet;
 
@@ -43,10 +43,8 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     expected.sort_unstable();
     let wiring = "your triangles have wrong corners: three consist of an old vertex and the new ones of its \
         two edges, one of the three new ones";
-    let unlike = |diagnosis| {
-        ("other triangles".to_owned(), "the four quarters of each triangle".to_owned(), diagnosis)
-    };
-    let Some(labels) = labels(mesh, yours) else { return Err(unlike(wiring)) };
+    let wrong = || unlike("other triangles", "the four quarters of each triangle", wiring);
+    let Some(labels) = labels(mesh, yours) else { return Err(wrong()) };
     let faces = yours.triangles.iter().enumerate();
     let mut got: Vec<_> = faces
         .map(|(face, corners)| (begun_anew(corners.map(|v| labels[v as usize])), material(yours, face)))
@@ -63,19 +61,25 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
     if corners(&got) != corners(&expected) {
         let turned = unturned(&got) == unturned(&expected);
         return Err(match turned {
-            true => (
-                "triangles with corners in the opposite order".into(),
-                "corners in the order of the old triangle".into(),
-                "you reverse the corners of some triangles: all four keep the order of the old triangle",
+            true => Unlike::new(
+                "triangles with corners in the opposite order",
+                "corners in the order of the old triangle",
+                vec![
+                    (
+                        true,
+                        "you reverse the corners of some triangles: all four keep the order of the old triangle",
+                    ),
+                    (true, wiring),
+                ],
             ),
-            false => unlike(wiring),
+            false => wrong(),
         });
     }
     if got != expected {
         let describe = "triangles with the material of another face";
-        return Err((
-            describe.into(),
-            "the material of the old triangle for each".into(),
+        return Err(unlike(
+            describe,
+            "the material of the old triangle for each",
             "the four triangles take the material of the old triangle",
         ));
     }
@@ -83,11 +87,17 @@ pub(super) fn triangles_are_quarters(mesh: &Mesh, yours: &Mesh) -> Result<(), Un
         let right = 0.5 * (mesh.uvs[p as usize] + mesh.uvs[q as usize]);
         // The tolerance covers the rounding of halves of numbers up to 1.
         if (yours.uvs[vertex] - right).length() > 1e-6 {
-            return Err((
-                format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]),
-                format!("{right}"),
-                "the texture coordinates of a new vertex are the mean of those at the ends of its edge",
-            ));
+            let mistakes = if p == q {
+                vec![(true, "the texture coordinates of an old vertex stay")]
+            } else {
+                vec![(
+                    true,
+                    "the texture coordinates of a new vertex are the mean of those at the ends of its edge",
+                )]
+            };
+            let got =
+                format!("texture coordinates {} at vertex {vertex}, of edge {p} {q}", yours.uvs[vertex]);
+            return Err(Unlike::new(got, format!("{right}"), mistakes));
         }
     }
     Ok(())

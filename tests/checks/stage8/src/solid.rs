@@ -1,7 +1,9 @@
-//! What the checks need per solid: the call, the exact answer, a scaled copy, points inside and the extent along a
+//! What the checks need per solid: the call, the exact answer, scaled copies, points inside and the extent along a
 //! normal.
 
+use super::mistakes::{self, Mistakes, WrongNormals};
 use checks::generate::{direction, point};
+use checks::nasty;
 use glam::{DVec3, Vec3};
 use oracle::exact::{Body, Meeting, meet, polygon::meet_fan};
 use proptest::prelude::*;
@@ -27,6 +29,20 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     /// The same shape, scaled by this factor around a point inside.
     fn grown(&self, factor: f32) -> Self;
 
+    /// The same shape, scaled by this power of two around the origin, which is exact.
+    fn scaled(&self, factor: f32) -> Self;
+
+    /// The same shape with x, y and z exchanged in a circle, see [`turned`].
+    fn turned(&self) -> Self;
+
+    /// The known mistakes that lose hits or find wrong ones, each with whether it gives the answer `yours`.
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes;
+
+    /// The normals that known mistakes give at a point of the surface. They may have any length.
+    fn wrong_normals(&self, _at: DVec3) -> WrongNormals {
+        Vec::new()
+    }
+
     /// A point inside for each point of the cube from -1 to 1.
     fn inside(&self, at: Vec3) -> Vec3;
 
@@ -37,8 +53,18 @@ pub(super) trait Solid: checks::paste::Paste + Clone + Debug + Send + Sync + 'st
     fn any() -> BoxedStrategy<Self>;
 }
 
+/// The same point with x, y and z exchanged in a circle: x becomes y, y becomes z and z becomes x. This is a rotation.
+pub(super) fn turned(v: Vec3) -> Vec3 {
+    Vec3::new(v.z, v.x, v.y)
+}
+
 fn around(center: Vec3, factor: f32) -> impl Fn(Vec3) -> Vec3 {
     move |point| center + factor * (point - center)
+}
+
+/// Directions of axes: on a grid, along the axes of the world, diagonal, and almost parallel to an axis.
+fn axis() -> impl Strategy<Value = Vec3> + Clone {
+    prop_oneof![2 => direction(), 1 => nasty::unit().prop_map(|unit| 2.0 * unit)]
 }
 
 /// Half a unit to two units, in quarters.
@@ -71,6 +97,18 @@ impl Solid for Cuboid {
         let place = around(0.5 * (self.min + self.max), factor);
         Cuboid { min: place(self.min), max: place(self.max) }
     }
+    fn scaled(&self, factor: f32) -> Self {
+        Cuboid { min: factor * self.min, max: factor * self.max }
+    }
+    fn turned(&self) -> Self {
+        Cuboid { min: turned(self.min), max: turned(self.max) }
+    }
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
+        mistakes::of_cuboid(query, yours)
+    }
+    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
+        mistakes::normals_of_cuboid(self, at)
+    }
     fn inside(&self, at: Vec3) -> Vec3 {
         self.min + (0.5 + 0.45 * at) * (self.max - self.min)
     }
@@ -100,6 +138,18 @@ impl Solid for Cylinder {
         let place = around(0.5 * (self.base + self.top), factor);
         Cylinder { base: place(self.base), top: place(self.top), radius: factor * self.radius }
     }
+    fn scaled(&self, factor: f32) -> Self {
+        Cylinder { base: factor * self.base, top: factor * self.top, radius: factor * self.radius }
+    }
+    fn turned(&self) -> Self {
+        Cylinder { base: turned(self.base), top: turned(self.top), radius: self.radius }
+    }
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
+        mistakes::of_cylinder(query, yours)
+    }
+    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
+        mistakes::normals_of_cylinder(self, at)
+    }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.base, self.top - self.base, self.radius, 0.5 + 0.45 * at.z, at)
     }
@@ -108,7 +158,7 @@ impl Solid for Cylinder {
         normal.dot(base).max(normal.dot(top)) + f64::from(self.radius) * beside(normal, top - base)
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), direction(), radius())
+        (point(4), axis(), radius())
             .prop_map(|(base, axis, radius)| Cylinder { base, top: base + axis, radius })
             .boxed()
     }
@@ -127,6 +177,18 @@ impl Solid for Cone {
         let place = around(self.base + 0.25 * (self.apex - self.base), factor);
         Cone { base: place(self.base), apex: place(self.apex), radius: factor * self.radius }
     }
+    fn scaled(&self, factor: f32) -> Self {
+        Cone { base: factor * self.base, apex: factor * self.apex, radius: factor * self.radius }
+    }
+    fn turned(&self) -> Self {
+        Cone { base: turned(self.base), apex: turned(self.apex), radius: self.radius }
+    }
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
+        mistakes::of_cone(query, yours)
+    }
+    fn wrong_normals(&self, at: DVec3) -> WrongNormals {
+        mistakes::normals_of_cone(self, at)
+    }
     fn inside(&self, at: Vec3) -> Vec3 {
         // Use a cylinder inside the cone, with less than half the height and less than half the radius.
         in_round(self.base, self.apex - self.base, 0.5 * self.radius, 0.25 + 0.2 * at.z, at)
@@ -136,7 +198,7 @@ impl Solid for Cone {
         normal.dot(apex).max(normal.dot(base) + f64::from(self.radius) * beside(normal, apex - base))
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), direction(), radius())
+        (point(4), axis(), radius())
             .prop_map(|(base, axis, radius)| Cone { base, apex: base + axis, radius })
             .boxed()
     }
@@ -155,6 +217,16 @@ impl Solid for Disk {
     fn grown(&self, factor: f32) -> Self {
         Disk { radius: factor * self.radius, ..*self }
     }
+    fn scaled(&self, factor: f32) -> Self {
+        // The normal of a disk may have any length, so scale it as well.
+        Disk { center: factor * self.center, normal: factor * self.normal, radius: factor * self.radius }
+    }
+    fn turned(&self) -> Self {
+        Disk { center: turned(self.center), normal: turned(self.normal), radius: self.radius }
+    }
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
+        mistakes::of_disk(query, yours)
+    }
     fn inside(&self, at: Vec3) -> Vec3 {
         in_round(self.center, self.normal, self.radius, 0.0, at)
     }
@@ -162,7 +234,7 @@ impl Solid for Disk {
         normal.dot(self.center.as_dvec3()) + f64::from(self.radius) * beside(normal, self.normal.as_dvec3())
     }
     fn any() -> BoxedStrategy<Self> {
-        (point(4), direction(), radius())
+        (point(4), axis(), radius())
             .prop_map(|(center, normal, radius)| Disk { center, normal, radius })
             .boxed()
     }
@@ -182,6 +254,15 @@ impl Solid for Polygon {
         let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
         Polygon { corners: self.corners.iter().copied().map(around(middle, factor)).collect() }
     }
+    fn scaled(&self, factor: f32) -> Self {
+        Polygon { corners: self.corners.iter().map(|corner| factor * corner).collect() }
+    }
+    fn turned(&self) -> Self {
+        Polygon { corners: self.corners.iter().copied().map(turned).collect() }
+    }
+    fn mistakes(query: &SolidQuery<Self>, yours: Option<f32>) -> Mistakes {
+        mistakes::of_polygon(query, yours)
+    }
     fn inside(&self, at: Vec3) -> Vec3 {
         let middle = self.corners.iter().sum::<Vec3>() / self.corners.len() as f32;
         let corner = ((0.5 + 0.49 * at.x) * self.corners.len() as f32) as usize;
@@ -197,7 +278,9 @@ impl Solid for Polygon {
         let axes = prop_oneof![
             Just((Vec3::X, Vec3::Y)),
             Just((Vec3::Y, Vec3::Z)),
+            Just((Vec3::Z, Vec3::X)),
             Just((Vec3::new(1.0, 2.0, 2.0), Vec3::new(2.0, 1.0, -2.0))),
+            Just((Vec3::new(1.0, 0.0, 1.0), Vec3::new(0.5, 1.0, -0.5))),
         ];
         (point(4), axes, prop::sample::subsequence(octagon.to_vec(), 3..=7), any::<bool>())
             .prop_map(|(center, (u, v), mut corners, backwards)| {

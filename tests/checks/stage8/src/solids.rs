@@ -1,10 +1,12 @@
 //! Laws that hold for all solids.
 
+use super::mistakes::{Mistakes, is_near};
 use super::solid::Solid;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::call;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
@@ -36,14 +38,43 @@ laws! {
 /// apexes.
 const SHELL: f32 = 1e-4;
 
-/// Rays from outside and inside, most of them aimed at a point of the solid.
-fn rays<S: Solid>(range: bool) -> impl Strategy<Value = SolidQuery<S>> + Clone {
-    let ranges: &[(f32, f32)] = if range {
-        &[(0.5, f32::INFINITY), (0.0, 0.75), (1.25, 3.0), (-2.0, 0.875)]
-    } else {
-        &[(0.0, f32::INFINITY)]
-    };
-    let inputs = (S::any(), point(8), point(1), direction(), 0..4u32, 0..ranges.len());
+/// A query of ordinary size, which is asked at another scale: coordinates times `size`, and the direction times `speed`, so
+/// that `t` is multiplied by `size / speed`. Both are powers of two, so the answer is that of the ordinary query, exactly.
+#[derive(Clone, Debug)]
+pub(super) struct Scaled<S> {
+    plain: SolidQuery<S>,
+    size: f32,
+    speed: f32,
+}
+
+impl<S: Solid> Scaled<S> {
+    /// The factor of `t`.
+    fn t_scale(&self) -> f32 {
+        self.size / self.speed
+    }
+
+    fn asked(&self) -> SolidQuery<S> {
+        let (ray, t_scale) = (self.plain.ray, self.t_scale());
+        let ray = Ray { origin: self.size * ray.origin, direction: self.speed * ray.direction, ..ray };
+        let (t_min, t_max) = (t_scale * self.plain.ray.t_min, t_scale * self.plain.ray.t_max);
+        SolidQuery { ray: ray.with_range(t_min, t_max), solid: self.plain.solid.scaled(self.size) }
+    }
+}
+
+/// The answers, with the `t` of the ordinary queries.
+fn ask<S: Solid>(trial: &Trial<'_>, queries: &[Scaled<S>]) -> Vec<Option<SolidHit>> {
+    let asked: Vec<SolidQuery<S>> = queries.iter().map(Scaled::asked).collect();
+    let answers = queries.iter().zip(S::ask(trial.kit, &asked));
+    answers.map(|(query, hit)| hit.map(|hit| SolidHit { t: hit.t / query.t_scale(), ..hit })).collect()
+}
+
+/// Ranges of rays, in which hits lie before, within and beyond.
+const RANGES: &[(f32, f32)] = &[(0.5, f32::INFINITY), (0.0, 0.75), (1.25, 3.0), (-2.0, 0.875)];
+
+/// Rays from outside and inside, most of them aimed at a point of the solid, with one of these ranges.
+fn rays<S: Solid>(ranges: &'static [(f32, f32)]) -> impl Strategy<Value = SolidQuery<S>> + Clone {
+    let directions = prop_oneof![3 => direction(), 1 => nasty::unit()];
+    let inputs = (S::any(), point(8), point(1), directions, 0..4u32, 0..ranges.len());
     inputs.prop_map(move |(solid, origin, at, direction, kind, range)| {
         let (t_min, t_max) = ranges[range];
         let (origin, direction) = match kind {
@@ -54,6 +85,25 @@ fn rays<S: Solid>(range: bool) -> impl Strategy<Value = SolidQuery<S>> + Clone {
         let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
         SolidQuery { ray: Ray::new(origin, direction).with_range(t_min, t_max), solid }
     })
+}
+
+/// All rays with `t > 0`.
+const AHEAD: &[(f32, f32)] = &[(0.0, f32::INFINITY)];
+
+/// The same rays at ordinary size.
+fn plain<S: Solid>(ranges: &'static [(f32, f32)]) -> impl Strategy<Value = Scaled<S>> + Clone {
+    rays::<S>(ranges).prop_map(|plain| Scaled { plain, size: 1.0, speed: 1.0 })
+}
+
+/// The same rays, from a size of 1/4096 to 4096, with directions that are shorter or longer by as much. A product of eight
+/// such numbers is a normal number in single precision, so the usual formulas neither overflow nor underflow. Some
+/// directions are much longer or shorter, because they may have any length.
+fn scaled<S: Solid>() -> impl Strategy<Value = Scaled<S>> + Clone {
+    let scales = prop_oneof![
+        2 => (nasty::scale(-12..=12), nasty::scale(-12..=12)),
+        1 => (Just(1.0f32), nasty::scale(-24..=24)),
+    ];
+    (rays::<S>(AHEAD), scales).prop_map(|(plain, (size, speed))| Scaled { plain, size, speed })
 }
 
 /// The interval of correct `t`, or `Some(None)` for a miss. `None` if the ray passes too near to an edge to judge.
@@ -93,8 +143,9 @@ pub(super) fn input<S: Solid>(query: &SolidQuery<S>) -> String {
     call(S::NAME, &[&query.ray, &query.solid])
 }
 
-pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<CheckResult> {
-    compare(queries, S::ask(trial.kit, queries), |query, yours| {
+fn judge<S: Solid>(trial: &Trial<'_>, queries: &[Scaled<S>]) -> Vec<CheckResult> {
+    compare(queries, ask(trial, queries), |scaled, yours| {
+        let query = &scaled.plain;
         let Some(expected) = expected(query) else { return Ok(()) };
         let right = match (yours, expected) {
             (None, None) => true,
@@ -104,65 +155,83 @@ pub(super) fn judge<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> V
         if right {
             return Ok(());
         }
-        let exact = query.solid.meet(&query.ray).and_then(|meeting| meeting.t);
-        let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
-        Err(Broken::with_texts(
-            input(query),
-            describe(yours.map(|hit| hit.t)),
-            describe(exact),
-            "exact arithmetic",
-        )
-        .looks_like(known(diagnosis(query, yours, exact))))
+        let (yours, exact) =
+            (yours.map(|hit| hit.t), query.solid.meet(&query.ray).and_then(|meeting| meeting.t));
+        let describe =
+            |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {:?}", scaled.t_scale() * t));
+        Err(Broken::with_texts(input(&scaled.asked()), describe(yours), describe(exact), "exact arithmetic")
+            .explained_by(S::mistakes(query, yours).into_iter().chain(mistakes(scaled, yours, exact))))
     })
 }
 
-fn diagnosis<S: Solid>(query: &SolidQuery<S>, yours: Option<SolidHit>, exact: Option<f32>) -> &'static str {
-    let SolidQuery { ray, solid } = query;
+/// The mistakes that all solids have in common, each with whether it gives this answer.
+fn mistakes<S: Solid>(scaled: &Scaled<S>, yours: Option<f32>, exact: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = &scaled.plain;
     let infinite = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-    // The answer is wrong already. This tolerance only chooses the diagnosis.
-    let near = |t: f32, right: f32| (t - right).abs() <= 1e-3 * right.abs().max(0.1);
     let first = solid.meet(&infinite).and_then(|meeting| meeting.t);
-    let inside = solid.meet(&ray.with_range(f32::NEG_INFINITY, 0.0)).is_some_and(|back| back.t.is_some())
-        && solid.meet(&ray.with_range(0.0, f32::INFINITY)).is_some_and(|front| front.t.is_some());
+    let meets = |t_min, t_max| solid.meet(&ray.with_range(t_min, t_max)).is_some_and(|end| end.t.is_some());
+    let inside = meets(f32::NEG_INFINITY, 0.0) && meets(0.0, f32::INFINITY);
     let last = || {
         let back = Ray { direction: -ray.direction, ..infinite };
-        solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -t)
+        solid.meet(&back).and_then(|meeting| meeting.t).map(|t| -f64::from(t))
     };
-    match (yours.map(|hit| hit.t), exact) {
-        (Some(t), _) if t.is_nan() => "you return NaN: write the comparisons so that they are false for NaN",
-        (Some(t), _) if !ray.contains(t) => "you return a t outside of the ray's range: test ray.contains(t)",
-        (None, Some(_)) if inside => {
+    let near = |wrong: f64| yours.is_some_and(|t| is_near(ray, t, wrong));
+    let lost = yours.is_none() && exact.is_some();
+    // The length of the direction that the student's function received.
+    let length = f64::from(scaled.speed) * ray.direction.as_dvec3().length();
+    let counts_from = |factor: f64| {
+        exact.is_some_and(|exact| (factor - 1.0).abs() > 1e-6 && near(factor * f64::from(exact)))
+    };
+    let is_far = !S::FLAT && last().is_some_and(near);
+    // The answer of a student who uses another range.
+    let is_range = |t_min, t_max| {
+        let wrong = solid.meet(&ray.with_range(t_min, t_max)).and_then(|meeting| meeting.t);
+        yours.is_some() == wrong.is_some() && wrong.is_none_or(|wrong| near(wrong.into()))
+    };
+    let is_small = exact.is_some_and(|t| t > 0.0 && scaled.t_scale() * t < 0.01);
+    vec![
+        (
+            yours.is_some_and(f32::is_nan),
+            "you return NaN: write the comparisons so that they are false for NaN",
+        ),
+        (counts_from(length), "your t has another unit, that of the world: it counts lengths of direction"),
+        (counts_from(length.recip()), "your t has another unit: you divide by the length of direction twice"),
+        (
+            (lost || is_far) && is_small,
+            "you drop the hit by a fixed epsilon: t is small because direction is long or the solid small, not \
+             because the ray starts there",
+        ),
+        (
+            ray.t_min != 0.0 && is_range(0.0, ray.t_max),
+            "you use 0 in place of t_min: a hit outside of the ray's range does not count, so test ray.contains(t)",
+        ),
+        (
+            ray.t_max != f32::INFINITY && is_range(ray.t_min, f32::INFINITY),
+            "you do not test t_max: a hit outside of the ray's range does not count, so test ray.contains(t)",
+        ),
+        (
+            lost && inside && !S::FLAT,
             "you return None for a ray that starts inside: it hits the surface where it leaves, on a side or \
-             on an end"
-        }
-        (None, Some(_)) if first.is_some_and(|t| t <= ray.t_min) => {
-            "you give up because the entry lies before t_min: the exit still counts"
-        }
-        (None, Some(_)) if S::FLAT => {
-            "you lose a part of the shape, or one of its two sides: a ray can hit it from both"
-        }
-        (None, Some(_)) => "you lose a part of the surface: an end, or a side",
-        (Some(_), None) if S::FLAT => "you return a point of the plane that lies outside of the shape",
-        (Some(_), None) => "you return a point outside of the solid: beyond an end, or beside it",
-        (Some(t), Some(right))
-            if near(t * ray.direction.length(), right) || near(t / ray.direction.length(), right) =>
-        {
-            "your t has another unit: it counts lengths of direction"
-        }
-        (Some(t), Some(_)) if last().is_some_and(|last| near(t, last)) => {
+             on an end",
+        ),
+        (
+            lost && !S::FLAT && first.is_some_and(|t| t <= ray.t_min),
+            "you give up because the entry lies before t_min: the exit still counts",
+        ),
+        (
+            is_far && exact.is_some(),
             "you return the far side: the hit is the nearest point of the surface in the ray's range, on a \
-             side or on an end"
-        }
-        (Some(_), Some(_)) => {
-            "your hit is not the nearest point of the surface: check the roots, and intersect with the \
-             interval between the ends"
-        }
-        (None, None) => "",
-    }
+             side or on an end",
+        ),
+        (
+            yours.is_some_and(|t| !ray.contains(t)),
+            "you return a t outside of the ray's range: test ray.contains(t)",
+        ),
+    ]
 }
 
 fn agrees<S: Solid>(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(4000, rays::<S>(false), |queries| judge(trial, queries))
+    trial.forall(4000, plain::<S>(AHEAD), |queries| judge(trial, queries))
 }
 
 /// For flat shapes this judges the normal, too, which must be that of the shape's description.
@@ -171,13 +240,37 @@ pub(super) fn agrees_flat<S: Solid>(trial: &Trial<'_>) -> CheckResult {
     outwards::<S>(trial)
 }
 
+/// A solid and a ray through its middle, for a law that judges hits only.
+fn through_the_middle<S: Solid>(trial: &Trial<'_>) -> CheckResult {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let Ok(tree) = S::any().new_tree(&mut runner) else { return Ok(()) };
+    let solid = proptest::strategy::ValueTree::current(&tree);
+    let from = solid.inside(Vec3::ZERO) + 8.0 * Vec3::new(0.5, 0.75, -0.625);
+    let query = SolidQuery { ray: Ray::new(from, solid.inside(Vec3::ZERO) - from), solid };
+    // The t of a constant is not that of the hit.
+    let exact = query.solid.meet(&query.ray).and_then(|meeting| meeting.t).unwrap_or(f32::NAN);
+    let yours = S::ask(trial.kit, std::slice::from_ref(&query))[0].map(|hit| hit.t);
+    if yours.is_some_and(|t| (t - exact).abs() < 1e-3) {
+        return Ok(());
+    }
+    let expected = format!("Some({exact:?})");
+    Err(Broken::with_texts(input(&query), format!("{yours:?}"), expected, "exact arithmetic")
+        .explained_by([]))
+}
+
 /// At a point `p` of a convex solid, `n` is an outward normal if no point `q` of the solid has `n · (q - p) > 0`. This
 /// holds on faces, rims and apexes, for each of the possible normals there. A flat shape has two such normals, and the
 /// one that its description gives is right.
 fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(3000, rays::<S>(false), |queries| {
-        compare(queries, S::ask(trial.kit, queries), |query, yours| {
-            let (Some(hit), Some(Some(_))) = (yours, expected(query)) else { return Ok(()) };
+    through_the_middle::<S>(trial)?;
+    trial.forall(3000, scaled::<S>(), |queries| {
+        compare(queries, ask(trial, queries), |scaled, yours| {
+            let query = &scaled.plain;
+            let (Some(hit), Some(Some(range))) = (yours, expected(query)) else { return Ok(()) };
+            // Another check judges t.
+            if !(range.0 <= hit.t && hit.t <= range.1) {
+                return Ok(());
+            }
             let normal = hit.normal.as_dvec3();
             let at = query.ray.origin.as_dvec3() + f64::from(hit.t) * query.ray.direction.as_dvec3();
             let beyond = |normal: DVec3| query.solid.reach(normal) - normal.dot(at);
@@ -188,28 +281,40 @@ fn outwards<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             // A normalized vector has an error of 2e-7; the limit is fifty times that.
             let unit = (normal.length() - 1.0).abs() <= 1e-5;
             // The extent of a flat shape along its normal is 0, up to rounding errors of coordinates up to 8.
-            let turned = query.solid.reach(normal) + query.solid.reach(-normal) < 1e-3
+            let turned = S::FLAT
+                && query.solid.reach(normal) + query.solid.reach(-normal) < 1e-3 * normal.length()
                 && own_normal(query).is_some_and(|own| own.dot(normal) < 0.0);
             if outward && unit && !turned {
                 return Ok(());
             }
-            let diagnosis = match () {
-                () if turned => {
-                    "you return the normal of the other side: it does not depend on where the ray comes from"
-                }
-                () if normal.is_nan() => "your normal is NaN: you normalized a vector of length 0",
-                () if outward => "your normal does not have unit length",
-                () if beyond(-normal) <= 2e-3 => "your normal points inwards",
-                () if unit => "you return a unit vector that is not perpendicular to the surface at the hit",
-                () => "your normal has another length than 1 and is not perpendicular to the surface",
+            let direction = normal.normalize_or_zero();
+            let faces_viewer = normal.dot(query.ray.direction.as_dvec3()) < 0.0;
+            let mut mistakes = vec![
+                (normal.is_nan(), "your normal is NaN: you normalized a vector of length 0"),
+                (normal == DVec3::ZERO, "your normal is 0, which has no direction"),
+                (
+                    turned && faces_viewer && unit,
+                    "you turn the normal to the viewer: it does not depend on where the ray comes from",
+                ),
+                (
+                    turned && unit,
+                    "you return the normal of the other side, from which the corners run clockwise",
+                ),
+                (!turned && !unit && beyond(direction) <= 2e-3, "your normal does not have unit length"),
+            ];
+            // The tolerance covers the error of the hit point over half a unit, the smallest radius.
+            let is = |(wrong, text): (DVec3, &'static str)| {
+                ((wrong.normalize_or_zero() - direction).length() < 1e-3, text)
             };
+            mistakes.extend(query.solid.wrong_normals(at).into_iter().map(is));
+            mistakes.extend([(!S::FLAT && beyond(-direction) <= 2e-3, "your normal points inwards")]);
             Err(Broken::with_texts(
-                input(query),
-                format!("normal {} at t = {:?}", hit.normal, hit.t),
+                input(&scaled.asked()),
+                format!("normal {} at t = {:?}", hit.normal, scaled.t_scale() * hit.t),
                 "the outward unit normal at the hit",
                 "all points of the solid lie behind it",
             )
-            .looks_like(Some(diagnosis)))
+            .explained_by(mistakes))
         })
     })
 }
@@ -226,46 +331,51 @@ fn own_normal<S: Solid>(query: &SolidQuery<S>) -> Option<DVec3> {
 }
 
 fn keeps_to_the_rules<S: Solid>(trial: &Trial<'_>) -> CheckResult {
-    trial.forall(2000, rays::<S>(true), |queries| judge(trial, queries))?;
-    // A direction 1024 times as long must give 1/1024 of t, because t counts lengths of the direction.
-    trial.forall(500, rays::<S>(false), |queries| {
-        let answers = S::ask(trial.kit, queries);
-        let longer = |query: &SolidQuery<S>| SolidQuery {
-            ray: Ray { direction: 1024.0 * query.ray.direction, ..query.ray },
-            solid: query.solid.clone(),
-        };
-        let scaled: Vec<SolidQuery<S>> = queries.iter().map(longer).collect();
-        let pairs: Vec<_> = answers.into_iter().zip(S::ask(trial.kit, &scaled)).collect();
-        compare(&scaled, pairs, |query, (answer, scaled)| {
-            if expected(query).is_none() {
-                return Ok(());
-            }
-            let t = answer.map(|hit| hit.t / 1024.0);
-            // Scaling by a power of two is exact, but a method may normalize the direction, which rounds. Allow 1e-5,
-            // which is eighty such rounding errors, of t or, near the origin, of the coordinates.
-            let same = match (t, scaled) {
-                (Some(t), Some(hit)) => (hit.t - t).abs() <= 1e-5 * t.max(0.01),
-                (None, None) => true,
-                _ => false,
-            };
-            let describe = |t: Option<f32>| t.map_or("None".into(), |t| format!("Some at t = {t:?}"));
-            let diagnosis = scaled.is_none().then_some(
-                "you drop the hit by a fixed epsilon: t is small because direction is long, not because the \
-                 hit is near",
-            );
-            if same {
-                return Ok(());
-            }
-            Err(Broken::with_texts(
-                input(query),
-                describe(scaled.map(|hit| hit.t)),
-                describe(t),
-                "1/1024 of the t for direction / 1024",
-            )
-            .looks_like(diagnosis))
-        })
-    })?;
+    trial.forall(1500, plain::<S>(RANGES), |queries| judge(trial, queries))?;
+    // t counts lengths of the direction, and no size is special.
+    trial.forall(1000, scaled::<S>(), |queries| judge(trial, queries))?;
+    trial.forall(100, rays::<S>(AHEAD), |queries| judge_ranges(trial, queries))?;
     invalid_numbers::<S>(trial)
+}
+
+/// Judges ranges that begin or end exactly at the hit, or one float before or after it.
+fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<CheckResult> {
+    let hits: Vec<Option<f32>> =
+        S::ask(trial.kit, queries).iter().map(|hit| hit.map(|hit| hit.t).filter(|t| *t > 0.0)).collect();
+    let ranged = |(query, t): (&SolidQuery<S>, &Option<f32>)| {
+        nasty::ranges(t.unwrap_or(1.0)).map(|((t_min, t_max), _)| SolidQuery {
+            ray: query.ray.with_range(t_min, t_max),
+            solid: query.solid.clone(),
+        })
+    };
+    let asked: Vec<SolidQuery<S>> = queries.iter().zip(&hits).flat_map(ranged).collect();
+    let answers = S::ask(trial.kit, &asked);
+    let judge = |((asked, answers), t): ((&[SolidQuery<S>], &[Option<SolidHit>]), &Option<f32>)| {
+        let Some(t) = *t else { return Ok(()) };
+        let each = asked.iter().zip(answers).zip(nasty::ranges(t));
+        let judged = each.map(|((query, yours), (_, counts))| {
+            let yours = yours.map(|hit| hit.t);
+            // If the first point does not count, a later one may.
+            if counts == (yours == Some(t)) {
+                return Ok(());
+            }
+            let expected = if counts { format!("Some at t = {t:?}") } else { format!("no hit at t = {t:?}") };
+            let source = "your t without these ends of the range";
+            Err(Broken::with_texts(input(query), format!("{yours:?}"), expected, source).explained_by([
+                (
+                    !counts && (t == query.ray.t_min || t == query.ray.t_max),
+                    "the range is open: a hit exactly at t_min or t_max does not count, so test ray.contains(t)",
+                ),
+                (
+                    counts && yours.is_none(),
+                    "you lose a hit that is one float inside the range: compare t with t_min and t_max, without an \
+                     epsilon",
+                ),
+            ]))
+        });
+        checks::broken::all_hold(judged.collect())
+    };
+    asked.chunks(6).zip(answers.chunks(6)).zip(&hits).map(judge).collect()
 }
 
 fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> CheckResult {
@@ -288,17 +398,38 @@ fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             Ray { direction: Vec3::ZERO, ..ray },
             Ray { origin: Vec3::NAN, ..ray },
             Ray { origin: Vec3::INFINITY, ..ray },
+            Ray { direction: Vec3::INFINITY, ..ray },
+            Ray { origin: ray.origin.with_y(f32::NAN), ..ray },
+            Ray { direction: ray.direction.with_z(f32::NAN), ..ray },
         ];
         queries.extend(broken.map(|ray| SolidQuery { ray, solid: solid.clone() }));
         queries.push(SolidQuery { ray, solid: solid.grown(f32::NAN) });
     }
-    compare(&queries, S::ask(trial.kit, &queries), |query, yours| match yours {
+    let outcomes = compare(&queries, S::ask(trial.kit, &queries), |query, yours| match yours {
         None => Ok(()),
         Some(hit) => Err(Broken::with_texts(input(query), format!("{hit:?}"), "None", "the definition")
-            .looks_like(Some(
-                "you return a hit for an invalid ray or shape: write comparisons that are false for NaN",
-            ))),
-    })
-    .into_iter()
-    .collect()
+            .explained_by([
+                (
+                    query.ray.direction == Vec3::ZERO,
+                    "you return a hit for a direction of 0: it has no hits, so return None",
+                ),
+                (
+                    !query.ray.origin.is_finite() && query.ray.direction.is_finite(),
+                    "you return a hit for an invalid origin: write comparisons that are false for NaN",
+                ),
+                (
+                    query.ray.origin.is_finite() && !query.ray.direction.is_finite(),
+                    "you return a hit for an invalid direction: write comparisons that are false for NaN",
+                ),
+                (
+                    query.ray.origin.is_finite() && query.ray.direction.is_finite(),
+                    "you return a hit for an invalid shape: write comparisons that are false for NaN",
+                ),
+                (
+                    true,
+                    "you return a hit for an invalid ray or shape: write comparisons that are false for NaN",
+                ),
+            ])),
+    });
+    checks::broken::all_hold(outcomes)
 }

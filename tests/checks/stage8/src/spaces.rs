@@ -3,35 +3,49 @@
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::{direction, point, rough_point};
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{call, list};
 use glam::{Affine3A, DAffine3, DMat3, DVec3, Mat3, Vec3};
 use proptest::prelude::*;
+use raykata::graph::Placement;
 use raykata::kit::{NormalQuery, ObjectRayQuery};
 use raykata::ray::Ray;
 
-/// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size.
-fn transform() -> impl Strategy<Value = Affine3A> + Clone {
+/// Rotations, shears, scales and reflections with small whole numbers and a determinant of at least 1 in size, all multiplied
+/// by one power of two.
+fn transform(exponents: std::ops::RangeInclusive<i32>) -> impl Strategy<Value = Affine3A> + Clone {
     let column = || (-2..=2i32, -2..=2i32, -2..=2i32);
-    (column(), column(), column(), point(4))
-        .prop_map(|(x, y, z, translation)| {
-            let vector = |(a, b, c): (i32, i32, i32)| Vec3::new(a as f32, b as f32, c as f32);
-            Affine3A::from_mat3_translation(Mat3::from_cols(vector(x), vector(y), vector(z)), translation)
+    let scale = prop_oneof![2 => Just(1.0f32), 1 => nasty::scale(exponents)];
+    (column(), column(), column(), point(4), scale)
+        .prop_map(|(x, y, z, translation, scale)| {
+            let vector = |(a, b, c): (i32, i32, i32)| scale * Vec3::new(a as f32, b as f32, c as f32);
+            let matrix = Mat3::from_cols(vector(x), vector(y), vector(z));
+            Affine3A::from_mat3_translation(matrix, scale * translation)
         })
-        .prop_filter("it has an inverse", |transform| transform.matrix3.determinant().abs() >= 1.0)
+        .prop_filter("it has an inverse", |transform| determinant(transform) != 0.0)
+}
+
+/// The determinant in double precision, which small scales do not round to 0.
+fn determinant(transform: &Affine3A) -> f64 {
+    transform.as_daffine3().matrix3.determinant()
 }
 
 pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> CheckResult {
     // X1: first a quarter turn of a stretched object, for which the matrix, its inverse and the transposes of both all
     // differ. Scales along the axes do not show a wrong transpose.
-    let to_object = Affine3A::from_mat3(Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z));
-    let turned = ObjectRayQuery { ray: Ray::new(Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0)), to_object };
-    judge_points(trial, &[turned]).into_iter().collect::<CheckResult>()?;
-    let inputs = (point(4), direction(), transform()).prop_map(|(origin, direction, to_object)| {
-        ObjectRayQuery { ray: Ray::new(origin, direction), to_object }
-    });
-    trial.forall(2000, inputs, |queries| judge_points(trial, queries))?;
-    // Test an object far from the origin: the subtraction must not lose the low digits of the ray's origin.
+    let matrix = Mat3::from_cols(Vec3::NEG_Y, 2.0 * Vec3::X, Vec3::Z);
+    let to_object = Affine3A::from_mat3_translation(matrix, Vec3::new(0.5, -1.0, 2.0));
+    let turned = ObjectRayQuery { ray: Ray::new(Vec3::X, Vec3::new(1.0, 1.0, 0.0)), to_object };
+    // The origin may be some thousand times as far away as the direction is long.
+    let directions = prop_oneof![direction(), nasty::unit()];
+    let near = (rough_point(4.0), directions, nasty::scale(-12..=12), transform(-40..=40)).prop_map(
+        |(origin, direction, scale, to_object)| ObjectRayQuery {
+            ray: Ray::new(origin, scale * direction),
+            to_object,
+        },
+    );
+    // An object far from the origin: the low digits of the ray's origin must not be lost.
     let far = (rough_point(4.0), direction()).prop_map(|(offset, direction)| {
         let place = Vec3::new(148_376.0, 1_234.0, -223_423.0);
         ObjectRayQuery {
@@ -39,7 +53,8 @@ pub(super) fn rays_pass_the_same_points_in_every_space(trial: &Trial<'_>) -> Che
             to_object: Affine3A::from_translation(-place),
         }
     });
-    trial.forall(500, far, |queries| judge_points(trial, queries))
+    let inputs = prop_oneof![4 => near, 1 => far];
+    trial.forall_and(&[turned], 2000, inputs, |queries| judge_points(trial, queries))
 }
 
 fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResult> {
@@ -65,31 +80,16 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
         if right_origin && right_dir {
             return Ok(());
         }
-        let with = |matrix: DMat3| is_along(yours.direction, matrix * ray.direction.as_dvec3());
-        let diagnosis = match () {
-            () if !right_dir && with(exact.matrix3.transpose()) => {
-                "you multiply the direction by the transpose of to_object, the inverse transpose of \
-                 to_world, as the slide does: this is for normals only"
-            }
-            () if !right_dir && with(exact.matrix3.inverse().transpose()) => {
-                "you multiply the direction by the inverse transpose of to_object: this is for normals only"
-            }
-            () if !right_dir && with(exact.matrix3.inverse()) => {
-                "you multiply the direction by the inverse of to_object, which leads to the world"
-            }
-            () if !right_dir && is_along(yours.direction, direction + exact.translation) => {
-                "you translate the direction: only points are translated"
-            }
-            () if !right_origin
-                && close(yours.origin, origin - exact.translation, sizes(ray.origin, exact.translation)) =>
-            {
-                "you do not translate the origin: it is a point"
-            }
-            () if !right_origin && origin.length() < 10.0 && exact.translation.length() > 1e5 => {
-                "you lose digits of an origin far from 0: transform it in double precision"
-            }
-            () => "",
+        let along = |matrix: DMat3| is_roughly_along(yours.direction, matrix * ray.direction.as_dvec3());
+        // The answer of a mistake that concerns the direction only, or the origin only.
+        let turned = |direction: bool| right_origin && direction;
+        let moved = |origin: bool| right_dir && origin;
+        let back = exact.inverse();
+        let there = |point: DVec3| {
+            let size = sizes(ray.origin, exact.translation).length().max(point.length());
+            (yours.origin.as_dvec3() - point).length() <= 1e-4 * size
         };
+        let from = ray.origin.as_dvec3();
         let input = call("ray_to_object", &[ray, to_object]);
         let describe = |origin: Vec3, direction: Vec3| format!("origin {origin}, direction {direction}");
         Err(Broken::with_texts(
@@ -98,8 +98,45 @@ fn judge_points(trial: &Trial<'_>, queries: &[ObjectRayQuery]) -> Vec<CheckResul
             describe(origin.as_vec3(), direction.as_vec3()),
             "double precision",
         )
-        .looks_like(known(diagnosis)))
+        .explained_by([
+            (
+                turned(along(exact.matrix3.transpose())),
+                "you multiply the direction by the transpose of to_object, the inverse transpose of \
+                 to_world, as the slide does: this is for normals only",
+            ),
+            (
+                turned(along(exact.matrix3.inverse().transpose())),
+                "you multiply the direction by the inverse transpose of to_object: this is for normals only",
+            ),
+            (
+                turned(along(exact.matrix3.inverse())),
+                "you multiply the direction by the inverse of to_object, which leads to the world",
+            ),
+            (
+                turned(is_along(yours.direction, ray.direction.as_dvec3())),
+                "you do not transform the direction",
+            ),
+            (
+                turned(is_along(yours.direction, direction + exact.translation)),
+                "you translate the direction: only points are translated",
+            ),
+            (moved(there(origin - exact.translation)), "you do not translate the origin: it is a point"),
+            (moved(there(from)), "you do not transform the origin"),
+            (
+                moved(there(back.transform_point3(from))),
+                "you transform the origin by the inverse of to_object, which leads to the world",
+            ),
+            (
+                along(exact.matrix3.inverse()) && there(back.transform_point3(from)),
+                "you transform the ray by the inverse of to_object, which leads to the world",
+            ),
+        ]))
     })
+}
+
+/// Whether a direction is that of a mistake, whose rounding errors are not known.
+fn is_roughly_along(yours: Vec3, wrong: DVec3) -> bool {
+    (yours.as_dvec3().normalize_or_zero() - wrong.normalize_or_zero()).length() <= 1e-3
 }
 
 fn is_along(yours: Vec3, right: DVec3) -> bool {
@@ -114,50 +151,84 @@ pub(super) fn rays_keep_their_t_in_every_space(trial: &Trial<'_>) -> CheckResult
         ray: Ray::new(Vec3::new(0.0, 0.0, -5.0), 2.0 * Vec3::Z),
         to_object: Affine3A::from_scale(Vec3::splat(0.125)),
     };
-    let mut queries = vec![grown];
-    for (t_min, t_max, time) in [(0.5, 8.0, 0.25), (0.0, 2.0, 1.0)] {
-        let ray = Ray { time, ..Ray::new(Vec3::X, Vec3::new(3.0, 0.0, 4.0)).with_range(t_min, t_max) };
-        for scale in [0.001, 1.0, 64.0] {
-            queries.push(ObjectRayQuery { ray, to_object: Affine3A::from_scale(Vec3::splat(scale)) });
-        }
+    let ranges =
+        prop_oneof![Just((0.5f32, 8.0f32, 0.25f32)), Just((0.0, 2.0, 1.0)), Just((-1.0, f32::INFINITY, 0.5))];
+    let directions = prop_oneof![direction(), nasty::unit()];
+    let inputs = (point(4), directions, nasty::scale(-12..=12), ranges, transform(-20..=20)).prop_map(
+        |(origin, direction, scale, (t_min, t_max, time), to_object)| {
+            let ray = Ray { time, ..Ray::new(origin, scale * direction).with_range(t_min, t_max) };
+            ObjectRayQuery { ray, to_object }
+        },
+    );
+    let timed = Ray { time: 0.25, ..grown.ray.with_range(0.5, 8.0) };
+    let chosen = [grown, ObjectRayQuery { ray: timed, ..grown }];
+    trial.forall_and(&chosen, 500, inputs, |queries| {
+        compare(queries, trial.kit.ray_to_object(queries), judge_range)
+    })
+}
+
+fn judge_range(query: &ObjectRayQuery, yours: Ray) -> CheckResult {
+    let ObjectRayQuery { ray, to_object } = query;
+    let world = ray.direction.as_dvec3();
+    let exact = to_object.as_daffine3().transform_vector3(world).length();
+    let length = yours.direction.as_dvec3().length();
+    // Allow eight rounding errors of the terms, whose sum may be shorter.
+    let matrix = to_object.as_daffine3().matrix3;
+    let terms = matrix.x_axis.abs() * world.x.abs()
+        + matrix.y_axis.abs() * world.y.abs()
+        + matrix.z_axis.abs() * world.z.abs();
+    let near =
+        |right: f64| (length - right).abs() <= 8.0 * checks::double::U * (terms.length() / exact) * right;
+    let same_length = near(exact);
+    let same_range = (yours.t_min, yours.t_max) == (ray.t_min, ray.t_max);
+    let same_time = yours.time == ray.time;
+    if same_length && same_range && same_time {
+        return Ok(());
     }
-    let judge = |query: &ObjectRayQuery, yours: Ray| {
-        let ObjectRayQuery { ray, to_object } = query;
-        let exact = to_object.as_daffine3().transform_vector3(ray.direction.as_dvec3()).length();
-        // Allow a rounding error of each term of the length.
-        let same_length = (f64::from(yours.direction.length()) / exact - 1.0).abs() < 1e-6;
-        let same_range = (yours.t_min, yours.t_max, yours.time) == (ray.t_min, ray.t_max, ray.time);
-        if same_length && same_range {
-            return Ok(());
-        }
-        let unit = (yours.direction.length() - 1.0).abs() < 1e-6;
-        let diagnosis = match () {
-            () if !same_length && unit => {
-                "you normalize the direction: t then has another unit than in the world and cannot be \
-                 compared"
-            }
-            () if !same_length && (yours.direction.length() / ray.direction.length() - 1.0).abs() < 1e-6 => {
-                "you give the direction the length that it has in the world: then the same t is another point"
-            }
-            () if !same_length => "your direction has another length than to_object gives it",
-            () if yours.time != ray.time => "you do not copy the time of the ray",
-            () => {
-                "you change the range of the ray: t is the same number in both spaces, so t_min and t_max \
-                 stay"
-            }
-        };
-        let describe = |length: f64, ray: &Ray| {
-            format!("length {length:.6}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
-        };
-        Err(Broken::with_texts(
-            call("ray_to_object", &[ray, to_object]),
-            describe(f64::from(yours.direction.length()), &yours),
-            describe(exact, ray),
-            "the definition",
-        )
-        .looks_like(Some(diagnosis)))
+    // Which parts are wrong.
+    let only_length = same_range && same_time && !same_length;
+    let factor = exact / world.length();
+    let is = |yours: f32, right: f64| {
+        (f64::from(yours) - right).abs() <= 1e-5 * right.abs() || f64::from(yours) == right
     };
-    compare(&queries, trial.kit.ray_to_object(&queries), judge).into_iter().collect()
+    let [low, high] = [ray.t_min, ray.t_max].map(f64::from);
+    let describe = |length: f64, ray: &Ray| {
+        format!("length {length:.6e}, t in {:?}..{:?}, time {:?}", ray.t_min, ray.t_max, ray.time)
+    };
+    Err(Broken::with_texts(
+        call("ray_to_object", &[ray, to_object]),
+        describe(length, &yours),
+        describe(exact, ray),
+        "the definition",
+    )
+    .explained_by([
+        (
+            only_length && near(1.0),
+            "you normalize the direction: t then has another unit than in the world and cannot be compared",
+        ),
+        (
+            only_length && near(world.length()),
+            "you give the direction the length that it has in the world: then the same t is another point",
+        ),
+        (
+            same_range && same_length && yours.time == 0.0,
+            "you do not copy the time of the ray",
+        ),
+        (
+            (yours.t_min, yours.t_max) == (0.0, f32::INFINITY),
+            "you start with a new range: copy t_min and t_max from the ray",
+        ),
+        (
+            is(yours.t_min, low * factor) && is(yours.t_max, high * factor),
+            "you change the range of the ray by the length of the direction: t is the same number in both spaces, so t_min \
+             and t_max stay",
+        ),
+        (
+            is(yours.t_min, low / factor) && is(yours.t_max, high / factor),
+            "you divide the range of the ray by the change of the direction's length: t is the same number in both spaces, \
+             so t_min and t_max stay",
+        ),
+    ]))
 }
 
 /// The normal in the world, computed in double precision.
@@ -168,31 +239,38 @@ fn normal(query: &NormalQuery) -> DVec3 {
 fn judge_normals(trial: &Trial<'_>, queries: &[NormalQuery]) -> Vec<CheckResult> {
     compare(queries, trial.kit.normal_to_world(queries), |query, yours| {
         let (right, exact) = (normal(query), query.to_object.as_daffine3().matrix3);
-        // The tolerance covers a normalized sum of three products whose terms are at most ten times as large as the sum.
-        if (yours.as_dvec3() - right).length() <= 1e-5 {
+        let own = query.normal.as_dvec3();
+        // Allow sixteen rounding errors of the terms, whose sum may be shorter, and some of the usual terms.
+        let terms = DVec3::from_array([0, 1, 2].map(|row| exact.col(row).abs().dot(own.abs())));
+        let cancels = terms.length() / (exact.transpose() * own).length();
+        let near = 1e-5f64.max(16.0 * checks::double::U * cancels);
+        if (yours.as_dvec3() - right).length() <= near {
             return Ok(());
         }
-        let own = query.normal.as_dvec3();
-        let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= 1e-5;
-        let diagnosis = match () {
-            () if like(-right) => {
-                "your normal points inwards: the inverse transpose needs no change of sign, also for a \
-                 reflection"
-            }
-            () if like(right) => "your normal does not have unit length",
-            () if like(exact.inverse() * own) => {
-                "you transform the normal like a point, by to_world: it is then not perpendicular to the \
-                 surface"
-            }
-            () if like(exact * own) => "you multiply by to_object without the transpose",
-            () if like(exact.inverse().transpose() * own) => {
-                "you multiply by the transpose of to_world: use the transpose of to_object, which is the \
-                 inverse"
-            }
-            () => "",
-        };
+        let unit = (yours.as_dvec3().length() - 1.0).abs() <= near;
+        let like = |other: DVec3| (yours.as_dvec3().normalize_or_zero() - other.normalize()).length() <= near;
         let input = call("normal_to_world", &[&query.normal, &query.to_object]);
-        Err(Broken::new(input, yours, right.as_vec3(), "double precision").looks_like(known(diagnosis)))
+        Err(Broken::new(input, yours, right.as_vec3(), "double precision").explained_by([
+            (like(right) && !unit, "your normal does not have unit length"),
+            (
+                like(exact.inverse() * own) && determinant(&query.to_object) > 0.0,
+                "you transform the normal like a point, by to_world: it is then not perpendicular to the \
+                 surface",
+            ),
+            (like(exact.inverse() * own), "you transform the normal like a point, by to_world"),
+            (like(exact * own), "you multiply by to_object without the transpose"),
+            (
+                like(exact.inverse().transpose() * own),
+                "you multiply by the transpose of to_world: use the transpose of to_object, which is the \
+                 inverse",
+            ),
+            (like(own), "you do not transform the normal"),
+            (
+                like(-right) && unit,
+                "your normal points inwards: the inverse transpose needs no change of sign, also for a \
+                 reflection",
+            ),
+        ]))
     })
 }
 
@@ -201,88 +279,128 @@ pub(super) fn normals_are_at_right_angles_to_the_surface(trial: &Trial<'_>) -> C
     let to_object =
         Affine3A::from_mat3(Mat3::from_cols(Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.5, 1.0, 0.0), Vec3::Z));
     let leaning = NormalQuery { normal: Vec3::new(0.6, 0.8, 0.0), to_object };
-    judge_normals(trial, &[leaning]).into_iter().collect::<CheckResult>()?;
-    let inputs = (direction(), transform())
-        .prop_filter("another check tests reflections", |(_, transform)| {
-            transform.matrix3.determinant() > 0.0
-        })
-        .prop_map(|(normal, to_object)| NormalQuery { normal: normal.normalize(), to_object });
-    trial.forall(2000, inputs, |queries| judge_normals(trial, queries))?;
+    let any = (nasty::unit(), transform(-40..=40))
+        .prop_filter("another check tests reflections", |(_, transform)| determinant(transform) > 0.0)
+        .prop_map(|(normal, to_object)| NormalQuery { normal, to_object });
     // 65: scale by 1000 along one axis and by 1/1000 along another.
-    let extreme = direction().prop_map(|normal| NormalQuery {
-        normal: normal.normalize(),
+    let extreme = nasty::unit().prop_map(|normal| NormalQuery {
+        normal,
         to_object: Affine3A::from_scale(Vec3::new(1e3, 1.0, 1e-3)),
     });
-    trial.forall(200, extreme, |queries| judge_normals(trial, queries))
+    let inputs = prop_oneof![8 => any, 1 => extreme];
+    trial.forall_and(&[leaning], 2000, inputs, |queries| judge_normals(trial, queries))
 }
 
 pub(super) fn normals_stay_outside_in_a_mirror(trial: &Trial<'_>) -> CheckResult {
-    let inputs = (direction(), transform()).prop_map(|(normal, to_object)| {
-        let mirrored = to_object.matrix3.determinant() < 0.0;
+    let inputs = (nasty::unit(), transform(-40..=40)).prop_map(|(normal, to_object)| {
+        let mirrored = determinant(&to_object) < 0.0;
         let mirror = Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0));
         let to_object = if mirrored { to_object } else { to_object * mirror };
-        NormalQuery { normal: normal.normalize(), to_object }
+        NormalQuery { normal, to_object }
     });
     trial.forall(1000, inputs, |queries| judge_normals(trial, queries))
 }
 
 pub(super) fn placement_multiplies_in_the_right_order(trial: &Trial<'_>) -> CheckResult {
-    let empty = trial.kit.placement(&[Vec::new()])[0];
-    if empty.is_none_or(|place| (place.to_world, place.to_object) != (Affine3A::IDENTITY, Affine3A::IDENTITY))
-    {
-        return Err(Broken::new("placement(&[])", empty, "the identity, twice", "the definition"));
+    let paths = prop::collection::vec(transform(-8..=8), 1..5);
+    trial.forall_and(&[Vec::new()], 1000, paths, |paths| {
+        compare(paths, trial.kit.placement(paths), judge_placement)
+    })
+}
+
+/// Whether a matrix and a translation are those of `right`, each compared with its own largest entry. The tolerance is a
+/// fraction of this entry.
+fn is_transform(yours: &Affine3A, right: &DAffine3, tolerance: f64) -> bool {
+    let (yours, right) = (yours.as_daffine3().to_cols_array(), right.to_cols_array());
+    let near = |entries: std::ops::Range<usize>, least: f64| {
+        let size = right[entries.clone()].iter().fold(least, |largest, entry| largest.max(entry.abs()));
+        entries.into_iter().all(|i| (yours[i] - right[i]).abs() <= tolerance * size)
+    };
+    // A translation is a sum of products of the matrices with others, which may cancel.
+    let matrix_size = right[..9].iter().fold(0.0f64, |largest, entry| largest.max(entry.abs()));
+    near(0..9, 0.0) && near(9..12, 4.0 * matrix_size)
+}
+
+fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult {
+    let product =
+        |path: &mut dyn Iterator<Item = DAffine3>| path.fold(DAffine3::IDENTITY, |all, one| all * one);
+    let all = || path.iter().map(Affine3A::as_daffine3);
+    let exact = product(&mut all());
+    let input = format!("placement(&{})", list(path));
+    let Some(yours) = yours else {
+        let broken = Broken::with_texts(input, "None", "Some", "each transform has an inverse");
+        return Err(broken.explained_by([
+            (path.is_empty(), "you return None for an empty path: it is the identity"),
+            (
+                path.iter().any(|one| determinant(one) < 0.0),
+                "you return None, but no determinant is 0: a negative one belongs to a reflection",
+            ),
+        ]));
+    };
+    // A few rounding errors, which an inverse of the product multiplies by its condition number.
+    let size = |matrix: DMat3| matrix.to_cols_array().iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+    let condition: f64 = all().map(|one| size(one.matrix3) * size(one.matrix3.inverse())).product();
+    let tolerance = (32.0 * checks::double::U * condition).clamp(1e-4, 0.05);
+    let near = |yours: &Affine3A, right: &DAffine3| is_transform(yours, right, tolerance);
+    let (up, down) = (near(&yours.to_world, &exact), near(&yours.to_object, &exact.inverse()));
+    if up && down {
+        return Ok(());
     }
-    trial.forall(1000, prop::collection::vec(transform(), 1..5), |paths| {
-        compare(paths, trial.kit.placement(paths), |path, yours| {
-            let exact = path.iter().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
-            let input = format!("placement(&{})", list(path));
-            let Some(yours) = yours else {
-                let broken = Broken::with_texts(input, "None", "Some", "each transform has an inverse");
-                return Err(broken.looks_like(Some(
-                    "you return None, but no determinant is 0: a negative one belongs to a reflection",
-                )));
-            };
-            let near = |yours: &Affine3A, right: &DAffine3| {
-                let (yours, right) = (yours.as_daffine3().to_cols_array(), right.to_cols_array());
-                let size = right.iter().fold(1.0, |largest: f64, entry| largest.max(entry.abs()));
-                // Allow some hundred rounding errors, for a product of up to four small matrices in single precision.
-                yours.iter().zip(right).all(|(yours, right)| (yours - right).abs() <= 1e-4 * size)
-            };
-            let (up, down) = (near(&yours.to_world, &exact), near(&yours.to_object, &exact.inverse()));
-            if up && down {
-                return Ok(());
-            }
-            let turned =
-                path.iter().rev().map(Affine3A::as_daffine3).fold(DAffine3::IDENTITY, |all, one| all * one);
-            let diagnosis = match () {
-                () if !up && near(&yours.to_world, &turned) => {
-                    "you multiply from the node up to the root: the root's transform is the first factor"
-                }
-                () if !down && near(&yours.to_object, &turned.inverse()) => {
-                    "you multiply the inverses in the order of the transforms: the order must be reversed"
-                }
-                () if near(&yours.to_object, &exact) => {
-                    "you return to_world as to_object, without the inverse"
-                }
-                () if !up && path.last().is_some_and(|own| near(&yours.to_world, &own.as_daffine3())) => {
-                    "you use the node's own transform only: multiply all transforms of the path"
-                }
-                () if yours.to_object.as_daffine3().matrix3 == exact.matrix3.transpose() => {
-                    "you take the transpose for the inverse: this is right for rotations only"
-                }
-                () => "",
-            };
-            let which = if up { "to_object" } else { "to_world" };
-            let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
-            let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
-            Err(Broken::with_texts(
-                input,
-                describe(got.as_daffine3().to_cols_array().to_vec()),
-                describe(right.to_cols_array().to_vec()),
-                "double precision",
-            )
-            .looks_like(known(diagnosis)))
-        })
+    let turned = product(&mut all().rev());
+    let transposed = yours.to_object.as_daffine3().matrix3 == exact.matrix3.transpose();
+    let own = all().last().unwrap_or(DAffine3::IDENTITY);
+    let root = all().next().unwrap_or(DAffine3::IDENTITY);
+    let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
+    let which = if up { "to_object" } else { "to_world" };
+    let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
+    Err(Broken::with_texts(
+        input,
+        describe(got.as_daffine3().to_cols_array().to_vec()),
+        describe(right.to_cols_array().to_vec()),
+        "double precision",
+    )
+    .explained_by([
+        (up && near(&yours.to_object, &exact), "you return to_world as to_object, without the inverse"),
+        (up && transposed, "you take the transpose for the inverse: this is right for rotations only"),
+        (
+            near(&yours.to_world, &own) && (down || near(&yours.to_object, &own.inverse())),
+            "you use the node's own transform only: multiply all transforms of the path",
+        ),
+        (
+            near(&yours.to_world, &root) && (down || near(&yours.to_object, &root.inverse())),
+            "you use the root's transform only: multiply all transforms of the path",
+        ),
+        (
+            near(&yours.to_world, &turned) && (down || near(&yours.to_object, &turned.inverse())),
+            "you multiply from the node up to the root: the root's transform is the first factor",
+        ),
+        (
+            up && near(&yours.to_object, &turned.inverse()),
+            "you multiply the inverses in the order of the transforms: the order must be reversed",
+        ),
+        (
+            near(&yours.to_world, &exact.inverse()) && near(&yours.to_object, &exact),
+            "you exchange to_world and to_object",
+        ),
+    ]))
+}
+
+/// Transforms without an inverse: two columns are equal, a column is 0, or a number is NaN or infinite. The determinant of
+/// the first two is exactly 0 by any formula.
+fn singular(kinds: std::ops::Range<i32>) -> impl Strategy<Value = Affine3A> + Clone {
+    (transform(0..=0), kinds, 0..3usize).prop_map(|(transform, kind, axis)| {
+        let mut columns = [0, 1, 2].map(|column| Vec3::from(transform.matrix3.col(column)));
+        let mut translation = Vec3::from(transform.translation);
+        match kind {
+            0 => columns[axis] = Vec3::ZERO,
+            1 => columns[axis] = columns[(axis + 1) % 3],
+            2 => columns[axis][axis] = f32::NAN,
+            _ => translation[axis] = f32::INFINITY,
+        }
+        Affine3A::from_mat3_translation(
+            Mat3::from_cols_array_2d(&columns.map(|column| column.to_array())),
+            translation,
+        )
     })
 }
 
@@ -290,33 +408,57 @@ pub(super) fn placement_refuses_what_cannot_be_undone(trial: &Trial<'_>) -> Chec
     let flat = Affine3A::from_scale(Vec3::new(1.0, 0.0, 1.0));
     let line = Affine3A::from_mat3(Mat3::from_cols(Vec3::ONE, Vec3::ONE, 2.0 * Vec3::ONE));
     let turn = Affine3A::from_rotation_y(0.5);
-    let paths = vec![vec![flat], vec![turn, line], vec![flat, turn, turn]];
-    let judge = |path: &Vec<Affine3A>, yours: Option<raykata::graph::Placement>| match yours {
-        None => Ok(()),
-        Some(_) => Err(Broken::with_texts(
-            format!("placement(&{})", list(path)),
-            "Some",
-            "None",
-            "a determinant is 0",
-        )
-        .looks_like(Some(
-            "you accept a path with a singular transform: if one factor has no inverse, the product has none",
-        ))),
-    };
-    compare(&paths, trial.kit.placement(&paths), judge).into_iter().collect::<CheckResult>()?;
     // Scales by very small and very large numbers have inverses.
     let small =
         vec![Affine3A::from_scale(Vec3::splat(1e-4)), Affine3A::from_scale(Vec3::new(1e-3, 1e3, -1.0))];
-    match trial.kit.placement(std::slice::from_ref(&small))[0] {
-        Some(_) => Ok(()),
-        None => Err(Broken::with_texts(
-            format!("placement(&{})", list(&small)),
-            "None",
-            "Some",
-            "the definition",
+    let chosen = [vec![flat], vec![turn, line], vec![flat, turn, turn], small];
+    // Half of the paths have a transform without an inverse. The determinants of the others go down to 2⁻⁹⁰, which single
+    // precision does not round to 0.
+    let paths = |singular| {
+        (prop::collection::vec(transform(-30..=30), 1..4), singular, 0..6usize).prop_map(
+            |(mut path, singular, place)| {
+                if place < 3 {
+                    path.insert(place.min(path.len()), singular);
+                }
+                path
+            },
         )
-        .looks_like(Some(
-            "do not compare the determinant with a fixed limit: it is small because the object is small",
-        ))),
+    };
+    let judge = |paths: &[Vec<Affine3A>]| compare(paths, trial.kit.placement(paths), judge_refusal);
+    trial.forall_and(&chosen, 400, paths(singular(0..2)), judge)?;
+    trial.forall(100, paths(singular(2..4)), judge)
+}
+
+fn judge_refusal(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult {
+    let is_finite = |one: &&Affine3A| one.is_finite();
+    let has_inverse = path.iter().all(|one| one.is_finite() && determinant(one) != 0.0);
+    let input = format!("placement(&{})", list(path));
+    let flat = path.iter().filter(is_finite).any(|one| determinant(one) == 0.0);
+    match (yours, has_inverse) {
+        (Some(_), false) => Err(Broken::with_texts(input, "Some", "None", "a transform has no inverse").explained_by([
+            (
+                flat,
+                "you accept a path with a singular transform: if one factor has no inverse, the product has none",
+            ),
+            (!flat, "you accept a transform with NaN or infinite numbers: its inverse is not finite"),
+            (true, "you accept a path with a transform that has no inverse: if one has none, the product has none"),
+        ])),
+        (None, true) => {
+            let small = path.iter().any(|one| determinant(one).abs() < 1e-2);
+            let signed = path.iter().any(|one| determinant(one) < 1e-2);
+            let negative = path.iter().any(|one| determinant(one) < 0.0);
+            Err(Broken::with_texts(input, "None", "Some", "the definition").explained_by([(
+                negative,
+                "you refuse a negative determinant: it belongs to a reflection",
+            ), (
+                small,
+                "you refuse a small determinant: do not compare the determinant with a fixed limit, because it is small \
+                 when the object is small",
+            ), (
+                signed,
+                "you refuse determinants below a limit, also negative ones: do not compare the determinant with a fixed limit",
+            )]))
+        }
+        _ => Ok(()),
     }
 }

@@ -2,8 +2,7 @@
 
 use super::quarters::triangles_are_quarters;
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
-use checks::judge::known;
+use checks::broken::{Broken, CheckResult, all_hold};
 use glam::{DVec3, Vec3, vec2, vec3};
 use raykata::mesh::Mesh;
 
@@ -59,6 +58,30 @@ fn sheet(n: u32) -> Mesh {
     }
 }
 
+/// Two pyramids of `n` sides on a common base: the apexes have `n` neighbours.
+fn bipyramid(n: u32) -> Mesh {
+    let corner = |i: u32| {
+        let (sin, cos) = (std::f32::consts::TAU * i as f32 / n as f32).sin_cos();
+        vec3(2.0 * cos, 0.25 * (i % 2) as f32, 2.0 * sin)
+    };
+    let sides = |i: u32| [[n, i, (i + 1) % n], [n + 1, (i + 1) % n, i]];
+    Mesh {
+        positions: (0..n).map(corner).chain([vec3(0.25, -2.0, 0.0), vec3(0.0, 2.0, 0.5)]).collect(),
+        triangles: (0..n).flat_map(sides).collect(),
+        ..Mesh::default()
+    }
+}
+
+/// Two triangles whose edges lie upon each other, but which have no common vertex: both edges are borders.
+fn seam() -> Mesh {
+    let (a, b) = (vec3(0.0, 0.0, 0.0), vec3(2.0, 0.0, 0.0));
+    Mesh {
+        positions: vec![a, b, vec3(1.0, 2.0, 0.0), b, a, vec3(1.0, -2.0, 1.0)],
+        triangles: vec![[0, 1, 2], [3, 4, 5]],
+        ..Mesh::default()
+    }
+}
+
 /// The meshes of the checks, with their names.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let round = octahedron();
@@ -71,6 +94,9 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
         ("a single triangle", Mesh { triangles: vec![[0, 1, 2]], face_materials: vec![1], ..sheet(1) }),
         ("a sheet of 3 by 3 squares", sheet(3)),
         ("a tetrahedron and a vertex of no triangle", lonely),
+        ("two pyramids of 5 sides on a common base", bipyramid(5)),
+        ("two pyramids of 7 sides on a common base", bipyramid(7)),
+        ("two triangles that touch and have no common vertex", seam()),
     ]
 }
 
@@ -87,63 +113,102 @@ fn opposite(mesh: &Mesh, (p, q): (u32, u32)) -> Vec<u32> {
     both.flat_map(|triangle| triangle.iter().copied().filter(|&vertex| vertex != p && vertex != q)).collect()
 }
 
-/// The answer, the expected answer and a diagnosis.
-pub(super) type Unlike = (String, String, &'static str);
+/// The answer, the expected answer, and the known mistakes, each with whether it explains this answer.
+pub(super) struct Unlike {
+    got: String,
+    expected: String,
+    mistakes: Vec<(bool, &'static str)>,
+}
 
-/// Judges one law for every mesh.
-fn judge(trial: &Trial<'_>, law: impl Fn(&Mesh, &Mesh) -> Result<(), Unlike>) -> CheckResult {
+impl Unlike {
+    pub(super) fn new(
+        got: impl Into<String>,
+        expected: impl Into<String>,
+        mistakes: Vec<(bool, &'static str)>,
+    ) -> Unlike {
+        Unlike { got: got.into(), expected: expected.into(), mistakes }
+    }
+}
+
+/// An answer that one mistake explains.
+pub(super) fn unlike(got: impl Into<String>, expected: impl Into<String>, mistake: &'static str) -> Unlike {
+    Unlike::new(got, expected, vec![(true, mistake)])
+}
+
+/// Judges some laws for every mesh.
+fn judge(trial: &Trial<'_>, laws: impl Fn(&Mesh, &Mesh) -> Vec<Result<(), Unlike>>) -> CheckResult {
     let meshes = meshes();
     let queries: Vec<Mesh> = meshes.iter().map(|(_, mesh)| mesh.clone()).collect();
-    let pairs: Vec<_> = meshes.iter().zip(trial.kit.loop_subdivide(&queries)).collect();
-    pairs.iter().try_for_each(|((name, mesh), yours)| {
-        law(mesh, yours).map_err(|(got, expected, diagnosis)| {
-            Broken::with_texts(format!("loop_subdivide of {name}"), got, expected, "the rule")
-                .looks_like(known(diagnosis))
-        })
-    })
+    let pairs = meshes.iter().zip(trial.kit.loop_subdivide(&queries));
+    let judge_mesh = |((name, mesh), yours): (&(&str, Mesh), Mesh)| -> Vec<CheckResult> {
+        let judged = laws(mesh, &yours).into_iter();
+        let broken = |unlike: Unlike| {
+            Broken::with_texts(format!("loop_subdivide of {name}"), unlike.got, unlike.expected, "the rule")
+                .explained_by(unlike.mistakes)
+        };
+        judged.map(|law| law.map_err(broken)).collect()
+    };
+    all_hold(pairs.flat_map(judge_mesh).collect())
 }
 
 pub(super) fn loop_makes_four_triangles_of_each(trial: &Trial<'_>) -> CheckResult {
     judge(trial, |mesh, yours| {
-        let (n_old, n_edges) = (mesh.positions.len(), edges(mesh).len());
-        let describe =
-            |mesh: &Mesh| format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
-        let (vertices, triangles) = (n_old + n_edges, 4 * mesh.triangles.len());
-        if (yours.positions.len(), yours.triangles.len()) != (vertices, triangles) {
-            let diagnosis = match yours.positions.len() {
-                n if n > vertices => {
-                    "you make more than one new vertex per edge: the triangles on both sides share it"
-                }
-                _ if yours.triangles.len() != triangles => {
-                    "you do not make four triangles of each: three at its corners and one in the middle"
-                }
-                _ => "",
-            };
-            return Err((describe(yours), format!("{vertices} vertices, {triangles} triangles"), diagnosis));
-        }
-        if !yours.normals.is_empty() {
-            let describe = format!("{} normals", yours.normals.len());
-            return Err((describe, "none".into(), "normals are dropped, because the surface changes"));
-        }
-        let lengths = [
-            (mesh.uvs.len(), yours.uvs.len(), vertices, "texture coordinates: there is one pair per vertex"),
-            (
-                mesh.face_materials.len(),
-                yours.face_materials.len(),
-                triangles,
-                "the four triangles take the material of the old triangle",
-            ),
-        ];
-        for (before, yours, each, diagnosis) in lengths {
-            let right = if before == 0 { 0 } else { each };
-            if yours != right {
-                let what = diagnosis.split(':').next().filter(|_| each == vertices).unwrap_or("materials");
-                return Err((format!("{yours} {what}"), format!("{right}"), diagnosis));
-            }
-        }
-        yours.validate().map_err(|message| (message, "a valid mesh".into(), ""))?;
-        triangles_are_quarters(mesh, yours)
+        vec![judge_counts(mesh, yours).and_then(|()| triangles_are_quarters(mesh, yours))]
     })
+}
+
+/// Judges the numbers of vertices, triangles, normals, texture coordinates and materials.
+fn judge_counts(mesh: &Mesh, yours: &Mesh) -> Result<(), Unlike> {
+    let (n_old, n_edges) = (mesh.positions.len(), edges(mesh).len());
+    let describe =
+        |mesh: &Mesh| format!("{} vertices, {} triangles", mesh.positions.len(), mesh.triangles.len());
+    let (vertices, triangles) = (n_old + n_edges, 4 * mesh.triangles.len());
+    let (n, n_triangles) = (yours.positions.len(), yours.triangles.len());
+    if (n, n_triangles) != (vertices, triangles) {
+        let mistakes = vec![
+            (
+                n == n_old + 3 * mesh.triangles.len() && n > vertices,
+                "you make more than one new vertex per edge: the triangles on both sides share it",
+            ),
+            (
+                n_triangles != triangles,
+                "you do not make four triangles of each: three at its corners and one in the middle",
+            ),
+            (n < vertices, "you make too few new vertices: there is one per edge, after the old ones"),
+        ];
+        return Err(Unlike::new(
+            describe(yours),
+            format!("{vertices} vertices, {triangles} triangles"),
+            mistakes,
+        ));
+    }
+    if !yours.normals.is_empty() {
+        let describe = format!("{} normals", yours.normals.len());
+        return Err(unlike(describe, "none", "normals are dropped, because the surface changes"));
+    }
+    let lengths = [
+        (
+            mesh.uvs.len(),
+            yours.uvs.len(),
+            vertices,
+            "texture coordinates",
+            "texture coordinates: there is one pair per vertex, or none if the mesh has none",
+        ),
+        (
+            mesh.face_materials.len(),
+            yours.face_materials.len(),
+            triangles,
+            "materials",
+            "the four triangles take the material of the old triangle; a mesh without materials gets none",
+        ),
+    ];
+    for (before, yours, each, what, mistake) in lengths {
+        let right = if before == 0 { 0 } else { each };
+        if yours != right {
+            return Err(unlike(format!("{yours} {what}"), format!("{right}"), mistake));
+        }
+    }
+    yours.validate().map_err(|message| Unlike::new(message, "a valid mesh", Vec::new()))
 }
 
 const BORDER: &str =
@@ -184,7 +249,9 @@ fn inner_share(n: usize) -> f64 {
         0 => 0.0,
         2 | 3 => 0.1875,
         4 => 0.093_75,
+        5 => 0.075,
         6 => 0.0625,
+        7 => 0.053_571_428,
         _ => f64::NAN,
     }
 }
@@ -236,7 +303,7 @@ impl<'a> Step<'a> {
             // Allow 16 weights with an error of 1e-5 each, from two rounded sums over STEP, times coordinates up to 5.
             if !((place.as_dvec3() - sum).length() <= 1e-3) {
                 let expected = format!("{}, the sum of the old vertices times its weights", sum.as_vec3());
-                return Err((format!("vertex {vertex} at {place}"), expected, ""));
+                return Err(Unlike::new(format!("vertex {vertex} at {place}"), expected, Vec::new()));
             }
         }
         Ok(())
@@ -272,24 +339,43 @@ impl<'a> Step<'a> {
             return Ok(());
         }
         let sum: f64 = self.weights[index].iter().sum();
-        let diagnosis = match () {
-            () if around.is_empty() => "you move a vertex that belongs to no triangle: it stays",
-            () if self.takes(index, &vec![(vertex, 1.0)]) => {
-                "you do not move the old vertices: they move, too"
-            }
-            () if self.takes_of_others(index, &[&around[..], &[vertex]].concat()) => FROM_BEFORE,
-            () if border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))) => BORDER,
-            () if border => {
-                "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along \
-                 the border"
-            }
-            () if (sum - 1.0).abs() > NEAR_WEIGHT => {
-                "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for \
-                 the vertex"
-            }
-            () => "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise",
+        let weight = |other: &u32| self.weights[index][*other as usize];
+        let own_only = self.takes(index, &vec![(vertex, 1.0)]);
+        // Whether all of some neighbours have the same weight, and no other vertex has one.
+        let is_even = |among: &[u32]| {
+            let rest = [among, &[vertex]].concat();
+            among.iter().all(|other| (weight(other) - weight(&among[0])).abs() <= NEAR_WEIGHT)
+                && !self.takes_of_others(index, &rest)
         };
-        Err((self.describe(index), describe(&shares), diagnosis))
+        // If all other vertices are neighbours, uneven weights are the only sign of positions from after the step.
+        let has_others = around.len() + 1 < self.mesh.positions.len();
+        let from_before = (
+            self.takes_of_others(index, &[&around[..], &[vertex]].concat())
+                || (!has_others && !border && !is_even(&around)),
+            FROM_BEFORE,
+        );
+        let adds_up = (sum - 1.0).abs() <= NEAR_WEIGHT;
+        let mistakes = vec![
+            (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
+            (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
+            from_before,
+            (border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))), BORDER),
+            (
+                border && !own_only && is_even(&along),
+                "the weights on a border are 3/4 for the vertex and 1/8 for each of its two neighbours along \
+                 the border",
+            ),
+            (
+                !adds_up && !around.is_empty() && is_even(others),
+                "your weights do not add up to 1: they are β for each of the n neighbours and 1 - n β for \
+                 the vertex",
+            ),
+            (
+                !border && adds_up && !own_only && is_even(&around),
+                "your weights are wrong: β is 3/16 for n = 3 neighbours, and 3/(8 n) otherwise",
+            ),
+        ];
+        Err(Unlike::new(self.describe(index), describe(&shares), mistakes))
     }
 
     /// Judges the new vertex of an edge: one of the new vertices must have the right weights.
@@ -304,37 +390,53 @@ impl<'a> Step<'a> {
         if fresh.clone().any(|vertex| self.takes(vertex, &shares)) {
             return Ok(());
         }
-        let around: Vec<u32> = third.into_iter().chain([p, q]).collect();
-        let diagnosis = match () {
-            () if border => BORDER,
-            () if fresh.clone().any(|vertex| self.takes(vertex, &ends)) => {
-                "you use the midpoint for an inner edge: there the two third corners have weights, too"
-            }
-            () if fresh.all(|vertex| self.takes_of_others(vertex, &around)) => FROM_BEFORE,
-            () => "the weights are 3/8 for each end and 1/8 for each third corner",
-        };
-        Err((
+        let around: Vec<u32> = third.iter().copied().chain([p, q]).collect();
+        let has = |vertex: usize, old: &u32| self.weights[vertex][*old as usize].abs() > NEAR_WEIGHT;
+        // Whether the ends have different weights.
+        let mixed = fresh.clone().any(|vertex| {
+            around.iter().all(|old| has(vertex, old))
+                && (self.weights[vertex][p as usize] - self.weights[vertex][q as usize]).abs() > NEAR_WEIGHT
+        });
+        // A new vertex that depends on both ends, on the third corners, and on no other vertex.
+        let of_these = fresh.clone().any(|vertex| {
+            around.iter().all(|old| has(vertex, old)) && !self.takes_of_others(vertex, &around)
+        });
+        let mistakes = vec![
+            (border && of_these, BORDER),
+            (!border && !mixed && of_these, "the weights are 3/8 for each end and 1/8 for each third corner"),
+            (
+                !border && fresh.clone().any(|vertex| self.takes(vertex, &ends)),
+                "you use the midpoint for an inner edge: there the two third corners have weights, too",
+            ),
+            (
+                !border
+                    && (around.len() == self.mesh.positions.len()
+                        || fresh.any(|vertex| {
+                            has(vertex, &p) && has(vertex, &q) && self.takes_of_others(vertex, &around)
+                        })),
+                FROM_BEFORE,
+            ),
+        ];
+        Err(Unlike::new(
             format!("no new vertex for the edge {p} {q}"),
             format!("one with {}", describe(&shares)),
-            diagnosis,
+            mistakes,
         ))
     }
 
     /// Judges the vertices on borders, or all others.
-    fn judge(&self, border: bool) -> Result<(), Unlike> {
+    fn judge(&self, border: bool) -> Vec<Result<(), Unlike>> {
         let n_old = self.mesh.positions.len().min(self.yours.positions.len());
-        for vertex in 0..n_old as u32 {
-            if self.neighbours(vertex).1.is_empty() != border {
-                self.judge_old(vertex, border)?;
-            }
-        }
+        let old = (0..n_old as u32).filter(|vertex| self.neighbours(*vertex).1.is_empty() != border);
+        let mut judged: Vec<Result<(), Unlike>> = old.map(|vertex| self.judge_old(vertex, border)).collect();
         let is_border = |edge: &(u32, u32)| opposite(self.mesh, *edge).len() == 1;
-        let edges = edges(self.mesh);
-        edges
-            .into_iter()
-            .filter(|edge| is_border(edge) == border)
-            .try_for_each(|edge| self.judge_edge(edge, border))?;
-        if border { Ok(()) } else { self.is_linear() }
+        let edges = edges(self.mesh).into_iter().filter(|edge| is_border(edge) == border);
+        judged.extend(edges.map(|edge| self.judge_edge(edge, border)));
+        // Weights are meaningless if the positions are not their sums, so judge that last.
+        if !border && judged.iter().all(Result::is_ok) {
+            judged.push(self.is_linear());
+        }
+        judged
     }
 }
 

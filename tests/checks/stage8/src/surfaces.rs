@@ -1,18 +1,19 @@
 //! Checks of `bezier_point`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::generate::point;
-use checks::judge::{compare, known};
+use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Paste, list};
-use glam::{DVec3, Vec3, vec2};
+use glam::{DVec3, Vec2, Vec3, vec2};
 use proptest::prelude::*;
 use raykata::kit::PatchQuery;
 use raykata::shape::BezierPatch;
 
 fn patch() -> impl Strategy<Value = BezierPatch> + Clone {
-    prop::collection::vec(point(4), 16).prop_map(|points| {
-        let row = |row: usize| [0, 1, 2, 3].map(|column| points[4 * row + column]);
+    (prop::collection::vec(point(4), 16), nasty::any_scale()).prop_map(|(points, scale)| {
+        let row = |row: usize| [0, 1, 2, 3].map(|column| scale * points[4 * row + column]);
         BezierPatch { rows: [0, 1, 2, 3].map(row) }
     })
 }
@@ -40,22 +41,37 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckR
             let (.., row, column) = corners[i % 4];
             let (yours, corner) = (answers[i], query.patch.rows[row][column]);
             let opposite = query.patch.rows[3 - row][3 - column];
-            let diagnosis = match () {
-                () if yours == query.patch.rows[column][row] => {
-                    "you exchange u and v: u runs along the rows, v along the columns"
-                }
-                () if yours == opposite => "you exchange t and 1 - t",
-                () if (yours - corner).length() < 1e-5 => {
-                    "you compute p + t (q - p), which is not exactly q at t = 1, so neighbouring patches \
-                     have gaps: use (1 - t) p + t q"
-                }
-                () => "",
-            };
-            match yours == corner {
-                true => Ok(()),
-                false => Err(Broken::new(describe(query), yours, corner, "the corner of the control net")
-                    .looks_like(known(diagnosis))),
+            if yours == corner {
+                return Ok(());
             }
+            // The result of p + t (q - p) along the row, and then along the column.
+            let blend = |t: f32| move |p: Vec3, q: Vec3| p + t * (q - p);
+            let along = |[p, q, r, s]: [Vec3; 4], t: f32| {
+                let of = blend(t);
+                of(of(of(p, q), of(q, r)), of(of(q, r), of(r, s)))
+            };
+            let by_differences = along(query.patch.rows.map(|row| along(row, query.uv.x)), query.uv.y);
+            let first_columns = along(
+                [0, 1, 2, 3].map(|column| along(query.patch.rows.map(|row| row[column]), query.uv.y)),
+                query.uv.x,
+            );
+            let is_rounded = yours == by_differences || yours == first_columns || {
+                let right = by_differences.as_dvec3() - corner.as_dvec3();
+                right != DVec3::ZERO
+                    && (yours.as_dvec3() - corner.as_dvec3()).length() <= 8.0 * right.length()
+            };
+            Err(Broken::new(describe(query), yours, corner, "the corner of the control net").explained_by([
+                (
+                    yours == query.patch.rows[column][row],
+                    "you exchange u and v: u runs along the rows, v along the columns",
+                ),
+                (yours == opposite, "you exchange t and 1 - t"),
+                (
+                    is_rounded && query.uv != Vec2::ZERO,
+                    "you compute p + t (q - p), which is not exactly q at t = 1, so neighbouring patches \
+                     have gaps: use (1 - t) p + t q",
+                ),
+            ]))
         };
         queries
             .iter()
@@ -63,7 +79,7 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckR
             .map(judge)
             .collect::<Vec<CheckResult>>()
             .chunks(4)
-            .map(|four| four.iter().cloned().collect())
+            .map(|four| all_hold(four.to_vec()))
             .collect()
     })
 }
@@ -73,10 +89,10 @@ pub(super) fn bezier_point_is_the_mean_of_its_net(trial: &Trial<'_>) -> CheckRes
     let heights = [[0, 1, 0, -1], [2, -1, 1, 0], [1, 3, 0, 2], [0, -2, 1, 1]];
     let row = |row: usize| [0, 1, 2, 3].map(|i| Vec3::new(i as f32, row as f32, heights[row][i] as f32));
     let hilly = PatchQuery { patch: BezierPatch { rows: [0, 1, 2, 3].map(row) }, uv: vec2(0.25, 0.625) };
-    judge_points(trial, &[hilly]).into_iter().collect::<CheckResult>()?;
-    let inputs = (patch(), 0..=8u32, 0..=8u32)
-        .prop_map(|(patch, u, v)| PatchQuery { patch, uv: vec2(u as f32, v as f32) / 8.0 });
-    trial.forall(1000, inputs, |queries| judge_points(trial, queries))
+    let grid = (0..=8u32, 0..=8u32).prop_map(|(u, v)| vec2(u as f32, v as f32) / 8.0);
+    let any = (0.0..1.0f32, 0.0..1.0f32).prop_map(|(u, v)| vec2(u, v));
+    let inputs = (patch(), prop_oneof![grid, any]).prop_map(|(patch, uv)| PatchQuery { patch, uv });
+    trial.forall_and(&[hilly], 1000, inputs, |queries| judge_points(trial, queries))
 }
 
 fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
@@ -89,39 +105,56 @@ fn judge_points(trial: &Trial<'_>, queries: &[PatchQuery]) -> Vec<CheckResult> {
         };
         let [u, v] = query.uv.to_array();
         let right = at([u, v], bernstein);
-        // Allow two rounding errors for each of six nested interpolations of numbers up to 4.
-        let near =
-            |right: DVec3| (yours.as_dvec3() - right).abs().max_element() <= 16.0 * checks::double::U * 4.0;
-        let diagnosis = match () {
-            () if near(at([v, u], bernstein)) => {
-                "you exchange u and v: u runs along the rows, v along the columns"
-            }
-            () if near(at([1.0 - u, 1.0 - v], bernstein)) => "you exchange t and 1 - t",
-            () if near(at([u, u], bernstein)) || near(at([v, v], bernstein)) => {
-                "you use one parameter twice: u runs along the rows, v along the columns"
-            }
-            () if near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])) => {
-                "you use only the corners: the control points between them have weights, too"
-            }
-            () if near(at([u, v], |t| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t])) => {
-                "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1"
-            }
-            () if near(at([u, v], without_factors)) => {
-                "your weights do not add up to 1: their factors are 1, 3, 3 and 1"
-            }
-            () if near(at([u, v], interpolating)) => {
-                "your surface passes through all control points: a Bézier patch passes only through its \
-                 corners in general"
-            }
-            () => "",
+        // Allow two rounding errors for each of six nested interpolations of these numbers, and some more for Bernstein
+        // polynomials.
+        let size = query
+            .patch
+            .rows
+            .iter()
+            .flatten()
+            .fold(0.0, |size: f32, point| size.max(point.abs().max_element()));
+        let near = |right: DVec3| {
+            (yours.as_dvec3() - right).abs().max_element() <= 16.0 * checks::double::U * f64::from(size)
         };
-        match near(right) {
-            true => Ok(()),
-            false => {
-                Err(Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
-                    .looks_like(known(diagnosis)))
-            }
+        if near(right) {
+            return Ok(());
         }
+        let once = |t: f64| [(1.0 - t) * (1.0 - t), t * (1.0 - t), t * (1.0 - t), t * t];
+        Err(Broken::new(describe(query), yours, right.as_vec3(), "Bernstein polynomials in double")
+            .explained_by([
+                (
+                    near(at([v, u], bernstein)),
+                    "you exchange u and v: u runs along the rows, v along the columns",
+                ),
+                (near(at([1.0 - u, 1.0 - v], bernstein)), "you exchange t and 1 - t"),
+                (near(at([1.0 - u, v], bernstein)), "you exchange u and 1 - u"),
+                (near(at([u, 1.0 - v], bernstein)), "you exchange v and 1 - v"),
+                (
+                    near(at([u, u], bernstein)),
+                    "you use one parameter twice, u: u runs along the rows, v along the columns",
+                ),
+                (
+                    near(at([v, v], bernstein)),
+                    "you use one parameter twice, v: u runs along the rows, v along the columns",
+                ),
+                (
+                    near(at([u, v], |t| [1.0 - t, 0.0, 0.0, t])),
+                    "you use only the corners: the control points between them have weights, too",
+                ),
+                (
+                    near(at([u, v], once)),
+                    "you interpolate twice along a curve: four points need three rounds, 4, 3, 2, 1",
+                ),
+                (
+                    near(at([u, v], without_factors)),
+                    "your weights do not add up to 1: their factors are 1, 3, 3 and 1",
+                ),
+                (
+                    near(at([u, v], interpolating)),
+                    "your surface passes through all control points: a Bézier patch passes only through its \
+                 corners in general",
+                ),
+            ]))
     })
 }
 

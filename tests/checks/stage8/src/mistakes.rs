@@ -1,0 +1,293 @@
+//! Known mistakes in the functions for solids, each with the answer that it gives, in double precision.
+//!
+//! A mistake explains an answer if both are hits at the same `t`, or both are misses.
+
+use glam::{DVec3, Vec3};
+use raykata::kit::SolidQuery;
+use raykata::ray::Ray;
+use raykata::shape::{Cone, Cuboid, Cylinder, Disk, Polygon};
+
+/// Mistakes, each with whether it gives the student's answer.
+pub(super) type Mistakes = Vec<(bool, &'static str)>;
+
+/// Wrong normals of any length, each with the mistake that gives it.
+pub(super) type WrongNormals = Vec<(DVec3, &'static str)>;
+
+/// Whether `t` is that of a mistake. Mistakes that students make in single precision have an error of a few hundred
+/// roundings; two ends of the solids in the checks are farther apart than this.
+pub(super) fn is_near(ray: &Ray, t: f32, wrong: f64) -> bool {
+    let unit = 1.0 / ray.direction.as_dvec3().length();
+    (f64::from(t) - wrong).abs() <= 1e-3 * wrong.abs().max(unit)
+}
+
+/// The first of some `t` that lies in the range of the ray.
+fn first(ray: &Ray, ts: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let contains = |t: &f64| f64::from(ray.t_min) < *t && *t < f64::from(ray.t_max);
+    ts.into_iter().filter(contains).reduce(f64::min)
+}
+
+/// Whether the answer is that of a mistake.
+fn is(ray: &Ray, yours: Option<f32>, wrong: Option<f64>) -> bool {
+    match (yours, wrong) {
+        (None, None) => true,
+        (Some(t), Some(wrong)) => is_near(ray, t, wrong),
+        _ => false,
+    }
+}
+
+pub(super) fn of_cuboid(query: &SolidQuery<Cuboid>, yours: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = query;
+    let interval = |axis: usize| {
+        let [low, high, origin, direction] =
+            [solid.min[axis], solid.max[axis], ray.origin[axis], ray.direction[axis]].map(f64::from);
+        let (p, q) = ((low - origin) / direction, (high - origin) / direction);
+        match direction == 0.0 {
+            true if low <= origin && origin <= high => (f64::NEG_INFINITY, f64::INFINITY),
+            true => (f64::INFINITY, f64::NEG_INFINITY),
+            false => (p.min(q), p.max(q)),
+        }
+    };
+    let without = |axis: usize| {
+        let [p, q] = [interval((axis + 1) % 3), interval((axis + 2) % 3)];
+        let (enter, leave) = (p.0.max(q.0), p.1.min(q.1));
+        is(ray, yours, first(ray, [enter, leave]).filter(|_| enter <= leave))
+    };
+    vec![
+        (without(0), "you leave out the x axis: intersect the intervals of all three axes"),
+        (without(1), "you leave out the y axis: intersect the intervals of all three axes"),
+        (without(2), "you leave out the z axis: intersect the intervals of all three axes"),
+    ]
+}
+
+pub(super) fn normals_of_cuboid(cuboid: &Cuboid, at: DVec3) -> WrongNormals {
+    let from_middle = at - 0.5 * (cuboid.min.as_dvec3() + cuboid.max.as_dvec3());
+    let farthest = from_middle.abs().max_position();
+    let axis = DVec3::AXES[farthest] * from_middle[farthest];
+    vec![
+        (
+            from_middle,
+            "you return the direction from the centre of the box to the hit: that is the normal of a sphere",
+        ),
+        (
+            axis,
+            "you return the axis along which the hit is farthest from the centre, which is right for a cube only",
+        ),
+    ]
+}
+
+/// The real roots of `a t² + 2 b t + c`.
+fn roots(a: f64, b: f64, c: f64) -> Vec<f64> {
+    let discriminant = b * b - a * c;
+    // A ray through an apex has a discriminant of 0, up to rounding errors.
+    let discriminant = if discriminant.abs() < 1e-12 * b * b { 0.0 } else { discriminant };
+    match a == 0.0 {
+        true if b == 0.0 => Vec::new(),
+        true => vec![-c / (2.0 * b)],
+        false if discriminant < 0.0 => Vec::new(),
+        false => [-1.0, 1.0].map(|sign| (-b + sign * discriminant.sqrt()) / a).to_vec(),
+    }
+}
+
+/// The line along a ray, relative to a point of an axis of rotation.
+struct AroundAxis {
+    start: DVec3,
+    direction: DVec3,
+    axis: DVec3,
+}
+
+impl AroundAxis {
+    fn new(ray: &Ray, origin: Vec3, end: Vec3) -> AroundAxis {
+        let origin = origin.as_dvec3();
+        let (start, direction) = (ray.origin.as_dvec3() - origin, ray.direction.as_dvec3());
+        AroundAxis { start, direction, axis: end.as_dvec3() - origin }
+    }
+
+    /// The position along the axis: 0 at its origin, 1 at its end.
+    fn height(&self, t: f64) -> f64 {
+        (self.start + t * self.direction).dot(self.axis) / self.axis.length_squared()
+    }
+
+    /// The `t` at a position along the axis.
+    fn at_height(&self, height: f64) -> f64 {
+        (height - self.height(0.0)) * self.axis.length_squared() / self.direction.dot(self.axis)
+    }
+
+    /// The distance from the axis.
+    fn distance(&self, t: f64) -> f64 {
+        (self.start + t * self.direction).cross(self.axis).length() / self.axis.length()
+    }
+
+    /// Where the line meets the double cone whose radius is `slope` per length of the axis.
+    fn cone(&self, slope: f64) -> Vec<f64> {
+        let (m, n) = (self.direction.cross(self.axis), self.start.cross(self.axis));
+        let (rate, start) = (self.direction.dot(self.axis), self.start.dot(self.axis));
+        let k = slope * slope;
+        roots(m.dot(m) - k * rate * rate, n.dot(m) - k * start * rate, n.dot(n) - k * start * start)
+    }
+}
+
+pub(super) fn of_cylinder(query: &SolidQuery<Cylinder>, yours: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = query;
+    let line = AroundAxis::new(ray, solid.base, solid.top);
+    let radius = f64::from(solid.radius);
+    let (m, n) = (line.direction.cross(line.axis), line.start.cross(line.axis));
+    let endless = roots(m.dot(m), n.dot(m), n.dot(n) - radius * radius * line.axis.length_squared());
+    let side: Vec<f64> = endless.iter().copied().filter(|t| (0.0..=1.0).contains(&line.height(*t))).collect();
+    let end = |height: f64| Some(line.at_height(height)).filter(|t| line.distance(*t) <= radius);
+    let (base, top) = (end(0.0), end(1.0));
+    let only = |ends: &[Option<f64>], side: &[f64]| {
+        let all = ends.iter().flatten().chain(side).copied();
+        is(ray, yours, first(ray, all))
+    };
+    vec![
+        (only(&[], &side), "you leave out the ends: a ray can enter or leave through them"),
+        (only(&[base], &side), "you leave out the end at `top`: a ray can enter or leave through it"),
+        (only(&[top], &side), "you leave out the end at `base`: a ray can enter or leave through it"),
+        (only(&[base, top], &[]), "you leave out the side: only the ends are hit"),
+        (
+            yours.is_none() && endless.first().is_none_or(|enter| *enter <= f64::from(ray.t_min)),
+            "you give up because the ray enters the infinite cylinder before t_min: it can still enter through an end, or \
+             leave",
+        ),
+        (
+            only(&[], &endless) || (endless.is_empty() && yours.is_none_or(|t| t > 1e3)),
+            "your cylinder has no ends: it goes on beyond `base` and `top`",
+        ),
+    ]
+}
+
+pub(super) fn normals_of_cylinder(cylinder: &Cylinder, at: DVec3) -> WrongNormals {
+    let (base, axis) = (cylinder.base.as_dvec3(), (cylinder.top - cylinder.base).as_dvec3());
+    let outwards = (at - base).reject_from(axis);
+    let middle = base + 0.5 * axis;
+    vec![
+        (outwards, "you return the normal of the side for a hit on an end: it is the axis there"),
+        (-outwards, "the normal of your side points to the axis: it must point outwards"),
+        (at - base, "you return the direction from `base` to the hit: subtract its part along the axis"),
+        (at - middle, "you return the direction from the centre to the hit: that is the normal of a sphere"),
+    ]
+}
+
+pub(super) fn of_cone(query: &SolidQuery<Cone>, yours: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = query;
+    let line = &AroundAxis::new(ray, solid.apex, solid.base);
+    let (radius, height) = (f64::from(solid.radius), line.axis.length());
+    let within = |slope: f64, low: f64, high: f64| {
+        line.cone(slope).into_iter().filter(move |t| (low - 1e-9..=high + 1e-9).contains(&line.height(*t)))
+    };
+    let base = |radius: f64| Some(line.at_height(1.0)).filter(|t| line.distance(*t) <= radius);
+    let slope = radius / height;
+    let endless = within(slope, 0.0, f64::INFINITY);
+    let double = within(slope, f64::NEG_INFINITY, 1.0).chain(base(radius));
+    let exchanged = within(height / radius, 0.0, 1.0).chain(base(height * height / radius));
+    vec![
+        (
+            is(ray, yours, first(ray, within(slope, 0.0, 1.0))),
+            "you leave out the base: a ray can enter or leave through it",
+        ),
+        (is(ray, yours, first(ray, base(radius))), "you leave out the side: only the base is hit"),
+        (is(ray, yours, first(ray, endless)), "your cone has no base: it goes on beyond `base`"),
+        (
+            is(ray, yours, first(ray, double)),
+            "you return a point of the second cone, above the apex, which is not part of the solid",
+        ),
+        (
+            is(ray, yours, first(ray, exchanged)),
+            "you exchange radius and height in the slope of the surface: it is radius / height",
+        ),
+    ]
+}
+
+pub(super) fn normals_of_cone(cone: &Cone, at: DVec3) -> WrongNormals {
+    let (apex, axis) = (cone.apex.as_dvec3(), (cone.base - cone.apex).as_dvec3());
+    vec![
+        (
+            (at - apex).reject_from(axis),
+            "you return the normal of a cylinder, perpendicular to the axis: the side of a cone is inclined",
+        ),
+        (
+            at - cone.base.as_dvec3(),
+            "you return the direction from `base` to the hit: that is the normal of a sphere",
+        ),
+    ]
+}
+
+/// What flat shapes have in common: `t` in the plane, which side the ray comes from, and whether the point is inside.
+fn of_flat(ray: &Ray, yours: Option<f32>, t: f64, slope: f64, inside: bool) -> Mistakes {
+    let lost = yours.is_none() && inside;
+    vec![
+        (
+            !inside && yours.is_some_and(|yours| is_near(ray, yours, t)),
+            "you return a point of the plane that lies outside of the shape",
+        ),
+        (
+            lost && slope < 0.0,
+            "you lose one of its two sides, the one to which its normal points: a ray can hit it from both",
+        ),
+        (
+            lost && slope > 0.0,
+            "you lose one of its two sides, the one behind its normal: a ray can hit it from both",
+        ),
+    ]
+}
+
+pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = query;
+    let (normal, direction) = (solid.normal.as_dvec3(), ray.direction.as_dvec3());
+    let to_center = solid.center.as_dvec3() - ray.origin.as_dvec3();
+    let slope = direction.dot(normal);
+    let t = to_center.dot(normal) / slope;
+    let (squared, radius) = ((t * direction - to_center).length_squared(), f64::from(solid.radius));
+    let wrong = |inside: bool| is(ray, yours, first(ray, [t]).filter(|_| inside));
+    let mut all = vec![
+        (wrong(squared <= radius), "you compare the square of the distance with the radius: square both"),
+        (
+            wrong(squared.sqrt() <= radius * radius),
+            "you compare the distance with the square of the radius: square both or none",
+        ),
+        (wrong(squared.sqrt() <= 0.5 * radius), "you compare the distance with half the radius"),
+    ];
+    all.extend(of_flat(ray, yours, t, slope, squared <= radius * radius));
+    all
+}
+
+pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>) -> Mistakes {
+    let SolidQuery { ray, solid } = query;
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let corners: Vec<DVec3> = solid.corners.iter().map(|corner| corner.as_dvec3() - origin).collect();
+    let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
+    let normal: DVec3 = edges().map(|(p, q)| (p - corners[0]).cross(q - corners[0])).sum();
+    let slope = direction.dot(normal);
+    let t = corners[0].dot(normal) / slope;
+    // Whether all of some numbers have the same sign.
+    let alike =
+        |sides: &[f64]| sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0);
+    let passes = |[p, q, r]: [DVec3; 3]| {
+        alike(&[p.cross(q), q.cross(r), r.cross(p)].map(|normal| normal.dot(direction)))
+    };
+    let fan = |number: usize| passes([corners[0], corners[number], corners[number + 1]]);
+    let inside = (1..corners.len() - 1).any(fan);
+    let wrong = |inside: bool| is(ray, yours, first(ray, [t]).filter(|_| inside));
+    let twice: Vec<f64> = edges()
+        .map(|(p, q)| p.cross(q))
+        .zip(edges())
+        .map(|(n, (p, _))| n.dot(direction) - n.dot(p + origin))
+        .collect();
+    let mut all = vec![
+        (wrong(fan(1)), "you test the first triangle of the fan only"),
+        (
+            wrong((1..3.min(corners.len() - 1)).any(fan)),
+            "you test the first two triangles of the fan only: n corners make n - 2 triangles",
+        ),
+        (
+            wrong(alike(&twice)),
+            "you subtract a corner twice: the plane of an edge passes through the ray's origin",
+        ),
+        (
+            yours.is_none() && inside && normal.z.abs() < 0.1 * normal.length(),
+            "you lose upright polygons: drop the axis along which the normal is longest, not always z",
+        ),
+    ];
+    all.extend(of_flat(ray, yours, t, slope, inside));
+    all
+}
