@@ -67,9 +67,7 @@ pub fn watertight(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
 ///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
-    todo!(
-        "compare so that NaN changes nothing; make the exit a little later and the entry a little earlier, on both sides of 0"
-    )
+    todo!("compare so that NaN changes nothing; then widen the interval at both ends, on both sides of 0")
 }
 
 /// Computes the origin of a ray along `direction` that leaves a surface, such that the ray does not hit the same
