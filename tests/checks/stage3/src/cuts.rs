@@ -49,7 +49,7 @@ fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
     if middle == 0 {
         let expected = format!("a cut of cost {best:.4}, cheaper than a leaf");
         let twice = 2.0 * f64::from(TRAVERSAL_COST) * area + f64::from(INTERSECTION_COST) * best;
-        let mistakes = vec![
+        let mut mistakes = vec![
             (
                 twice >= f64::from(INTERSECTION_COST) * area * n,
                 "the leaf is taken too soon: compare C_t A(P) + C_i (A(L) n(L) + A(R) n(R)) with C_i A(P) n(P)",
@@ -62,16 +62,17 @@ fn cheapest(given: &[PrimitiveRef], ordered: &[PrimitiveRef], middle: usize) -> 
                 is_leaf_without(ordered, [1, 2]),
                 "not every cut is tried: the one before the last primitive is left out",
             ),
-            (ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper"),
         ];
+        mistakes.extend(wrong_costs(ordered, middle));
+        mistakes.push((ordered.len() <= 4, "you make a leaf of few primitives although a cut is cheaper"));
         return (leaf == Some(false)).then_some((String::new(), expected, mistakes));
     }
     if leaf == Some(true) {
         let yours = format!("a cut before {middle}");
-        let mistakes = vec![
-            (best < area * n, "TRAVERSAL_COST is left out, so a cut always looks cheaper"),
-            (true, "you return a cut in any case, but a leaf may be cheaper"),
-        ];
+        let mut mistakes =
+            vec![(best <= area * n * 1.0001, "TRAVERSAL_COST is left out, so a cut always looks cheaper")];
+        mistakes.extend(wrong_costs(ordered, middle));
+        mistakes.push((true, "you return a cut in any case, but a leaf may be cheaper"));
         return Some((yours, "None: a leaf is cheaper than any cut".into(), mistakes));
     }
     let yours = tree::cut_cost(&ordered[..middle], &ordered[middle..]);
@@ -95,6 +96,47 @@ fn is_leaf_without(primitives: &[PrimitiveRef], fewest: [usize; 2]) -> bool {
     tree::leaf_is_cheaper(primitives, tree::least_cost(primitives, &AXES, &cost)) != Some(false)
 }
 
+type Cost<'a> = &'a dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64;
+
+/// Wrong costs of a cut, each with whether the search for the cheapest cut gives this one, or a leaf if `middle` is 0.
+fn wrong_costs(ordered: &[PrimitiveRef], middle: usize) -> Vec<(bool, &'static str)> {
+    let bounds = |part: &[PrimitiveRef]| tree::around(part.iter().map(|p| &p.bounds));
+    let area = |part: &[PrimitiveRef]| 2.0 * tree::half_area(&bounds(part));
+    let volume = |part: &[PrimitiveRef]| {
+        let bounds = bounds(part);
+        (bounds.max - bounds.min).as_dvec3().element_product()
+    };
+    let n = |part: &[PrimitiveRef]| part.len() as f64;
+    let (traversal, intersection) = (f64::from(TRAVERSAL_COST), f64::from(INTERSECTION_COST));
+    let gives = |cost: Cost<'_>| {
+        let least = tree::least_cost(ordered, &AXES, &cost);
+        let as_leaf = intersection * area(ordered) * n(ordered);
+        let as_cut = traversal * area(ordered) + intersection * least;
+        match middle {
+            0 => as_cut >= as_leaf * 0.9999,
+            _ => as_cut <= as_leaf * 1.0001 && cost(&ordered[..middle], &ordered[middle..]) <= least * 1.0001,
+        }
+    };
+    vec![
+        (
+            gives(&|left, right| area(left) + area(right)),
+            "your cut is the best by areas alone: the counts are left out",
+        ),
+        (
+            gives(&|left, right| n(left).max(n(right))),
+            "your cut is the best by counts alone: the areas are left out",
+        ),
+        (
+            gives(&|left, right| volume(left) * n(left) + volume(right) * n(right)),
+            "your cut is the best by volumes: take the surface areas",
+        ),
+        (
+            gives(&|left, right| area(left) * n(right) + area(right) * n(left)),
+            "each area is multiplied by the count of the other side",
+        ),
+    ]
+}
+
 /// The mistakes that make this cut the best one.
 fn cut_mistakes(
     given: &[PrimitiveRef],
@@ -102,13 +144,6 @@ fn cut_mistakes(
     middle: usize,
 ) -> Vec<(bool, &'static str)> {
     let bounds = |part: &[PrimitiveRef]| tree::around(part.iter().map(|p| &p.bounds));
-    let area = |part: &[PrimitiveRef]| tree::half_area(&bounds(part));
-    let volume = |part: &[PrimitiveRef]| {
-        let bounds = bounds(part);
-        (bounds.max - bounds.min).as_dvec3().element_product()
-    };
-    type Cost<'a> = &'a dyn Fn(&[PrimitiveRef], &[PrimitiveRef]) -> f64;
-    let n = |part: &[PrimitiveRef]| part.len() as f64;
     let right_cost: Cost<'_> = &tree::cut_cost;
     // Whether this cut is the best one along these axes by this cost, among the cuts that leave so many on either side.
     let is_least_of = |axes: &[usize], cost: Cost<'_>, fewest: [usize; 2]| {
@@ -118,7 +153,6 @@ fn cut_mistakes(
         let yours = counts(&ordered[..middle], &ordered[middle..]);
         yours <= tree::least_cost(ordered, axes, &counts) * 1.0001
     };
-    let is_least = |cost: Cost<'_>| is_least_of(&AXES, cost, [1, 1]);
     let is_best_along =
         |axis: usize| divided(ordered, middle, axis) && is_least_of(&[axis], right_cost, [1, 1]);
     let best = tree::least_cost(ordered, &AXES, right_cost);
@@ -129,7 +163,7 @@ fn cut_mistakes(
     let only_one = "only one axis is tried: the best cut is along another";
     let all = bounds(ordered);
     let longest = tree::longest_axes(&all);
-    vec![
+    let mut mistakes = vec![
         (as_given, "the primitives are not sorted: you cut them as they come"),
         (is_best_along(0), only_one),
         (is_best_along(1), "only one axis is tried, y: the best cut is along another"),
@@ -143,14 +177,6 @@ fn cut_mistakes(
             "sorted along another axis than that of the best cut: sort again along that axis",
         ),
         (
-            is_least(&|left, right| area(left) + area(right)),
-            "your cut is the best by areas alone: the counts are left out",
-        ),
-        (
-            ordered.len() > 3 && is_least(&|left, right| n(left).max(n(right))),
-            "your cut is the best by counts alone: the areas are left out",
-        ),
-        (
             is_least_of(&AXES, right_cost, [2, 1]),
             "not every cut is tried: the one behind the first primitive is left out",
         ),
@@ -158,15 +184,9 @@ fn cut_mistakes(
             is_least_of(&AXES, right_cost, [1, 2]),
             "not every cut is tried: the one before the last primitive is left out",
         ),
-        (
-            is_least(&|left, right| volume(left) * n(left) + volume(right) * n(right)),
-            "your cut is the best by volumes: take the surface areas",
-        ),
-        (
-            is_least(&|left, right| area(left) * n(right) + area(right) * n(left)),
-            "each area is multiplied by the count of the other side",
-        ),
-    ]
+    ];
+    mistakes.extend(wrong_costs(ordered, middle));
+    mistakes
 }
 
 fn centroids_differ(primitives: &[PrimitiveRef]) -> bool {

@@ -10,8 +10,9 @@ type Hit = Option<(u32, f32)>;
 #[derive(Clone, Copy, PartialEq)]
 enum Wrong {
     Nothing,
-    /// Of two hits the farther one is kept.
+    /// Of two hits the farther one is kept; of hits at the same `t`, the first one, or that with the larger number.
     Farther,
+    FartherOrLarger,
     /// Of two hits at the same `t` the later one, or the first one, is kept.
     TieToTheLast,
     TieToTheFirst,
@@ -33,7 +34,7 @@ enum Wrong {
     NearOnly,
 }
 
-const MISTAKES: [(Wrong, &str); 14] = [
+const MISTAKES: [(Wrong, &str); 15] = [
     (
         Wrong::TieToTheLast,
         "of two hits at the same t the smaller primitive number wins: you keep the later one",
@@ -43,6 +44,10 @@ const MISTAKES: [(Wrong, &str); 14] = [
         "of two hits at the same t the smaller primitive number wins: you keep the first one",
     ),
     (Wrong::Farther, "the farther of two hits is kept"),
+    (
+        Wrong::FartherOrLarger,
+        "the farther of two hits is kept, and of equal ones the one with the larger number",
+    ),
     (Wrong::OneOfLeaf, "you take the first primitive only: ask all of a leaf's primitives"),
     (Wrong::LeafStops, "you take the first hit of a leaf: ask all of a leaf's primitives"),
     (Wrong::LastOfLeafLeftOut, "part of a leaf was left out: its last primitive"),
@@ -81,6 +86,7 @@ impl Search<'_> {
         let (Some(p), Some(q)) = (first, second) else { return first.or(second) };
         let takes_second = match self.wrong {
             Wrong::Farther => q.1 > p.1,
+            Wrong::FartherOrLarger => (q.1, q.0) > (p.1, p.0),
             Wrong::TieToTheLast => q.1 <= p.1,
             Wrong::TieToTheFirst => q.1 < p.1,
             _ => (q.1, q.0) < (p.1, p.0),

@@ -15,6 +15,8 @@ enum Mistake {
     MinMax,
     /// A NaN replaces the entry or the exit.
     NanTakenOver,
+    /// A NaN replaces the entry, and the limit of the range replaces the NaN.
+    NanEntry,
     /// `b/d - o/d` in place of `(b - o)/d`.
     FastForm,
     /// The product with `1/d` where it overflows.
@@ -37,7 +39,7 @@ enum Mistake {
     Widest,
 }
 
-const MISTAKES: [(Mistake, &str); 19] = [
+const MISTAKES: [(Mistake, &str); 20] = [
     (Mistake::NotSwapped, "for a negative direction component the ray enters at max: swap the two planes"),
     (Mistake::SwappedByLess, "-0.0 ≥ 0 is true, but 1 / -0.0 is -∞: swap the two planes by the sign of 1/d"),
     (
@@ -49,8 +51,11 @@ const MISTAKES: [(Mistake, &str); 19] = [
         Mistake::NanTakenOver,
         "0 · ∞ is NaN, and it becomes your entry or exit: order the comparison so that it drops NaN",
     ),
+    (
+        Mistake::NanEntry,
+        "0 · ∞ is NaN, and it takes the place of your entry: order the comparison so that it drops NaN",
+    ),
     (Mistake::Overflow, "1/d overflows to ∞ for a tiny d: divide by d there"),
-    (Mistake::Open, "entry equals exit in a flat box or at an edge: compare with ≤, not with <"),
     (
         Mistake::Padded(1e-3),
         "you pad the box by 0.001, which is rounded away far from the origin: use ≤ and no padding",
@@ -68,6 +73,7 @@ const MISTAKES: [(Mistake, &str); 19] = [
         "you pad the box by 0.000001, which is rounded away far from the origin: use ≤ and no padding",
     ),
     (Mistake::ExitBehindStart, "the box is closed: an exit exactly at t_min is a hit"),
+    (Mistake::Open, "entry equals exit in a flat box or at an edge: compare with ≤, not with <"),
     (
         Mistake::NotFromInside,
         "you return None if the ray starts inside, where the entry is behind it: test the exit, not t_b⁻ ≥ 0",
@@ -125,6 +131,9 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
         if mistake == Mistake::NanTakenOver {
             near = if enter <= near { near } else { enter };
             far = if leave >= far { far } else { leave };
+        } else if mistake == Mistake::NanEntry {
+            near = if enter <= near { near } else { enter };
+            far = if leave < far { leave } else { far };
         } else if mistake == Mistake::Widest {
             near = if axis == 0 { enter } else { near.min(enter) };
             far = if axis == 0 { leave } else { far.max(leave) };
@@ -145,7 +154,8 @@ fn slab(mistake: Mistake, is_widened: bool, SlabQuery { ray, bounds, .. }: &Slab
     }
     let is_open = matches!(mistake, Mistake::Open | Mistake::Padded(_));
     if !matches!(mistake, Mistake::StartIgnored | Mistake::RangeIgnored) {
-        near = if near < ray.t_min { ray.t_min } else { near };
+        let is_dropped = near.is_nan() && mistake == Mistake::NanEntry;
+        near = if near < ray.t_min || is_dropped { ray.t_min } else { near };
     }
     if !matches!(mistake, Mistake::EndIgnored | Mistake::RangeIgnored) {
         far = if far > ray.t_max { ray.t_max } else { far };
