@@ -350,8 +350,8 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
     };
     let asked: Vec<SolidQuery<S>> = queries.iter().zip(&hits).flat_map(ranged).collect();
     let answers = S::ask(trial.kit, &asked);
-    let judge = |((asked, answers), t): ((&[SolidQuery<S>], &[Option<SolidHit>]), &Option<f32>)| {
-        let Some(t) = *t else { return Ok(()) };
+    let judge = |asked: &[SolidQuery<S>], answers: &[Option<SolidHit>], t: Option<f32>| {
+        let Some(t) = t else { return Ok(()) };
         let each = asked.iter().zip(answers).zip(nasty::ranges(t));
         let judged = each.map(|((query, yours), (_, counts))| {
             let yours = yours.map(|hit| hit.t);
@@ -375,7 +375,8 @@ fn judge_ranges<S: Solid>(trial: &Trial<'_>, queries: &[SolidQuery<S>]) -> Vec<C
         });
         checks::broken::all_hold(judged.collect())
     };
-    asked.chunks(6).zip(answers.chunks(6)).zip(&hits).map(judge).collect()
+    let of_hits = asked.chunks(6).zip(answers.chunks(6)).zip(hits);
+    of_hits.map(|((asked, answers), t)| judge(asked, answers, t)).collect()
 }
 
 fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> CheckResult {

@@ -348,7 +348,7 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResul
     }
     let turned = product(&mut all().rev());
     let transposed = yours.to_object.as_daffine3().matrix3 == exact.matrix3.transpose();
-    let own = all().last().unwrap_or(DAffine3::IDENTITY);
+    let own = all().next_back().unwrap_or(DAffine3::IDENTITY);
     let root = all().next().unwrap_or(DAffine3::IDENTITY);
     let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
     let which = if up { "to_object" } else { "to_world" };
