@@ -158,7 +158,7 @@ fn roots(ray: &Ray, sphere: &Sphere, squared_radius: f64) -> Option<[f64; 2]> {
 
 fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
     let asked: Vec<BoundingSphereQuery> = queries.iter().map(Entry::asked).collect();
-    compare(queries, trial.kit.enter_bounding_sphere(&asked), |entry, yours| {
+    let outcomes = compare(queries, trial.kit.enter_bounding_sphere(&asked), |entry, yours| {
         let BoundingSphereQuery { ray, sphere } = entry.plain;
         // All sizes are powers of two, so the answer for the plain query is exactly this.
         let t_scale = entry.size / entry.speed;
@@ -198,8 +198,20 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
             (None, None, Some(_)) if !starts_inside(larger) => broken(None, ""),
             _ => Ok(()),
         }
-    })
+    });
+    // A `t` in another unit is sometimes a wrong `t`, and not always a lost one.
+    let loses_only = outcomes.iter().all(|outcome| outcome.as_ref().err().is_none_or(|b| b.yours == "None"));
+    let without_unit = |broken: Broken| {
+        let mistakes = broken.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
+        broken.explained_by(mistakes.into_iter().map(|text| (text != ANOTHER_UNIT, text)))
+    };
+    outcomes
+        .into_iter()
+        .map(|outcome| if loses_only { outcome.map_err(without_unit) } else { outcome })
+        .collect()
 }
+
+const ANOTHER_UNIT: &str = "your t has another unit, that of the world: it counts lengths of direction";
 
 /// The known mistakes, each with whether it gives the answer `yours` in place of `right`.
 fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool, &'static str)> {
@@ -229,7 +241,7 @@ fn mistakes(entry: &Entry, yours: Option<f32>, right: Option<f32>) -> Vec<(bool,
         ),
         (
             (length - 1.0).abs() > 1e-6 && is(entered(ends.map(|ends| ends.map(|end| length * end)))),
-            "your t has another unit, that of the world: it counts lengths of direction",
+            ANOTHER_UNIT,
         ),
         (
             is(entered(roots(&ray, &sphere, radius / f64::from(entry.size)))),

@@ -44,9 +44,15 @@ pub(super) fn judge_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Che
 fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResult> {
     let cases: Vec<Case<S>> = cases.iter().flat_map(variants).collect();
     let queries: Vec<SolidQuery<S>> = cases.iter().map(|(query, ..)| query.clone()).collect();
-    // An ordinary ray that is answered rightly refutes a mistake that would answer it wrongly.
-    let formulas =
-        |(query, ..): &Case<S>, yours: &Option<SolidHit>| S::mistakes(query, yours.map(|hit| hit.t));
+    let answers = S::ask(trial.kit, &queries);
+    let is_sound = |hit: &SolidHit| (hit.normal.length() - 1.0).abs() <= 1e-5;
+    let has_unsound = answers.iter().flatten().any(|hit| !is_sound(hit));
+    // An ordinary ray that is answered rightly refutes a mistake that would answer it wrongly. A mistake in `t` does not
+    // explain a wrong normal.
+    let formulas = |(query, ..): &Case<S>, yours: &Option<SolidHit>| match has_unsound {
+        true => Vec::new(),
+        false => S::mistakes(query, yours.map(|hit| hit.t)),
+    };
     let judge = |(query, expected, text): &Case<S>, yours: Option<SolidHit>| {
         let t = yours.map(|hit| hit.t);
         let right = match (t, expected) {
@@ -55,7 +61,7 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
             _ => false,
         };
         // No other check tests the normal of these hits, so test its length here.
-        let sound = yours.is_none_or(|hit| (hit.normal.length() - 1.0).abs() <= 1e-5);
+        let sound = yours.is_none_or(|hit| is_sound(&hit));
         if right && sound {
             return Ok(());
         }
@@ -68,7 +74,7 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
             (!right && !text.is_empty(), *text),
         ]))
     };
-    compare_formulas(&cases, S::ask(trial.kit, &queries), judge, formulas)
+    compare_formulas(&cases, answers, judge, formulas)
 }
 
 pub(super) fn of<S: Clone>(solid: &S) -> impl Fn(Vec3, Vec3) -> SolidQuery<S> {

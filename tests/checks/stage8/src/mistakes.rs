@@ -245,7 +245,6 @@ pub(super) fn of_disk(query: &SolidQuery<Disk>, yours: Option<f32>) -> Mistakes 
             wrong(squared.sqrt() <= radius * radius),
             "you compare the distance with the square of the radius: square both or none",
         ),
-        (wrong(squared.sqrt() <= 0.5 * radius), "you compare the distance with half the radius"),
     ];
     all.extend(of_flat(ray, yours, t, slope, squared <= radius * radius));
     all
