@@ -365,11 +365,11 @@ fn material_mistakes(
     let texture = !lights_differ && !mirror && !transmission && yours.texture != expected.texture;
     vec![
         (
-            lights_differ && more,
+            lights_differ && more && yours.lights.len() > expected.lights.len(),
             "you list a light that adds nothing: in each channel, its radiance or diffuse and specular are 0",
         ),
         (
-            lights_differ && fewer,
+            lights_differ && fewer && yours.lights.len() < expected.lights.len(),
             "you leave out a light that matters: one channel of diffuse or specular is enough, and so is \
              faint light",
         ),

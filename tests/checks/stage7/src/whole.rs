@@ -292,7 +292,7 @@ impl Filmed {
                 "you compare the aperture with a fixed limit: every aperture above 0 blurs",
             ),
             (is(lens && has_shutter, motion), "an aperture above 0 blurs, with or without a shutter"),
-            (is(false, motion), "you never set lens: an aperture above 0 blurs"),
+            (is(false, motion), "lens stays false, but every aperture above 0 blurs"),
             (
                 is(lens, motion && has_lens),
                 "a shape that moves while the shutter is open is blurred, with or without a lens",
