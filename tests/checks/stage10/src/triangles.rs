@@ -95,7 +95,7 @@ pub(super) fn watertight_errs_only_where_roundings_decide(trial: &Trial<'_>) -> 
                 ),
                 (
                     yours.is_none() && small(query),
-                    "a determinant that is small is not 0: only the triangle is small",
+                    "you lose hits of small triangles: use no fixed limit for the determinant, and no products that lose their digits",
                 ),
             ]))
         };
