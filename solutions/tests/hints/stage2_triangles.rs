@@ -1,9 +1,8 @@
-//! Stage 2 by the third hints.
+//! Stage 2 by the third hints. The other functions are those of the textbook, which contain the code of their hints.
 
+pub use crate::textbook_triangles::*;
 use glam::{Mat3, Vec3};
-use raykata::bvh::{PrimitiveHit, Probe};
 use raykata::kit::{GramScalars, TriangleHit};
-use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
@@ -52,93 +51,7 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some(TriangleHit { t, beta, gamma })
 }
 
-pub fn triangle_choice(ray: &Ray, triangle: &Triangle) -> Option<TriangleHit> {
-    let edge1 = triangle.b - triangle.a;
-    let edge2 = triangle.c - triangle.a;
-    let pvec = ray.direction.cross(edge2);
-    let det = edge1.dot(pvec);
-    if det == 0.0 {
-        return None;
-    }
-    let inv_det = 1.0 / det;
-    let tvec = ray.origin - triangle.a;
-    let beta = tvec.dot(pvec) * inv_det;
-    if beta < 0.0 || beta > 1.0 {
-        return None;
-    }
-    let qvec = tvec.cross(edge1);
-    let gamma = ray.direction.dot(qvec) * inv_det;
-    if gamma < 0.0 || beta + gamma > 1.0 {
-        return None;
-    }
-    let t = edge2.dot(qvec) * inv_det;
-    if ray.contains(t) { Some(TriangleHit { t, beta, gamma }) } else { None }
-}
-
-pub fn inside_by_planes(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
-    let corners = [triangle.a, triangle.b, triangle.c];
-    let distances = [0, 1, 2].map(|i| {
-        let v1 = corners[i] - ray.origin;
-        let v2 = corners[(i + 1) % 3] - ray.origin;
-        v1.cross(v2).dot(point - ray.origin)
-    });
-    distances.iter().all(|&d| d >= 0.0) || distances.iter().all(|&d| d <= 0.0)
-}
-
-pub fn inside_by_direction(ray: &Ray, point: Vec3, triangle: &Triangle) -> bool {
-    let corners = [triangle.a, triangle.b, triangle.c];
-    let signs = [0, 1, 2].map(|i| {
-        let v1 = corners[i] - point;
-        let v2 = corners[(i + 1) % 3] - point;
-        ray.direction.dot(v2.cross(v1))
-    });
-    signs.iter().all(|&s| s >= 0.0) || signs.iter().all(|&s| s <= 0.0)
-}
-
-pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
-    let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
-    let area = normal.dot(normal);
-    if area == 0.0 {
-        return None;
-    }
-    let alpha = (triangle.c - triangle.b).cross(point - triangle.b).dot(normal) / area;
-    let beta = (triangle.a - triangle.c).cross(point - triangle.c).dot(normal) / area;
-    let gamma = (triangle.b - triangle.a).cross(point - triangle.a).dot(normal) / area;
-    if alpha >= 0.0 && beta >= 0.0 && gamma >= 0.0 { Some(Vec3::new(alpha, beta, gamma)) } else { None }
-}
-
-pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
-    barycentric.x * corners[0] + barycentric.y * corners[1] + barycentric.z * corners[2]
-}
-
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     let edge = |v: Vec3| v / v.abs().max_element();
     edge(triangle.b - triangle.a).cross(edge(triangle.c - triangle.a)).try_normalize()
-}
-
-pub fn vertex_normals(mesh: &Mesh) -> Vec<Vec3> {
-    let mut sums = vec![Vec3::ZERO; mesh.positions.len()];
-    let mut any = vec![Vec3::Y; mesh.positions.len()];
-    for corners in &mesh.triangles {
-        let [a, b, c] = corners.map(|i| mesh.positions[i as usize]);
-        if let Some(normal) = face_normal(&Triangle { a, b, c }) {
-            for &i in corners {
-                sums[i as usize] += normal;
-                any[i as usize] = normal;
-            }
-        }
-    }
-    sums.iter().zip(any).map(|(sum, any)| if sum.length() > 1e-4 { sum.normalize() } else { any }).collect()
-}
-
-pub fn brute_force(n_primitives: u32, probe: &mut impl Probe, ray: &Ray) -> Option<PrimitiveHit> {
-    let mut closest: Option<PrimitiveHit> = None;
-    for primitive in 0..n_primitives {
-        if let Some(t) = probe.hit(primitive, ray)
-            && closest.is_none_or(|hit| t < hit.t)
-        {
-            closest = Some(PrimitiveHit { t, primitive });
-        }
-    }
-    closest
 }
