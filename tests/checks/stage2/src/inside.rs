@@ -194,12 +194,24 @@ fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static
             "your coordinates do not add up to 1: |u × v| is twice the area of the triangle",
         ),
         (
-            is(DVec3::new(gamma, beta, alpha), inside)
-                || is(DVec3::new(beta, gamma, alpha), inside)
-                || is(DVec3::new(gamma, alpha, beta), inside)
-                || is(DVec3::new(alpha, gamma, beta), inside)
-                || is(DVec3::new(beta, alpha, gamma), inside),
-            "your values belong to other corners: α to a, β to b, γ to c (the slide differs)",
+            is(DVec3::new(gamma, beta, alpha), inside),
+            "your values belong to other corners, (γ, β, α): α to a, β to b, γ to c (the slide differs)",
+        ),
+        (
+            is(DVec3::new(beta, gamma, alpha), inside),
+            "your values belong to other corners, (β, γ, α): α to a, β to b, γ to c (the slide differs)",
+        ),
+        (
+            is(DVec3::new(gamma, alpha, beta), inside),
+            "your values belong to other corners, (γ, α, β): α to a, β to b, γ to c (the slide differs)",
+        ),
+        (
+            is(DVec3::new(alpha, gamma, beta), inside),
+            "your values belong to other corners, (α, γ, β): α to a, β to b, γ to c (the slide differs)",
+        ),
+        (
+            is(DVec3::new(beta, alpha, gamma), inside),
+            "your values belong to other corners, (β, α, γ): α to a, β to b, γ to c (the slide differs)",
         ),
         (
             is(absolute, absolute.x <= 1.0 && absolute.y <= 1.0 && absolute.x + absolute.y <= 1.0)
@@ -210,12 +222,9 @@ fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static
         ),
         (is(exact, true), "you return coordinates for a point outside: None if one of them is negative"),
         (is(exact, exact.min_element() > 0.0), "points on an edge are inside: compare with ≥, not with >"),
-        (
-            is(exact, beta >= 0.0 && gamma >= 0.0)
-                || is(exact, alpha >= 0.0 && beta >= 0.0)
-                || is(exact, alpha >= 0.0 && gamma >= 0.0),
-            "one of the three coordinates is not tested",
-        ),
+        (is(exact, beta >= 0.0 && gamma >= 0.0), "one of the three coordinates is not tested: α"),
+        (is(exact, alpha >= 0.0 && gamma >= 0.0), "one of the three coordinates is not tested: β"),
+        (is(exact, alpha >= 0.0 && beta >= 0.0), "one of the three coordinates is not tested: γ"),
     ]
 }
 

@@ -216,11 +216,20 @@ fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &
         ),
         (!loses_only && answer.is_inside([t, gamma, beta], least), "β and γ look swapped"),
         (
-            answer.is_inside([t, alpha, gamma], least)
-                || answer.is_inside([t, beta, alpha], least)
-                || answer.is_inside([t, alpha, beta], least)
-                || answer.is_inside([t, gamma, alpha], least),
-            "you return α, a weight of corner a: β belongs to b and γ to c",
+            answer.is_inside([t, alpha, gamma], least),
+            "you return (α, γ) with α, a weight of corner a: β belongs to b and γ to c",
+        ),
+        (
+            answer.is_inside([t, beta, alpha], least),
+            "you return (β, α) with α, a weight of corner a: β belongs to b and γ to c",
+        ),
+        (
+            answer.is_inside([t, alpha, beta], least),
+            "you return (α, β) with α, a weight of corner a: β belongs to b and γ to c",
+        ),
+        (
+            answer.is_inside([t, gamma, alpha], least),
+            "you return (γ, α) with α, a weight of corner a: β belongs to b and γ to c",
         ),
         (
             !loses_only && answer.is_inside([-t, -beta, -gamma], (-beta).min(-gamma).min(1.0 + beta + gamma)),
