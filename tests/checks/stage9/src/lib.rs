@@ -3,7 +3,7 @@
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
 //! `bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
 //! `searches` (calls a search and judges its answer),
-//! `search_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
+//! `search_mistakes`, `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
 //! lists of cells).
 
 mod bsp_searches;
@@ -13,8 +13,10 @@ mod grids;
 mod heuristics;
 mod kd_trees;
 mod lists;
+mod octant_mistakes;
 mod octrees;
 mod parts;
+mod plane_mistakes;
 mod resolutions;
 mod scenes;
 mod search_mistakes;

@@ -1,7 +1,7 @@
 //! The intervals of a ray in the nodes of a structure, computed by the definition: every node is tested.
 
-use super::search_mistakes;
 use super::searches::Parts;
+use super::{octant_mistakes, plane_mistakes};
 use checks::double::box_interval;
 use glam::uvec3;
 use raykata::aabb::Aabb;
@@ -101,7 +101,7 @@ impl Structure for Octree {
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        search_mistakes::of_octree(self, ray, hits, found)
+        octant_mistakes::of_octree(self, ray, hits, found)
     }
 }
 
@@ -126,7 +126,7 @@ impl Structure for KdTree {
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        search_mistakes::of_kd_tree(self, ray, hits, found)
+        plane_mistakes::of_kd_tree(self, ray, hits, found)
     }
 }
 
@@ -153,7 +153,7 @@ impl Structure for Bsp {
     }
 
     fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
-        search_mistakes::of_bsp(self, ray, hits, found)
+        plane_mistakes::of_bsp(self, ray, hits, found)
     }
 }
 

@@ -1,0 +1,191 @@
+//! Searches of binary trees with one mistake each at their planes. A mistake is named only if its search gives exactly the
+//! student's answer.
+
+use super::search_mistakes::{Hit, ROOM, Wrong};
+use raykata::partition::{Bsp, BspNode, KdNode, KdTree};
+use raykata::ray::Ray;
+
+/// How a search of a binary tree treats a plane.
+#[derive(Clone, Copy, PartialEq)]
+enum AtPlane {
+    /// A ray in the plane is on the lower side only, or on the upper one.
+    InPlaneBelow,
+    InPlaneAbove,
+    /// A ray that starts on the plane is on the side to which it goes only, or on the other side only.
+    StartAhead,
+    StartBehind,
+    /// A ray in the plane is on the lower side, or the upper one, and one that starts on it is on the side to which it goes.
+    BelowAndAhead,
+    AboveAndAhead,
+    /// A ray in the plane, or that starts on it, is on the lower side only, or on the upper one.
+    OnPlaneBelow,
+    OnPlaneAbove,
+    /// A ray that does not cross the plane within its part is on no side, on the lower side only, or on the upper one.
+    NotCrossedNone,
+    NotCrossedBelow,
+    NotCrossedAbove,
+    /// A ray parallel to the plane is on no side.
+    ParallelNone,
+    /// Only the side of the origin is searched.
+    NearOnly,
+    /// The lower side is searched only if the ray goes down, and the upper one only if it goes up.
+    ByDirection,
+}
+
+const AT_PLANES: [(AtPlane, &str); 14] = [
+    (
+        AtPlane::InPlaneBelow,
+        "trap A5: a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side below only",
+    ),
+    (
+        AtPlane::InPlaneAbove,
+        "trap A5: a ray in the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side above only",
+    ),
+    (
+        AtPlane::StartAhead,
+        "trap A5: a ray that starts on the plane is on both sides, and a primitive in the plane may be listed on one side only: you search the side ahead only",
+    ),
+    (
+        AtPlane::StartBehind,
+        "trap A5: a ray that starts on the plane is on both sides: you search only the side from which it comes",
+    ),
+    (
+        AtPlane::BelowAndAhead,
+        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side below only, or the side ahead only",
+    ),
+    (
+        AtPlane::AboveAndAhead,
+        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side above only, or the side ahead only",
+    ),
+    (
+        AtPlane::OnPlaneBelow,
+        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side below only",
+    ),
+    (
+        AtPlane::OnPlaneAbove,
+        "trap A5: a ray in the plane, or that starts on it, is on both sides: you search the side above only",
+    ),
+    (
+        AtPlane::NotCrossedNone,
+        "trap A7: if the plane is behind the ray or beyond its end, the whole ray is on one side, and you must search that side",
+    ),
+    (
+        AtPlane::NotCrossedBelow,
+        "trap A7: if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side below",
+    ),
+    (
+        AtPlane::NotCrossedAbove,
+        "trap A7: if the plane is behind the ray or beyond its end, the ray is on the side of its origin: you always take the side above",
+    ),
+    (AtPlane::ParallelNone, "a ray parallel to the plane is on the side of its origin: you search no side"),
+    (AtPlane::NearOnly, "you search only the side of the origin: the ray goes on to the other side"),
+    (
+        AtPlane::ByDirection,
+        "you choose the side by the direction alone: the ray is first on the side of its origin",
+    ),
+];
+
+/// A node of a binary tree, as one ray sees it.
+enum Plane<'a> {
+    Leaf(&'a [u32]),
+    /// The height of the ray's origin above the plane, its change per unit of `t`, and the children below and above.
+    Cut {
+        height: f64,
+        rate: f64,
+        below: u32,
+        above: u32,
+    },
+}
+
+/// A ray in a binary tree whose nodes it sees by `plane`, with the hits of all primitives.
+struct Binary<'a> {
+    plane: &'a dyn Fn(u32) -> Plane<'a>,
+    ray: &'a Ray,
+    hits: &'a [f32],
+    wrong: AtPlane,
+}
+
+impl Binary<'_> {
+    fn search(&self, node: u32, (t, t_end): (f64, f64), best: &mut Hit) {
+        if best.is_some_and(|(_, best)| f64::from(best) * (1.0 + ROOM) < t) {
+            return;
+        }
+        let (height, rate, below, above) = match (self.plane)(node) {
+            Plane::Leaf(ids) => {
+                let kept = Wrong::NoRoom;
+                return kept.keep(best, kept.of_cell(ids, self.hits, self.ray));
+            }
+            Plane::Cut { height, rate, below, above } => (height, rate, below, above),
+        };
+        let crossing = -height / rate;
+        let is_crossed = rate != 0.0 && t <= crossing && crossing <= t_end;
+        let in_plane = height == 0.0 && rate == 0.0;
+        let starts = height == 0.0 && rate != 0.0;
+        let (ahead, behind) = if rate > 0.0 { (above, below) } else { (below, above) };
+        // The side of the ray at the middle of its part.
+        let middle = if t_end.is_finite() { 0.5 * (t + t_end) } else { 2.0 * t + 1.0 };
+        let here = if height + rate * middle > 0.0 { above } else { below };
+        let whole = (t, t_end);
+        use AtPlane::*;
+        let sides: Vec<(u32, (f64, f64))> = match self.wrong {
+            InPlaneBelow | BelowAndAhead | OnPlaneBelow if in_plane => vec![(below, whole)],
+            InPlaneAbove | AboveAndAhead | OnPlaneAbove if in_plane => vec![(above, whole)],
+            OnPlaneBelow if starts => vec![(below, whole)],
+            OnPlaneAbove if starts => vec![(above, whole)],
+            StartAhead | BelowAndAhead | AboveAndAhead if starts => vec![(ahead, whole)],
+            StartBehind if starts => vec![(behind, whole)],
+            ParallelNone if rate == 0.0 => vec![],
+            NotCrossedNone if !is_crossed => vec![],
+            NotCrossedBelow if !is_crossed => vec![(below, whole)],
+            NotCrossedAbove if !is_crossed => vec![(above, whole)],
+            ByDirection => vec![(ahead, whole)],
+            NearOnly if is_crossed && !starts => vec![(behind, (t, crossing))],
+            _ if in_plane => vec![(below, whole), (above, whole)],
+            _ if is_crossed => vec![(behind, (t, crossing)), (ahead, (crossing, t_end))],
+            _ => vec![(here, whole)],
+        };
+        for (child, part) in sides {
+            self.search(child, part, best);
+        }
+    }
+}
+
+fn at_planes<'a>(
+    plane: &'a dyn Fn(u32) -> Plane<'a>,
+    ray: &'a Ray,
+    hits: &'a [f32],
+    found: Hit,
+) -> Vec<(bool, &'static str)> {
+    let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+    let gives = |wrong: AtPlane| {
+        let mut best = None;
+        Binary { plane, ray, hits, wrong }.search(0, range, &mut best);
+        best == found
+    };
+    AT_PLANES.map(|(wrong, text)| (gives(wrong), text)).into()
+}
+
+/// The known mistakes at the planes of a kd-tree, each with whether it finds this hit.
+pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
+    let plane = |node: u32| match tree.nodes[node as usize] {
+        KdNode::Leaf { first, count } => Plane::Leaf(tree.primitives(first, count)),
+        KdNode::Inner { axis, at, left, right } => {
+            let axis = usize::from(axis);
+            let height = f64::from(ray.origin[axis]) - f64::from(at);
+            Plane::Cut { height, rate: f64::from(ray.direction[axis]), below: left, above: right }
+        }
+    };
+    at_planes(&plane, ray, hits, found)
+}
+
+/// The known mistakes at the planes of a BSP tree, each with whether it finds this hit.
+pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
+    let plane = |node: u32| match bsp.nodes[node as usize] {
+        BspNode::Leaf { first, count } => Plane::Leaf(bsp.primitives(first, count)),
+        BspNode::Inner { plane, back, front } => {
+            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
+            Plane::Cut { height, rate, below: back, above: front }
+        }
+    };
+    at_planes(&plane, ray, hits, found)
+}
