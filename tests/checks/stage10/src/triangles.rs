@@ -310,8 +310,8 @@ pub(super) fn watertight_sees_size_alike(trial: &Trial<'_>) -> CheckResult {
             let exact = verdict(&query.ray, Body::Triangle(query.triangle));
             let clear = triangle::margin(&query.ray, &query.triangle).is_some_and(|margin| margin > STABLE);
             let is_hit = exact.is_some_and(|exact| exact.is_hit());
-            let alike = yours.is_some() == plain.is_some();
-            if alike && clear && yours.is_some() != is_hit {
+            let agrees = yours.is_some() == plain.is_some();
+            if agrees && clear && yours.is_some() != is_hit {
                 let expected = if is_hit { "a hit" } else { "None" };
                 return Err(
                     Broken::new(query.call("watertight"), yours, expected, "exactly").explained_by([])

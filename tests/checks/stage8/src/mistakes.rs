@@ -259,10 +259,10 @@ pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>) -> Mis
     let slope = direction.dot(normal);
     let t = corners[0].dot(normal) / slope;
     // Whether all of some numbers have the same sign.
-    let alike =
+    let same_sign =
         |sides: &[f64]| sides.iter().all(|side| *side >= 0.0) || sides.iter().all(|side| *side <= 0.0);
     let passes = |[p, q, r]: [DVec3; 3]| {
-        alike(&[p.cross(q), q.cross(r), r.cross(p)].map(|normal| normal.dot(direction)))
+        same_sign(&[p.cross(q), q.cross(r), r.cross(p)].map(|normal| normal.dot(direction)))
     };
     let fan = |number: usize| passes([corners[0], corners[number], corners[number + 1]]);
     let inside = (1..corners.len() - 1).any(fan);
@@ -279,7 +279,7 @@ pub(super) fn of_polygon(query: &SolidQuery<Polygon>, yours: Option<f32>) -> Mis
             "you test the first two triangles of the fan only: n corners make n - 2 triangles",
         ),
         (
-            wrong(alike(&twice)),
+            wrong(same_sign(&twice)),
             "you subtract a corner twice: the plane of an edge passes through the ray's origin",
         ),
         (
