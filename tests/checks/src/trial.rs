@@ -41,6 +41,8 @@ pub struct Trial<'a> {
     draws: Cell<u32>,
     /// The inputs that were drawn before, if they are kept.
     drawn: Option<Arc<Drawn>>,
+    /// Whether a failing input is replaced by a smaller one, which only a message needs.
+    shrinks: bool,
 }
 
 /// The result of a check for the student.
@@ -62,7 +64,7 @@ pub enum Verdict {
 impl<'a> Trial<'a> {
     /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
-        Trial { kit, name, seed, draws: Cell::new(0), drawn: None }
+        Trial { kit, name, seed, draws: Cell::new(0), drawn: None, shrinks: true }
     }
 
     /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
@@ -116,6 +118,9 @@ impl<'a> Trial<'a> {
             Err(error) => kit_error::unwind(error),
         };
         let Some((index, broken)) = broken else { return Ok(()) };
+        if !self.shrinks {
+            return Err(broken);
+        }
         // Draw the inputs again with their trees of smaller inputs, which only this step needs.
         match law.tree(cases, &mut self.runner(), index) {
             Some(tree) => Err(shrink(tree, broken)),
@@ -278,6 +283,11 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
     verdict(check, examine(check, kit, seed))
 }
 
+/// Whether `kit` passes a check. Faster than [`run`] if it fails, because there is no message with a small input.
+pub fn passes(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> bool {
+    matches!(on_a_thread(check, kit, seed, None, false), Ok(Ok(())))
+}
+
 /// Whether the law holds, or the error that prevented an answer.
 pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<CheckResult, KitError> {
     examine_with(check, kit, seed, None)
@@ -290,6 +300,16 @@ pub fn examine_with(
     seed: u64,
     drawn: Option<Arc<Drawn>>,
 ) -> Result<CheckResult, KitError> {
+    on_a_thread(check, kit, seed, drawn, true)
+}
+
+fn on_a_thread(
+    check: &Check,
+    kit: &Arc<dyn Kit + Send + Sync>,
+    seed: u64,
+    drawn: Option<Arc<Drawn>>,
+    shrinks: bool,
+) -> Result<CheckResult, KitError> {
     let (send, outcome) = mpsc::channel();
     let (check, kit) = (*check, kit.clone());
     // A thread that exceeds the time limit is left running and ends with the process.
@@ -297,7 +317,7 @@ pub fn examine_with(
         .name(check.name.into())
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
-            let trial = Trial { drawn, ..Trial::new(&*kit, check.name, seed) };
+            let trial = Trial { drawn, shrinks, ..Trial::new(&*kit, check.name, seed) };
             let _ = send.send(kit_error::catch(|| (check.law)(&trial)));
         });
     if let Err(error) = spawned {
