@@ -27,9 +27,10 @@ pub struct Broken {
     pub picture: Option<Box<Png>>,
 }
 
-/// The texts of the known mistakes that give an answer.
+/// The known mistakes that give an answer: the text of each, and how many mistakes with this text precede it in its list.
+/// So mistakes that share a text stay apart.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mistakes(pub Vec<&'static str>);
+pub struct Mistakes(Vec<(&'static str, usize)>);
 
 /// The bytes of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,33 +74,43 @@ impl Broken {
     /// whether the mistake gives exactly this answer to exactly this input.
     ///
     /// One answer is weak evidence, so the message names a mistake only if it explains every failing input of the batch:
-    /// see [`first_broken`].
+    /// see [`first_broken`]. Variants of a mistake are entries of their own, with the same text and in the same order for
+    /// every input, because one variant must explain all.
     pub fn explained_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
-        let proven: Vec<_> = mistakes.into_iter().filter_map(|(gives, text)| gives.then_some(text)).collect();
-        let mistakes = Some(Box::new(Mistakes(proven)));
-        Broken { mistakes, ..self }.most_specific()
+        let mistakes: Vec<_> = mistakes.into_iter().collect();
+        let before =
+            |index: usize| mistakes[..index].iter().filter(|(_, text)| *text == mistakes[index].1).count();
+        let proven = (0..mistakes.len())
+            .filter(|&index| mistakes[index].0)
+            .map(|index| (mistakes[index].1, before(index)))
+            .collect();
+        Broken { mistakes: Some(Box::new(Mistakes(proven))), ..self }.most_specific()
     }
 
-    /// Adds mistakes before those that are known already.
+    /// Adds mistakes before those that are known already, with other texts.
     pub(crate) fn explained_first_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
         let later = self.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
-        let later = later.into_iter().map(|text| (true, text));
-        self.explained_by(mistakes.into_iter().chain(later).collect::<Vec<_>>())
+        let mut broken = self.explained_by(mistakes);
+        if let Some(mistakes) = &mut broken.mistakes {
+            mistakes.0.extend(later);
+        }
+        broken.most_specific()
     }
 
     /// With the first mistake as its diagnosis.
     fn most_specific(self) -> Self {
         let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());
-        Broken { diagnosis: first.map(|text| (*text).into()), ..self }
+        Broken { diagnosis: first.map(|(text, _)| (*text).into()), ..self }
     }
 
-    /// Whether the mistake that `diagnosis` names is proven for this answer, or none is named.
-    pub(crate) fn is_explained_by(&self, diagnosis: Option<&str>) -> bool {
-        match (&self.mistakes, diagnosis) {
-            (_, None) => true,
-            (Some(mistakes), Some(diagnosis)) => mistakes.0.contains(&diagnosis),
-            (None, Some(_)) => false,
-        }
+    /// The mistake that the message names, if it is one of a list.
+    pub(crate) fn named(&self) -> Option<(&'static str, usize)> {
+        self.mistakes.as_ref()?.0.first().copied()
+    }
+
+    /// Whether a mistake is proven for this answer.
+    pub(crate) fn is_explained_by(&self, mistake: (&str, usize)) -> bool {
+        self.mistakes.as_ref().is_some_and(|mistakes| mistakes.0.contains(&mistake))
     }
 
     /// The whole message for the student: title, slide, input, both answers, the diagnosis and the next commands.
@@ -123,7 +134,7 @@ pub fn first_broken(outcomes: Vec<CheckResult>) -> Option<(usize, Broken)> {
     let (index, mut first) = failing.next()?;
     let Some(mistakes) = &mut first.mistakes else { return Some((index, first)) };
     for (_, other) in failing {
-        mistakes.0.retain(|mistake| other.is_explained_by(Some(mistake)));
+        mistakes.0.retain(|mistake| other.is_explained_by(*mistake));
     }
     Some((index, first.most_specific()))
 }
@@ -171,6 +182,15 @@ mod tests {
         assert_eq!(named(vec![fails(&["a", "b"]), Ok(()), fails(&["b", "c"])]), Some((0, Some("b".into()))));
         assert_eq!(named(vec![fails(&["a"]), fails(&["b"])]), Some((0, None)));
         assert_eq!(named(vec![fails(&["a"]), fails(&[])]), Some((0, None)));
+    }
+
+    #[test]
+    fn variants_that_share_a_text_explain_a_batch_only_alone() {
+        let fails =
+            |variants: [bool; 2]| Err(Broken::default().explained_by(variants.map(|gives| (gives, "a"))));
+        let named = |outcomes| first_broken(outcomes).map(|(_, broken)| broken.diagnosis);
+        assert_eq!(named(vec![fails([false, true]), fails([true, true])]), Some(Some("a".into())));
+        assert_eq!(named(vec![fails([true, false]), fails([false, true])]), Some(None));
     }
 
     #[test]

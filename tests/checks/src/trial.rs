@@ -252,24 +252,21 @@ fn judge_one(judge: &dyn Fn() -> Vec<CheckResult>, input: &dyn Fn() -> String) -
 /// Searches for a smaller input that breaks the law as well, by the same mistake if one is known.
 fn shrink(mut tree: Box<dyn Tree + '_>, mut smallest: Broken) -> Broken {
     // All failing inputs together prove the mistake, so a smaller input keeps its diagnosis.
-    let proven = smallest.mistakes.as_ref().map(|_| smallest.diagnosis.clone());
-    let mistake = proven.clone().flatten();
+    let (mistakes, diagnosis) = (smallest.mistakes.clone(), smallest.diagnosis.clone());
+    let mistake = smallest.named();
     let mut steps = 0;
     let mut going = tree.simplify();
     while going && steps < SHRINK_STEPS {
         steps += 1;
         going = match judge_one(&|| tree.judge(), &|| tree.words()) {
-            Some(broken) if broken.is_explained_by(mistake.as_deref()) => {
+            Some(broken) if mistake.is_none_or(|mistake| broken.is_explained_by(mistake)) => {
                 smallest = broken;
                 tree.simplify()
             }
             _ => tree.complicate(),
         };
     }
-    if let Some(diagnosis) = proven {
-        smallest.diagnosis = diagnosis;
-    }
-    smallest
+    if mistakes.is_some() { Broken { mistakes, diagnosis, ..smallest } } else { smallest }
 }
 
 /// The FNV-1a hash, which is the same on every machine and in every version.
