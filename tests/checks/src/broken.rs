@@ -97,6 +97,14 @@ impl Broken {
         broken.most_specific()
     }
 
+    /// Drops a mistake that other answers of the batch refute.
+    pub fn not_explained_by(mut self, mistake: &str) -> Self {
+        if let Some(mistakes) = &mut self.mistakes {
+            mistakes.0.retain(|(text, _)| *text != mistake);
+        }
+        self.most_specific()
+    }
+
     /// With the first mistake as its diagnosis.
     fn most_specific(self) -> Self {
         let first = self.mistakes.as_ref().and_then(|mistakes| mistakes.0.first());

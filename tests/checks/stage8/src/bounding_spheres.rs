@@ -201,10 +201,7 @@ fn judge_entries(trial: &Trial<'_>, queries: &[Entry]) -> Vec<CheckResult> {
     });
     // A `t` in another unit is sometimes a wrong `t`, and not always a lost one.
     let loses_only = outcomes.iter().all(|outcome| outcome.as_ref().err().is_none_or(|b| b.yours == "None"));
-    let without_unit = |broken: Broken| {
-        let mistakes = broken.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
-        broken.explained_by(mistakes.into_iter().map(|text| (text != ANOTHER_UNIT, text)))
-    };
+    let without_unit = |broken: Broken| broken.not_explained_by(ANOTHER_UNIT);
     outcomes
         .into_iter()
         .map(|outcome| if loses_only { outcome.map_err(without_unit) } else { outcome })
