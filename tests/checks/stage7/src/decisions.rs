@@ -67,6 +67,8 @@ fn light_cases() -> Vec<LightCase> {
     ]
 }
 
+const ONE_SAMPLE: &str = "you use 1 sample: an area light needs quality.light_samples samples";
+
 /// The known mistakes, each with whether it gives this answer.
 fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static str)> {
     let LightCase { query: LightQuery { light, quality }, expected, bright, .. } = case;
@@ -112,10 +114,8 @@ fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static
             is(dark_if(radiance.max_element() < 1e-2)),
             "you return the default for dim lights: a faint red light still emits, so compare with 0",
         ),
-        (
-            is(with(many, 1, true)) || is(with(many, 1, false)),
-            "you use 1 sample: an area light needs quality.light_samples samples",
-        ),
+        (is(with(many, 1, true)), ONE_SAMPLE),
+        (is(with(many, 1, false)), ONE_SAMPLE),
         (is(with(many, n + 1, true)), "you add a sample: an area light needs quality.light_samples samples"),
         (
             is(with(is_area, n, true)),

@@ -234,6 +234,9 @@ pub(super) fn samples_reach_the_error_that_is_asked_for(trial: &Trial<'_>) -> Ch
         (1e30, 1e-30),
         (1e-30, 1e-30),
         (8192.0, 0.125),
+        // Quotients and squares that single precision rounds to another whole number.
+        (4097.0, 1.0),
+        (0.3, 0.1),
     ];
     let inputs = (0..64u32, 0..64u32, -40..=40i32).prop_map(|(deviation, error, exponent)| {
         let scale = 2f32.powi(exponent - 3);
@@ -269,12 +272,17 @@ fn judge_samples(query: &(f32, f32), yours: u32) -> CheckResult {
     Err(Broken::with_texts(input, format!("{yours}"), expected, "deviation / √n <= error"))
 }
 
+const IN_SINGLE: &str =
+    "you compute in single precision, which rounds the quotient or its square: convert to f64 first";
+
 /// Wrong formulas, each with whether it gives this answer.
 fn sample_mistakes((deviation, error): &(f32, f32), yours: &u32) -> Vec<(bool, &'static str)> {
     let ratio = f64::from(*deviation) / f64::from(*error);
     let whole = |n: f64| n as u32;
     let is = |wrong: u32| *yours == wrong || (*yours == 1 && wrong == 0);
     let square = ratio * ratio;
+    let single = deviation / error;
+    let of_single = f64::from(single) * f64::from(single);
     vec![
         (*yours == whole(square.ceil()), "you return 0 if the deviation is 0: one sample is the minimum"),
         (is(whole(square.recip().ceil())), "you divide the error by the deviation: it is deviation / error"),
@@ -289,6 +297,8 @@ fn sample_mistakes((deviation, error): &(f32, f32), yours: &u32) -> Vec<(bool, &
         ),
         (is(whole(square.floor())), "you round down, so the error is still too large: round up"),
         (is(whole(square.round())), "you round to nearest, so the error can be too large: round up"),
+        (is(((single * single).ceil() as u32).max(1)), IN_SINGLE),
+        (is((of_single.ceil() as u32).max(1)), IN_SINGLE),
         (
             is(if *error == 0.0 { 1 } else { whole(square.ceil()).max(1) }),
             "you return 1 for an error of 0: no number of samples is enough, so return u32::MAX",

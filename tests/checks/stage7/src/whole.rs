@@ -60,6 +60,9 @@ fn judge(what: &str, yours: &Effects, expected: &Effects) -> CheckResult {
     Err(Broken::with_texts(format!("effects of {what}"), part(yours), part(expected), "the definition"))
 }
 
+const DROPPED: &str =
+    "a black light needs nothing but keeps its entry: there is one entry per light of the scene";
+
 /// The mistakes in scenes with one sphere, which has material 1.
 fn of_plain_scenes(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static str)> {
     let lit = expected.materials[1].clone();
@@ -69,6 +72,7 @@ fn of_plain_scenes(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
     let moved_up = MaterialEffects { lights: vec![0], ..MaterialEffects::default() };
     let dropped = Effects { lights: still_lit, ..expected.clone() };
     let renumbered = Effects { materials: vec![MaterialEffects::default(), moved_up], ..dropped.clone() };
+    let has_fewer = yours.lights.len() < expected.lights.len();
     vec![
         (
             *yours == all_materials,
@@ -82,10 +86,8 @@ fn of_plain_scenes(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
             *yours == Effects { indirect_light: true, ..expected.clone() },
             "copy indirect_light from the scene: you return true",
         ),
-        (
-            yours.lights.len() < expected.lights.len() && (*yours == dropped || *yours == renumbered),
-            "a black light needs nothing but keeps its entry: there is one entry per light of the scene",
-        ),
+        (has_fewer && *yours == dropped, DROPPED),
+        (has_fewer && *yours == renumbered, DROPPED),
         (
             *yours == Effects { lights: Vec::new(), ..expected.clone() },
             "you leave out the lights: there is one entry per light of the scene",
@@ -119,6 +121,9 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckRes
     )
 }
 
+const ONE_MATERIAL: &str =
+    "you analyse one material per shape: a mesh can have several materials, so use all of shape.materials";
+
 /// The mistakes in scenes with parts that are not shown.
 fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static str)> {
     let nothing = MaterialEffects::default();
@@ -129,21 +134,27 @@ fn of_hidden_parts(yours: &Effects, expected: &Effects) -> Vec<(bool, &'static s
     } == *expected;
     let same_length = yours.materials.len() == expected.materials.len()
         && yours.smooth_meshes.len() == expected.smooth_meshes.len();
-    let mut pairs = yours.materials.iter().zip(&expected.materials);
+    let pairs = yours.materials.iter().zip(&expected.materials);
     let wrong = |(one, other): (&MaterialEffects, &MaterialEffects)| one != other;
     let extra = pairs.clone().any(|(one, other)| one != other && *other == nothing);
-    let only_extra = pairs.clone().filter(|pair| wrong(*pair)).all(|(_, other)| *other == nothing);
-    let lost = pairs.any(|(one, other)| one != other && *one == nothing);
+    let only_extra = pairs.filter(|pair| wrong(*pair)).all(|(_, other)| *other == nothing);
+    // Keep one of the materials of the mesh, which are those from 2 on.
+    let one_material = |kept: usize| {
+        let keep = |(index, material): (usize, &MaterialEffects)| match index < 2 || index == kept {
+            true => material.clone(),
+            false => nothing.clone(),
+        };
+        let materials = expected.materials.iter().enumerate().map(keep).collect();
+        *yours == Effects { materials, ..expected.clone() }
+    };
     let smooth = yours.smooth_meshes.iter().zip(&expected.smooth_meshes).any(|(one, other)| *one && !*other);
     vec![
         (
             is_same && same_length && only_extra && (extra || smooth),
             "you analyse what is not shown: only shapes that a root reaches are shown, so use scene.shown()",
         ),
-        (
-            is_same && same_length && lost && !extra && !smooth,
-            "you analyse one material per shape: a mesh can have several materials, so use all of shape.materials",
-        ),
+        (one_material(2), ONE_MATERIAL),
+        (one_material(expected.materials.len() - 1), ONE_MATERIAL),
         (
             !same_length,
             "you leave out entries: there is one per material and one per mesh of the scene, in order",
@@ -179,14 +190,19 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     expected.smooth_meshes = vec![false];
     cases.push(case("a diffuse sphere, and a smooth mesh that no node holds", &scene, &expected));
 
-    // Show the mesh; half of it has the mirror material.
-    let mesh = Mesh { triangles: vec![[0, 1, 2]; 2], face_materials: vec![0, 1], ..one_triangle() };
+    // Show the mesh, with three materials that the sphere does not have.
+    let glass = Material { transmission: Vec3::ONE, ..Material::default() };
+    scene.materials.extend([glass, Material::default()]);
+    scene.material_names.extend(["glass".into(), "paint".into()]);
+    let mesh = Mesh { triangles: vec![[0, 1, 2]; 3], face_materials: vec![0, 1, 2], ..one_triangle() };
     scene.meshes =
-        vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: vec![1, 2] }];
+        vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: vec![2, 3, 4] }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
-    expected.materials[2] = MaterialEffects { mirror: true, ..expected.materials[1].clone() };
-    cases.push(case("a diffuse sphere, and a mesh that is half a mirror", &scene, &expected));
+    let lit = expected.materials[1].clone();
+    expected.materials[2] = MaterialEffects { mirror: true, ..lit.clone() };
+    expected.materials.extend([MaterialEffects { transmission: true, ..lit.clone() }, lit]);
+    cases.push(case("a diffuse sphere, and a mesh of mirror, glass and paint", &scene, &expected));
     judge_all(trial, &cases)
 }
 
