@@ -20,7 +20,7 @@ use crate::report::bar_of_steps;
 use crate::worker::{CALL_PATIENCE, Worker};
 use all_checks::STAGES;
 use anyhow::{Result, bail};
-use checks::{Check, Verdict};
+use checks::Check;
 use journal::Journal;
 use list::Mutant;
 use raykata::kit::Door;
@@ -170,7 +170,7 @@ fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) ->
     let by_checks = |wanted: &dyn Fn(u8) -> bool| {
         let mut checks =
             STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());
-        let failed = |check: &&Check| checks::run(check, &source.fresh(), 0) != Verdict::Passed;
+        let failed = |check: &&Check| !checks::passes(check, &source.fresh(), 0);
         checks.find(failed).map(|check| match Some(check.stage) == own {
             true => Fate::ByItsStage(check.name.into()),
             false => Fate::ByAnotherStage(check.name.into()),
