@@ -1,122 +1,13 @@
-//! Checks of `texel` and `texture_color`.
+//! Checks of `texture_color`.
 
+use super::texels::{WRAPS, row};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
-use checks::judge::compare_formulas;
 use glam::{DVec3, Vec3, vec2, vec3};
 use proptest::prelude::*;
-use raykata::kit::{KitError, TexelQuery, TextureQuery, kit_error};
+use raykata::kit::{KitError, TextureQuery, kit_error};
 use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
-
-const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
-
-/// The largest absolute index that is tested.
-const REACH: i64 = 40;
-
-/// The texels of `-reach..=reach`, counted step by step from 0 to either side, with a turn or a restart at the ends.
-fn row(size: u32, wrap: Wrap, reach: i64) -> Vec<u32> {
-    let walk = |step: i64| {
-        let (mut place, mut step) = (0, step);
-        let next = move || {
-            let here = place;
-            match wrap {
-                Wrap::Repeat => place = (place + step + i64::from(size)) % i64::from(size),
-                Wrap::Clamp => place = (place + step).clamp(0, i64::from(size) - 1),
-                // Each border pixel appears twice in a row.
-                Wrap::Mirror if !(0..i64::from(size)).contains(&(place + step)) => step = -step,
-                Wrap::Mirror => place += step,
-            }
-            here as u32
-        };
-        std::iter::repeat_with(next).take(reach as usize + 1).collect::<Vec<u32>>()
-    };
-    let below = walk(-1);
-    below.into_iter().skip(1).rev().chain(walk(1)).collect()
-}
-
-pub(super) fn texels_wrap_as_they_should(trial: &Trial<'_>) -> CheckResult {
-    let wrap = prop_oneof![Just(Wrap::Repeat), Just(Wrap::Clamp), Just(Wrap::Mirror)];
-    let queries =
-        (-REACH..REACH, 1..9u32, wrap).prop_map(|(index, size, wrap)| TexelQuery { index, size, wrap });
-    // Indices at which each known mistake gives another column.
-    let drawn = [(-1, Wrap::Repeat), (5, Wrap::Clamp), (-1, Wrap::Mirror), (5, Wrap::Mirror)]
-        .map(|(index, wrap)| TexelQuery { index, size: 4, wrap });
-    trial.forall_and(&drawn, 3000, queries, |queries| {
-        compare_formulas(queries, trial.kit.texel(queries), judge_texel, texel_mistakes)
-    })
-}
-
-fn judge_texel(query: &TexelQuery, yours: u32) -> CheckResult {
-    let expected = row(query.size, query.wrap, REACH)[(query.index + REACH) as usize];
-    if yours == expected {
-        return Ok(());
-    }
-    let input = format!("texel({}, {}, Wrap::{:?})", query.index, query.size, query.wrap);
-    Err(Broken::new(input, yours, expected, "counted step by step"))
-}
-
-/// Wrong formulas, each with whether it gives this answer.
-fn texel_mistakes(query: &TexelQuery, yours: &u32) -> Vec<(bool, &'static str)> {
-    let TexelQuery { index, size, wrap } = *query;
-    let of = |wrap| i64::from(row(size, wrap, REACH)[(index + REACH) as usize]);
-    let (expected, size) = (of(wrap), i64::from(size));
-    let is = |wrong: i64| *yours == wrong as u32;
-    // A formula that is wrong for one wrap mode only.
-    let only = |mode: Wrap, wrong: i64| is(if wrap == mode { wrong } else { expected });
-    let period = (2 * size - 2).max(1);
-    let once = index.rem_euclid(period);
-    let twice = index.rem_euclid(2 * size);
-    let remainder = "you are wrong for negative indices: the remainder of a negative number is negative, so use rem_euclid";
-    vec![
-        (
-            only(Wrap::Clamp, index.clamp(0, size)),
-            "you return an index of size or more: the last one is size - 1",
-        ),
-        (only(Wrap::Repeat, index % size), remainder),
-        (
-            only(Wrap::Repeat, index.abs() % size),
-            "you are wrong for negative indices: the remainder of a negative number, without its sign, counts from the other \
-             end, so use rem_euclid",
-        ),
-        (
-            only(Wrap::Mirror, once.min(period - once)),
-            "you are off by one: Wrap::Mirror shows each border pixel twice in a row, and you show it once",
-        ),
-        (
-            only(Wrap::Mirror, {
-                let there = index.abs() % (2 * size);
-                there.min(2 * size - 1 - there)
-            }),
-            "you are off by one for negative indices: Wrap::Mirror shows each border pixel twice in a row",
-        ),
-        (
-            only(Wrap::Mirror, twice.min(2 * size - twice)),
-            "you are off by one on the way back: Wrap::Mirror shows each border pixel twice in a row",
-        ),
-        (
-            only(Wrap::Repeat, of(Wrap::Clamp)),
-            "you continue the border for Wrap::Repeat, as Wrap::Clamp does",
-        ),
-        (
-            only(Wrap::Mirror, of(Wrap::Clamp)),
-            "you continue the border for Wrap::Mirror, as Wrap::Clamp does",
-        ),
-        (only(Wrap::Clamp, of(Wrap::Repeat)), "you repeat the image for Wrap::Clamp, as Wrap::Repeat does"),
-        (only(Wrap::Mirror, of(Wrap::Repeat)), "you repeat the image for Wrap::Mirror, as Wrap::Repeat does"),
-        (is(of(Wrap::Clamp)), "you continue the border for each wrap mode, as Wrap::Clamp does"),
-        (is(of(Wrap::Repeat)), "you repeat the image for each wrap mode, as Wrap::Repeat does"),
-        (is(of(Wrap::Mirror)), "you mirror the image for each wrap mode, as Wrap::Mirror does"),
-        (
-            is(match wrap {
-                Wrap::Repeat => of(Wrap::Clamp),
-                Wrap::Clamp => of(Wrap::Repeat),
-                Wrap::Mirror => expected,
-            }),
-            "you exchange two modes: for Wrap::Repeat you continue the border, as Wrap::Clamp does",
-        ),
-    ]
-}
 
 fn texture(width: u32, height: u32, wrap: Wrap) -> Texture {
     let pixel = |i: u32| {

@@ -1,0 +1,147 @@
+//! Checks of `light_effects`.
+
+use super::scenes::{light, sphere_light};
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare_formulas;
+use glam::{Vec3, vec3};
+use raykata::effects::LightEffects;
+use raykata::kit::LightQuery;
+use raykata::material::{AreaShape, Emitter, Falloff, Light};
+use raykata::scene::Quality;
+
+/// A light, and what it needs.
+#[derive(Clone)]
+struct LightCase {
+    name: &'static str,
+    query: LightQuery,
+    expected: LightEffects,
+    /// What the light would need if it were bright.
+    bright: LightEffects,
+}
+
+fn light_cases() -> Vec<LightCase> {
+    let one = LightEffects { samples: 1, area: false, shadows: true };
+    let area = |samples| LightEffects { samples, area: true, shadows: true };
+    let silent = |light: Light| Light { shadows: false, ..light };
+    let case = |name, light: Light, light_samples, expected, bright| LightCase {
+        name,
+        query: LightQuery { light, quality: Quality { light_samples, ..Quality::default() } },
+        expected,
+        bright,
+    };
+    let lit = |name, light, light_samples, needs| case(name, light, light_samples, needs, needs);
+    let dark = |name, light, light_samples, bright| {
+        case(name, light, light_samples, LightEffects::default(), bright)
+    };
+    let sun = Light { emitter: Emitter::Directional { direction: Vec3::NEG_Y }, ..light(Vec3::ONE, 2.0) };
+    let rectangle = AreaShape::Rectangle { corner: Vec3::Y, edges: (Vec3::X, Vec3::Z) };
+    let rectangle = Emitter::Area { shape: rectangle, falloff: Falloff::None };
+    vec![
+        lit("a white light", light(Vec3::ONE, 1.0), 4, one),
+        lit("a directional light", sun, 9, one),
+        lit(
+            "a light that casts no shadows",
+            silent(light(Vec3::ONE, 1.0)),
+            1,
+            LightEffects { shadows: false, ..one },
+        ),
+        dark("a light of intensity 0", light(Vec3::ONE, 0.0), 1, one),
+        dark("a black light", light(Vec3::ZERO, 3.0), 1, one),
+        lit("a faint white light", light(Vec3::splat(1e-6), 1.0), 1, one),
+        lit("a red light", light(vec3(1.0, 0.0, 0.0), 1.0), 1, one),
+        lit("a faint red light", light(vec3(1e-6, 0.0, 0.0), 1.0), 1, one),
+        lit("a spherical area light", sphere_light(Vec3::ONE), 16, area(16)),
+        lit("a rectangular area light", Light { emitter: rectangle, ..light(Vec3::ONE, 1.0) }, 7, area(7)),
+        lit(
+            "a spherical area light that casts no shadows",
+            silent(sphere_light(Vec3::ONE)),
+            16,
+            LightEffects { shadows: false, ..area(16) },
+        ),
+        lit("a spherical area light with light_samples = 1", sphere_light(Vec3::ONE), 1, area(1)),
+        lit("a spherical area light with light_samples = 0", sphere_light(Vec3::ONE), 0, one),
+        dark("a black spherical area light", sphere_light(Vec3::ZERO), 16, area(16)),
+    ]
+}
+
+const ONE_SAMPLE: &str = "you use 1 sample: an area light needs quality.light_samples samples";
+
+/// The known mistakes, each with whether it gives this answer.
+fn light_mistakes(case: &LightCase, yours: &LightEffects) -> Vec<(bool, &'static str)> {
+    let LightCase { query: LightQuery { light, quality }, expected, bright, .. } = case;
+    let nothing = LightEffects::default();
+    let is_area = matches!(light.emitter, Emitter::Area { .. });
+    let (n, radiance) = (quality.light_samples, light.radiance());
+    let is_lit = *expected != nothing;
+    let dark_if = |dark: bool| if dark { nothing } else { *bright };
+    // A change of the answer for lights of some kind.
+    let changed = |applies: bool, change: LightEffects| if is_lit && applies { change } else { *expected };
+    let with = |applies, samples, area| changed(applies, LightEffects { samples, area, ..*expected });
+    let many = is_area && n > 0;
+    let is = |wrong: LightEffects| *yours == wrong;
+    vec![
+        (
+            is(with(!is_area, n, false)),
+            "a point light needs 1 sample: light_samples counts for area lights only",
+        ),
+        (
+            is(changed(true, LightEffects { shadows: true, ..*expected })),
+            "you set shadows for every light: a light without shadows still needs 1 sample, and shadows = light.shadows",
+        ),
+        (
+            is(changed(!light.shadows, nothing)),
+            "you return the default for a light without shadows: a light without shadows still needs 1 sample, and shadows \
+             = light.shadows",
+        ),
+        (is(dark_if(false)), "a light that emits nothing needs nothing: LightEffects::default()"),
+        (
+            is(dark_if(light.color == Vec3::ZERO)),
+            "you test the colour only, but a light of intensity 0 is dark, too: a light that emits nothing needs nothing",
+        ),
+        (
+            is(dark_if(light.intensity == 0.0)),
+            "you test the intensity only: a black light emits nothing, so it needs nothing",
+        ),
+        (
+            is(dark_if(radiance.min_element() == 0.0)),
+            "you return the default for a light that is black in one channel: a faint red light still emits, so test \
+             whether all channels are 0",
+        ),
+        (
+            is(dark_if(radiance.max_element() < 1e-2)),
+            "you return the default for dim lights: a faint red light still emits, so compare with 0",
+        ),
+        (is(with(many, 1, true)), ONE_SAMPLE),
+        (is(with(many, 1, false)), ONE_SAMPLE),
+        (is(with(many, n + 1, true)), "you add a sample: an area light needs quality.light_samples samples"),
+        (
+            is(with(is_area, n, true)),
+            "with light_samples = 0 an area light needs 1 sample, and area is false",
+        ),
+        (
+            is(with(is_area && n == 0, 0, false)),
+            "you use 0 samples: with light_samples = 0 an area light needs 1 sample, and area is false",
+        ),
+        (is(with(is_area && n == 0, 1, true)), "with light_samples = 0 area is false"),
+        (
+            is(with(is_area && n == 1, 1, false)),
+            "a single sample is drawn at random, too: area is true if light_samples is above 0",
+        ),
+    ]
+}
+
+pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
+    let cases = light_cases();
+    let queries: Vec<LightQuery> = cases.iter().map(|case| case.query.clone()).collect();
+    let judge = |case: &LightCase, yours: LightEffects| {
+        if yours == case.expected {
+            return Ok(());
+        }
+        let input =
+            format!("light_effects of {}, light_samples {}", case.name, case.query.quality.light_samples);
+        Err(Broken::new(input, yours, case.expected, "the definition"))
+    };
+    let answers = trial.kit.light_effects(&queries);
+    all_hold(compare_formulas(&cases, answers, judge, light_mistakes))
+}
