@@ -2,6 +2,7 @@
 //! libraries were built once. Cargo is not used, because it might take the build of one submission for that of another.
 
 use super::result::Outcome;
+use super::submission::helpers;
 use crate::sandbox::{self, Confinement, Ended, How, Purpose, Sandbox};
 use crate::sync::stage_of;
 use anyhow::{Context, Result, ensure};
@@ -9,6 +10,7 @@ use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -142,12 +144,24 @@ impl Forge {
         replaced: &BTreeMap<String, (Outcome, String)>,
     ) -> Result<()> {
         let folder = scratch.join("exercises/src");
+        if folder.exists() {
+            fs::remove_dir_all(&folder)?;
+        }
         fs::create_dir_all(&folder)?;
         fs::create_dir_all(scratch.join("out"))?;
         for (name, pristine) in &self.pristine {
             let text = files.get(name).filter(|_| stage_of(name).is_some() && !replaced.contains_key(name));
             fs::write(folder.join(name), text.unwrap_or(pristine))?;
         }
+        // Add the modules that the student has added.
+        let is_module = |name: &&String| !self.pristine.contains_key(*name) && !replaced.contains_key(*name);
+        for name in files.keys().filter(is_module) {
+            let path = folder.join(name);
+            fs::create_dir_all(path.parent().unwrap_or(&folder))?;
+            fs::write(path, &files[name])?;
+        }
+        let mut library = fs::OpenOptions::new().append(true).open(folder.join("lib.rs"))?;
+        library.write_all(helpers::lines(files.keys().filter(is_module)).as_bytes())?;
         Ok(())
     }
 

@@ -9,6 +9,7 @@ use super::store::Store;
 use super::submission::{self, Submission, Taken};
 use crate::queue;
 use crate::sandbox::{self, Confinement, How, Purpose, Sandbox};
+use crate::sync::stage_of;
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -74,7 +75,11 @@ impl Grader {
 
     /// Reads the stage files of a submission.
     pub fn take(&self, path: &Path) -> Taken {
-        submission::take(path, &self.forge.exercises())
+        let exercises = self.forge.exercises();
+        let graded = self.judge.stages();
+        let of_stages = |name: &&String| stage_of(name).is_some_and(|stage| graded.contains(&stage));
+        let expected: Vec<String> = exercises.iter().filter(of_stages).cloned().collect();
+        submission::take(path, &exercises, &expected)
     }
 
     /// Grades the files of a submission. Returns an error only if the grader itself fails.

@@ -17,7 +17,7 @@ use checks::{Broken, Check, Drawn, Verdict};
 use raykata::frame::Watch;
 use raykata::kit::{Answer, Door, Kit, KitError, Request, Transport, kit_error};
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::mem::{Discriminant, discriminant};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -30,11 +30,6 @@ const CALL_PATIENCE: Duration = Duration::from_secs(4);
 /// Time limit for all checks of a submission together. The slowest failure is a call that never returns; the limit allows
 /// 70 of them. Checks beyond the limit are not tried.
 const BUDGET: Duration = Duration::from_secs(300);
-
-/// Number of further seeds for a function that is right on the public inputs and wrong on hidden ones. A function that
-/// fails with all of them is taken for memorised. Suppose that an honest mistake shows with every second seed. Then it
-/// shows with all hidden seeds and not with the public inputs in 1 of 500 submissions.
-const MORE_SEEDS: u64 = 7;
 
 /// Longest message that is kept, in bytes.
 const MOST_SAID: usize = 2048;
@@ -55,7 +50,7 @@ pub struct Judge {
 struct Put {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
-    hides: bool,
+    varies: bool,
     /// The functions that it calls.
     asks: HashSet<Discriminant<Request>>,
 }
@@ -65,13 +60,11 @@ struct Answered {
     outcome: Outcome,
     message: String,
     picture: Option<Picture>,
-    /// Whether the answers are right on the public inputs and wrong with every hidden seed.
-    special: bool,
 }
 
 impl Answered {
     fn new(outcome: Outcome, message: impl Into<String>) -> Answered {
-        Answered { outcome, message: message.into(), picture: None, special: false }
+        Answered { outcome, message: message.into(), picture: None }
     }
 }
 
@@ -86,7 +79,7 @@ impl Judge {
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
         // Compare the questions of each check with the public seed and with the hidden one.
-        let hides = |reference: &Arc<Worker>, check: &&'static Check| {
+        let put = |reference: &Arc<Worker>, check: &&'static Check| {
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
                 [0, seed].map(|seed| asked(reference, check, seed));
             ensure!(
@@ -98,70 +91,80 @@ impl Judge {
             if !passes_hidden {
                 eprintln!("warning: {} of stage {} uses only the public inputs", check.name, check.stage);
             }
-            Ok(Put { check, hides: passes_hidden && known != hidden, asks })
+            Ok(Put { check, varies: passes_hidden && known != hidden, asks })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
-        let checks = queue::run(&workers, &checks, hides)?;
+        let checks = queue::run(&workers, &checks, put)?;
         Ok(Judge { checks, seed, confinement, drawn: Arc::default() })
     }
 
     /// Runs all checks against the program `worker`. Checks of the files in `replaced` get the outcome given there.
     ///
-    /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets a new
-    /// process. Otherwise one process answers until a check fails. A check with a wrong answer or a crash is then repeated
-    /// in a new process.
+    /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets new
+    /// processes. Public and hidden inputs go to different processes in any case: whatever a process says about public
+    /// inputs, it has not seen hidden ones.
     pub fn judge(
         &self,
         worker: &Path,
         replaced: &BTreeMap<String, (Outcome, String)>,
         may_remember: bool,
     ) -> Vec<CheckResult> {
-        let fresh = || {
+        let start = || {
             let sandbox = Sandbox::with(self.confinement, Purpose::Worker);
             Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, sandbox))
         };
-        let mut seasoned: Option<Arc<Worker>> = None;
+        let processes = || Processes { start: &start, may_remember, seasoned: None };
+        let (mut public, mut hidden) = (processes(), processes());
         let until = Instant::now() + BUDGET;
-        let mut by_heart = HashSet::new();
         let judged: Vec<Answered> = self
             .checks
             .iter()
             .map(|put| {
-                // Use the process of the check before if it may be used again, otherwise a new one.
-                let asked = seasoned.take().map(|worker| (self.ask(put, worker.clone(), until), worker));
-                // Earlier questions cannot cause these outcomes.
-                let settled = |asked: &(Answered, Arc<Worker>)| {
-                    matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
-                };
-                let (answered, worker) = asked.filter(settled).unwrap_or_else(|| {
-                    let worker = fresh();
-                    (self.ask(put, worker.clone(), until), worker)
-                });
-                // After a timeout the thread of the check may still send questions.
-                let alone = answered.outcome != Outcome::TooLong;
-                seasoned = (alone && !may_remember).then_some(worker);
-                // A check of several functions does not tell which of them is memorised.
-                if answered.special && put.asks.len() == 1 {
-                    by_heart.extend(&put.asks);
-                }
+                // Use the public inputs first, so that students can reproduce the message.
+                let answered = public.answer(|worker| self.ask_public(put, worker, until));
                 // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
                 let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
                 let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
-                match lost {
-                    Some((_, (outcome, message))) => Answered::new(*outcome, message),
-                    None => answered,
+                match (lost, answered.outcome) {
+                    (Some((_, (outcome, message))), _) => Answered::new(*outcome, message),
+                    (None, Outcome::Passed) if put.varies => {
+                        hidden.answer(|worker| self.ask_hidden(put, worker))
+                    }
+                    (None, _) => answered,
                 }
             })
             .collect();
+        let proven = self.proven(&judged);
         let results = self.checks.iter().zip(judged).map(|(put, answered)| {
-            // A check with public inputs only proves nothing about a function that has memorised its answers.
-            if answered.outcome == Outcome::Passed && !put.hides && !put.asks.is_disjoint(&by_heart) {
-                return result(put.check, Answered::new(Outcome::WrongOnHidden, hidden_message(put.check)));
+            let others = self.missing_proofs(put, &proven);
+            // Right answers to inputs that everybody knows can be a table.
+            if answered.outcome == Outcome::Passed && !put.varies && !others.is_empty() {
+                let message = unproven_message(put.check, &others);
+                return result(put.check, Answered::new(Outcome::Unproven, message));
             }
             result(put.check, answered)
         });
         results.collect()
+    }
+
+    /// The functions that a check with hidden inputs asks and that pass it.
+    fn proven(&self, judged: &[Answered]) -> HashSet<Discriminant<Request>> {
+        let passed = self.checks.iter().zip(judged);
+        let passed = passed.filter(|(put, answered)| put.varies && answered.outcome == Outcome::Passed);
+        passed.flat_map(|(put, _)| put.asks.iter().copied()).collect()
+    }
+
+    /// The checks with hidden inputs that ask the functions of `put` that are not `proven`.
+    fn missing_proofs(&self, put: &Put, proven: &HashSet<Discriminant<Request>>) -> Vec<&'static str> {
+        let open: HashSet<_> = put.asks.difference(proven).collect();
+        let asks_one = |other: &&Put| other.varies && other.asks.iter().any(|asked| open.contains(asked));
+        self.checks.iter().filter(asks_one).map(|other| other.check.name).collect()
+    }
+
+    /// Returns the graded stages.
+    pub fn stages(&self) -> BTreeSet<u8> {
+        self.checks.iter().map(|put| put.check.stage).collect()
     }
 
     /// Gives every check the same outcome.
@@ -169,47 +172,69 @@ impl Judge {
         self.checks.iter().map(|put| result(put.check, Answered::new(outcome, message))).collect()
     }
 
-    /// Runs one check against a worker.
-    fn ask(&self, put: &Put, worker: Arc<Worker>, until: Instant) -> Answered {
-        let check = put.check;
+    /// Runs one check with the public inputs.
+    fn ask_public(&self, put: &Put, worker: Arc<Worker>, until: Instant) -> Answered {
         if Instant::now() > until {
             let message = "not tried: earlier checks used up the time of the submission";
             return Answered::new(Outcome::NotTried, message);
         }
+        let known = self.examine(put, worker, 0);
+        let (outcome, picture) = (outcome(&known), picture(&known));
+        match checks::verdict(put.check, known) {
+            Verdict::Passed => Answered::new(Outcome::Passed, ""),
+            Verdict::Failed(message) => Answered { picture, ..Answered::new(outcome, message) },
+            Verdict::NotWritten { task, place } => {
+                Answered::new(outcome, format!("not written yet: {place}\n  {task}"))
+            }
+        }
+    }
+
+    /// Runs one check with the hidden inputs. The message quotes nothing, because the worker knows these inputs.
+    fn ask_hidden(&self, put: &Put, worker: Arc<Worker>) -> Answered {
+        match outcome(&self.examine(put, worker, self.seed)) {
+            Outcome::Passed => Answered::new(Outcome::Passed, ""),
+            Outcome::Wrong | Outcome::NotWritten => {
+                Answered::new(Outcome::WrongOnHidden, hidden_message(put.check))
+            }
+            other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
+        }
+    }
+
+    fn examine(&self, put: &Put, worker: Arc<Worker>, seed: u64) -> Result<checks::CheckResult, KitError> {
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
-        // Use the public inputs first, so that students can reproduce the message.
-        let examine = |seed| checks::examine_with(check, &kit, seed, Some(self.drawn.clone()));
-        let known = examine(0);
-        // If these pass, use the hidden inputs.
-        let answered = match outcome(&known) {
-            Outcome::Passed if !put.hides => Answered::new(Outcome::Passed, ""),
-            Outcome::Passed => match outcome(&examine(self.seed)) {
-                Outcome::Wrong | Outcome::NotWritten => {
-                    // Try further seeds to detect memorised answers.
-                    let mut seeds = (1..=MORE_SEEDS).map(|number| self.seed.wrapping_add(number));
-                    let special = seeds.all(|seed| {
-                        let again = outcome(&checks::examine(check, &kit, seed));
-                        matches!(again, Outcome::Wrong | Outcome::NotWritten)
-                    });
-                    Answered { special, ..Answered::new(Outcome::WrongOnHidden, hidden_message(check)) }
-                }
-                Outcome::Passed => Answered::new(Outcome::Passed, ""),
-                other => Answered::new(other, format!("{}\n  on hidden inputs", other.words())),
-            },
-            other => {
-                let picture = picture(&known);
-                match checks::verdict(check, known) {
-                    Verdict::Passed => Answered::new(Outcome::Passed, ""),
-                    Verdict::Failed(message) => Answered { picture, ..Answered::new(other, message) },
-                    Verdict::NotWritten { task, place } => {
-                        Answered::new(other, format!("not written yet: {place}\n  {task}"))
-                    }
-                }
-            }
-        };
+        let examined = checks::examine_with(put.check, &kit, seed, Some(self.drawn.clone()));
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
         over.store(true, Ordering::Relaxed);
+        examined
+    }
+}
+
+/// The processes of a submission that get inputs of one kind, one process at a time.
+struct Processes<'a> {
+    start: &'a dyn Fn() -> Arc<Worker>,
+    /// Whether an answer may depend on earlier questions, so that no process may be used twice.
+    may_remember: bool,
+    /// The process of the check before, if it may be used again.
+    seasoned: Option<Arc<Worker>>,
+}
+
+impl Processes<'_> {
+    /// Asks the process of the check before, or else a new one. An answer that earlier questions may have caused is not
+    /// used: a new process is asked.
+    fn answer(&mut self, ask: impl Fn(Arc<Worker>) -> Answered) -> Answered {
+        let asked = self.seasoned.take().map(|worker| (ask(worker.clone()), worker));
+        // Earlier questions cannot cause these outcomes.
+        let settled = |asked: &(Answered, Arc<Worker>)| {
+            matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
+        };
+        let (answered, worker) = asked.filter(settled).unwrap_or_else(|| {
+            let worker = (self.start)();
+            (ask(worker.clone()), worker)
+        });
+        // After a timeout the thread of the check may still send questions.
+        let is_alone = answered.outcome != Outcome::TooLong;
+        self.seasoned = (is_alone && !self.may_remember).then_some(worker);
         answered
     }
 }
@@ -218,6 +243,15 @@ fn hidden_message(check: &Check) -> String {
     format!(
         "{}  right on the inputs that you have, wrong on others: look for an answer for special cases\n",
         rubric::entry(check.stage, check.name).header()
+    )
+}
+
+fn unproven_message(check: &Check, others: &[&str]) -> String {
+    format!(
+        "{}  right, but its inputs are the same for everybody: it counts when one of these checks of the same function \
+         passes: {}\n",
+        rubric::entry(check.stage, check.name).header(),
+        others.join(", ")
     )
 }
 
@@ -239,7 +273,7 @@ fn picture(examined: &Result<checks::CheckResult, KitError>) -> Option<Picture> 
 }
 
 fn result(check: &Check, answered: Answered) -> CheckResult {
-    let Answered { outcome, message, picture, .. } = answered;
+    let Answered { outcome, message, picture } = answered;
     let points = rubric::entry(check.stage, check.name).points;
     let earned = if outcome == Outcome::Passed { points } else { 0 };
     let message = clean::clean(message.trim_end(), MOST_SAID);

@@ -29,6 +29,7 @@ use crate::queue;
 use anyhow::{Context, Result, ensure};
 use options::GradingOptions;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
+use report::clean::clean_line;
 use result::Graded;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -63,7 +64,12 @@ pub static SPEC: Spec = Spec {
             ),
             Opt::flag(
                 "--resume",
-                "Continue with the grades in the folder: grade only submissions that are new or have changed.",
+                "Continue with the grades in the folder: grade only submissions that are new or have changed. Grades of \
+                 other submissions stay, so SUBMISSIONS may be a folder of late ones.",
+            ),
+            Opt::flag(
+                "--forget-missing",
+                "With `--resume`: delete the grades of submissions that are not in SUBMISSIONS.",
             ),
         ],
         GradingOptions::OPTIONS,
@@ -85,6 +91,7 @@ pub struct Options {
     jobs: Option<u16>,
     shard: Option<Shard>,
     resume: bool,
+    forget_missing: bool,
     grading: GradingOptions,
 }
 
@@ -97,9 +104,11 @@ impl Options {
             jobs: given.number("--jobs", 1..=u16::MAX)?,
             shard: given.parsed("--shard", shard)?,
             resume: given.has("--resume"),
+            forget_missing: given.has("--forget-missing"),
             grading: GradingOptions::read(given)?,
         };
         given.require("--shard", "--seed")?;
+        given.require("--forget-missing", "--resume")?;
         Ok(options)
     }
 }
@@ -141,7 +150,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
     // Open the database and begin or continue the session.
     crate::report::make_folder(&options.out)?;
-    let store = Store::open(&options.out)?;
+    let store = Store::claim(&options.out)?;
     let begun = store.session()?;
     ensure!(
         begun.is_none() || options.resume,
@@ -150,8 +159,22 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     );
     let (grader, session) = options.grading.begin(root, begun.as_ref())?;
     store.begin(&session)?;
+    // Keep the grades of submissions that are not there, unless the instructor says otherwise.
     let names: Vec<&str> = submissions.iter().map(|one| one.student.as_str()).collect();
-    store.retain(&names)?;
+    let others = store.others(&names)?;
+    if options.forget_missing {
+        others.iter().try_for_each(|student| store.forget(student))?;
+    }
+    if let [first, ..] = &others[..] {
+        let fate = if options.forget_missing { "deleted" } else { "kept; --forget-missing deletes them" };
+        eprintln!(
+            "{} of the grades in {} are of submissions that are not in {}, such as {}: {fate}",
+            others.len(),
+            options.out.display(),
+            options.submissions.display(),
+            clean_line(first, 80)
+        );
+    }
     // Grade all submissions and write the reports.
     let bar = crate::report::bar_of_steps(submissions.len());
     let jobs = options.jobs.map_or_else(queue::cores, usize::from);
@@ -178,7 +201,7 @@ impl MergeOptions {
 /// Combines the parts of a class.
 pub fn merge(MergeOptions { parts, out }: &MergeOptions) -> Result<bool> {
     crate::report::make_folder(out)?;
-    let store = Store::open(out)?;
+    let store = Store::claim(out)?;
     ensure!(store.session()?.is_none(), "{} already contains grades; choose another folder", out.display());
     for part in parts {
         ensure!(part.join(store::FILE).is_file(), "{} contains no grades", part.display());

@@ -115,6 +115,7 @@ fn grade_options(class: &Path, out: &Path, options: &Options) -> GradeOptions {
         jobs: options.jobs,
         shard: None,
         resume: false,
+        forget_missing: false,
         grading: GradingOptions {
             stages: Some(Stages(STAGES_OF_CLASS.to_vec())),
             ..GradingOptions::default()

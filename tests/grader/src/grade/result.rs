@@ -14,6 +14,9 @@ pub enum Outcome {
     Wrong,
     /// The answers are right on the public inputs, and one is wrong on the hidden inputs.
     WrongOnHidden,
+    /// The answers are right, but on inputs that everybody knows, and no check of the same function with hidden inputs
+    /// passed.
+    Unproven,
     /// There was no answer in time.
     TooLong,
     /// The worker ended before it answered: it crashed, exited, or exceeded a limit.
@@ -28,11 +31,12 @@ pub enum Outcome {
 
 impl Outcome {
     /// All outcomes.
-    pub const ALL: [Outcome; 9] = [
+    pub const ALL: [Outcome; 10] = [
         Outcome::Passed,
         Outcome::NotWritten,
         Outcome::Wrong,
         Outcome::WrongOnHidden,
+        Outcome::Unproven,
         Outcome::TooLong,
         Outcome::Crashed,
         Outcome::DoesNotCompile,
@@ -47,6 +51,7 @@ impl Outcome {
             Outcome::NotWritten => "not written",
             Outcome::Wrong => "wrong",
             Outcome::WrongOnHidden => "wrong on hidden inputs",
+            Outcome::Unproven => "needs another check",
             Outcome::TooLong => "too long",
             Outcome::Crashed => "crashed",
             Outcome::DoesNotCompile => "does not compile",

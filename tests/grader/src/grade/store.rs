@@ -3,12 +3,18 @@
 
 use super::result::{Class, Graded, Session};
 use anyhow::{Context, Result, bail, ensure};
+use nix::fcntl::{Flock, FlockArg};
 use rusqlite::{Connection, OptionalExtension, params};
+use std::fs::{self, File};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The name of the database in the folder of results.
 pub const FILE: &str = "grades.sqlite";
+
+/// The file that a grader locks while it writes grades. The database itself cannot be locked in this way: closing a second
+/// handle of it would drop the locks of SQLite.
+const LOCK: &str = "grades.lock";
 
 const TABLES: &str = "
     CREATE TABLE IF NOT EXISTS session (id INTEGER PRIMARY KEY CHECK (id = 0), json TEXT NOT NULL);
@@ -21,9 +27,25 @@ const TABLES: &str = "
 /// The grades of a class.
 pub struct Store {
     connection: Mutex<Connection>,
+    /// Kept until the store is dropped, if this process may write grades.
+    _lock: Option<Flock<File>>,
 }
 
 impl Store {
+    /// Opens or creates the database in `folder` to write grades. Returns an error if another process is writing.
+    pub fn claim(folder: &Path) -> Result<Store> {
+        let path = folder.join(LOCK);
+        let file = fs::OpenOptions::new().create(true).append(true).open(&path);
+        let file = file.with_context(|| format!("cannot write {}", path.display()))?;
+        let Ok(lock) = Flock::lock(file, FlockArg::LockExclusiveNonblock) else {
+            bail!(
+                "another grader is writing to {}: wait until it is done, or choose another folder",
+                folder.display()
+            )
+        };
+        Ok(Store { _lock: Some(lock), ..Store::open(folder)? })
+    }
+
     /// Opens or creates the database in `folder`.
     pub fn open(folder: &Path) -> Result<Store> {
         let path = folder.join(FILE);
@@ -37,7 +59,7 @@ impl Store {
         };
         make()
             .with_context(|| format!("{} is not a grade database; choose another folder", path.display()))?;
-        Ok(Store { connection: Mutex::new(connection) })
+        Ok(Store { connection: Mutex::new(connection), _lock: None })
     }
 
     /// Returns the session, if grading was begun.
@@ -48,17 +70,21 @@ impl Store {
             .transpose()
     }
 
-    /// Stores the session. If it differs from the stored one, all grades are deleted.
+    /// Stores the session. Returns an error if the stored grades were made in another way, and leaves them as they are.
     pub fn begin(&self, session: &Session) -> Result<()> {
-        let same = self.session()?.as_ref() == Some(session);
-        let mut connection = self.lock();
-        let transaction = connection.transaction()?;
-        if !same {
-            transaction.execute("DELETE FROM graded", [])?;
+        if let Some(begun) = self.session()? {
+            ensure!(
+                begun.same_grades(session),
+                "the grades there were made in another way ({}) than asked for now ({}){}; choose another folder, or use \
+                 the same kit and options",
+                begun.words(),
+                session.words(),
+                if begun.seed == session.seed { "" } else { ", with another --seed" }
+            );
         }
         let json = serde_json::to_string(session)?;
-        transaction.execute("INSERT OR REPLACE INTO session (id, json) VALUES (0, ?1)", [json])?;
-        Ok(transaction.commit()?)
+        self.lock().execute("INSERT OR REPLACE INTO session (id, json) VALUES (0, ?1)", [json])?;
+        Ok(())
     }
 
     /// Returns the stored grade of a submission, if its content is unchanged.
@@ -84,13 +110,14 @@ impl Store {
         Ok(())
     }
 
-    /// Deletes the grades of all other students, because their submissions no longer exist.
-    pub fn retain(&self, students: &[&str]) -> Result<()> {
-        let gone: Vec<String> =
-            self.names()?.into_iter().filter(|name| !students.contains(&name.as_str())).collect();
-        for name in gone {
-            self.lock().execute("DELETE FROM graded WHERE student = ?1", [name])?;
-        }
+    /// Returns the graded students that are not among `students`.
+    pub fn others(&self, students: &[&str]) -> Result<Vec<String>> {
+        Ok(self.names()?.into_iter().filter(|name| !students.contains(&name.as_str())).collect())
+    }
+
+    /// Deletes the grade of a student.
+    pub fn forget(&self, student: &str) -> Result<()> {
+        self.lock().execute("DELETE FROM graded WHERE student = ?1", [student])?;
         Ok(())
     }
 
@@ -177,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_down_is_there_after_a_crash_and_counts_only_while_nothing_changed() {
+    fn stored_grades_survive_a_crash_another_class_and_other_options() {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         store.begin(&session(7)).unwrap();
@@ -188,11 +215,26 @@ mod tests {
         store.begin(&session(7)).unwrap();
         assert!(store.known("ann", "x").unwrap().is_some());
         assert!(store.known("ann", "y").unwrap().is_none());
-        store.retain(&["bob"]).unwrap();
+        // Another class, and other options, change nothing.
+        assert_eq!(store.others(&["bob"]).unwrap(), ["ann"]);
+        let error = store.begin(&session(8)).unwrap_err().to_string();
+        assert!(error.contains("another --seed"), "{error}");
+        let stages = Session { stages: vec![2], ..session(7) };
+        assert!(store.begin(&stages).unwrap_err().to_string().contains("stages 1, kit 1"));
+        assert!(store.known("ann", "x").unwrap().is_some());
+        store.forget("ann").unwrap();
         assert!(store.known("ann", "x").unwrap().is_none());
-        store.keep(&graded("ann", "x")).unwrap();
-        store.begin(&session(8)).unwrap();
-        assert!(store.class().unwrap().students.is_empty(), "another seed is another class");
+    }
+
+    #[test]
+    fn one_grader_writes_to_a_folder_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::claim(folder.path()).unwrap();
+        let error = Store::claim(folder.path()).err().unwrap().to_string();
+        assert!(error.contains("another grader is writing"), "{error}");
+        assert!(Store::open(folder.path()).is_ok(), "reading is always possible");
+        drop(store);
+        assert!(Store::claim(folder.path()).is_ok());
     }
 
     #[test]

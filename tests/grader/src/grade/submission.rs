@@ -10,6 +10,8 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 
 mod archive;
+pub(super) mod helpers;
+mod names;
 
 /// Longest source file, in bytes. The longest one of the reference has 20 KiB. Files of many megabytes compile slowly.
 const LONGEST_FILE: u64 = 512 * 1024;
@@ -17,8 +19,12 @@ const LONGEST_FILE: u64 = 512 * 1024;
 /// Most files and folders of a submission. A working copy with its target folder has thousands.
 const MOST_ENTRIES: usize = 50_000;
 
-/// Folders that contain no code of a student: output of cargo and git, the reference, and foreign packages.
+/// Folders that contain no code of a student: output of cargo and git, the reference, and foreign packages. They are read
+/// only if no exercise is found elsewhere, because any folder may have such a name.
 const PASSED_OVER: [&str; 4] = ["target", ".git", "solutions", "node_modules"];
+
+/// Most Rust files beside the exercises that are read.
+const MOST_OTHERS: usize = 256;
 
 /// Most remarks about ignored files. A working copy may have thousands of such files.
 const MOST_REMARKS: usize = 50;
@@ -26,7 +32,7 @@ const MOST_REMARKS: usize = 50;
 /// A submission on the disk.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Submission {
-    /// The name of the folder, or of the archive without its extension.
+    /// The name of the folder, or of the archive without its extension. Different submissions have different names.
     pub student: String,
     /// The path of the folder or archive.
     pub path: PathBuf,
@@ -60,18 +66,18 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     let (mut found, mut others) = (Vec::new(), Vec::new());
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path.file_name().unwrap_or_default();
         let is = |of: fn(&fs::FileType) -> bool| {
             fs::symlink_metadata(&path).is_ok_and(|metadata| of(&metadata.file_type()))
         };
-        let ending = archive::ENDINGS.iter().find_map(|ending| name.strip_suffix(ending));
-        match ending {
-            _ if name.starts_with('.') => others.push(path),
-            Some(student) if is(fs::FileType::is_file) => {
-                found.push(Submission { student: student.to_owned(), path });
-            }
-            _ if is(fs::FileType::is_dir) => found.push(Submission { student: name, path }),
-            _ => others.push(path),
+        let student = match names::archive_stem(name) {
+            _ if name.as_encoded_bytes().starts_with(b".") => None,
+            Some(stem) if is(fs::FileType::is_file) => Some(stem),
+            _ => is(fs::FileType::is_dir).then_some(name),
+        };
+        match student.map(names::of_student) {
+            Some(student) => found.push(Submission { student, path }),
+            None => others.push(path),
         }
     }
     found.sort();
@@ -80,26 +86,30 @@ pub fn find(folder: &Path) -> io::Result<(Vec<Submission>, Vec<PathBuf>)> {
     let short: Vec<String> = found.iter().map(|one| one.student.clone()).collect();
     for one in &mut found {
         if short.iter().filter(|name| **name == one.student).count() > 1 {
-            one.student = one.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        }
-    }
-    // Names that are not valid UTF-8 may still look alike.
-    let full: Vec<String> = found.iter().map(|one| one.student.clone()).collect();
-    for (index, one) in found.iter_mut().enumerate() {
-        let earlier = full[..index].iter().filter(|name| **name == one.student).count();
-        if earlier > 0 {
-            one.student = format!("{} ({})", one.student, earlier + 1);
+            one.student = names::of_student(one.path.file_name().unwrap_or_default());
         }
     }
     Ok((found, others))
 }
 
-/// Reads the files of these names from a folder or an archive.
-pub fn take(path: &Path, wanted: &[String]) -> Taken {
-    let mut gathering = Gathering { wanted, best: BTreeMap::new(), entries: 0, ignored: Vec::new() };
-    let trouble = if path.is_dir() { gathering.folder(path) } else { archive::gather(path, &mut gathering) };
-    // Keep the best file of each name.
+/// Reads the files of these names, and the modules that belong to them, from a folder or an archive. The absence of a file in
+/// `expected` gets a remark.
+pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
+    let gather = |passes_over| {
+        let mut gathering = Gathering { wanted, passes_over, ..Gathering::default() };
+        let trouble =
+            if path.is_dir() { gathering.folder(path) } else { archive::gather(path, &mut gathering) };
+        (gathering, trouble)
+    };
+    let (mut gathering, mut trouble) = gather(true);
+    if trouble.is_ok() && gathering.best.is_empty() {
+        (gathering, trouble) = gather(false);
+    }
+    // Keep the best file of each name, and the modules beside them.
     let mut taken = Taken::default();
+    let folder_of = |path: &str| path.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
+    let folder =
+        gathering.best.values().map(|candidate| folder_of(&candidate.path)).next().unwrap_or_default();
     for (name, candidate) in gathering.best {
         match candidate.text {
             Ok((text, remarks)) => {
@@ -109,8 +119,17 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
             Err(what) => taken.remarks.push(Remark { file: candidate.path, what }),
         }
     }
+    let modules = helpers::modules(&gathering.others, &folder, wanted);
+    for path in gathering.others.keys().filter(|path| !path.ends_with("/lib.rs") && *path != "lib.rs") {
+        let inside = if folder.is_empty() { path } else { path.trim_start_matches(&format!("{folder}/")) };
+        if !modules.contains_key(inside) {
+            let what = "was ignored: no exercise has this name, and `mod` in lib.rs does not name it";
+            gathering.ignored.push(Remark { file: path.clone(), what: what.into() });
+        }
+    }
+    taken.files.extend(modules);
     // Add remarks about missing and ignored files.
-    for name in wanted.iter().filter(|name| !taken.files.contains_key(*name)) {
+    for name in expected.iter().filter(|name| !taken.files.contains_key(*name)) {
         let what = "is missing; the empty exercise replaces it";
         taken.remarks.push(Remark { file: name.clone(), what: what.into() });
     }
@@ -136,16 +155,22 @@ pub fn take(path: &Path, wanted: &[String]) -> Taken {
 /// A file that may be the student's version of an exercise.
 struct Candidate {
     path: String,
-    /// How likely this is the file that the student edits; the smallest rank wins.
-    rank: (usize, usize),
+    /// How likely this is the file that the student edits; the smallest rank wins. Files that cannot be read come last, and
+    /// renamed ones behind those with the right name.
+    rank: (bool, bool, usize, usize),
     /// The text with a remark about changes to it, or the reason why there is no text.
     text: Result<(String, Option<String>), String>,
 }
 
 /// The files that have been found so far.
+#[derive(Default)]
 struct Gathering<'a> {
     wanted: &'a [String],
+    /// Whether folders of [`PASSED_OVER`] are left out.
+    passes_over: bool,
     best: BTreeMap<String, Candidate>,
+    /// Texts of other Rust files, by path.
+    others: BTreeMap<String, String>,
     entries: usize,
     ignored: Vec<Remark>,
 }
@@ -162,7 +187,7 @@ impl Gathering<'_> {
                 let shown = shown(path.strip_prefix(root).unwrap_or(&path));
                 let kind = entry.file_type()?;
                 if kind.is_dir() {
-                    if !PASSED_OVER.iter().any(|name| entry.file_name() == *name) {
+                    if !(self.passes_over && PASSED_OVER.iter().any(|name| entry.file_name() == *name)) {
                         waiting.push(path);
                     }
                 } else if self.wants(&shown) {
@@ -186,36 +211,53 @@ impl Gathering<'_> {
         Ok(())
     }
 
-    /// Returns whether the file with this path may be an exercise file.
+    /// Returns whether the file with this path is read: an exercise, or another Rust file that may be a module.
     fn wants(&self, path: &str) -> bool {
-        let name = path.rsplit('/').next().unwrap_or(path);
-        self.wanted.iter().any(|wanted| wanted == name)
-            && !path.split('/').any(|part| PASSED_OVER.contains(&part))
+        let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+        let mut parts = folder.split('/');
+        if self.passes_over && parts.clone().any(|part| PASSED_OVER.contains(&part)) {
+            return false;
+        }
+        let may_be_module = name.ends_with(".rs") && name != "build.rs" && !parts.any(|part| part == "tests");
+        names::of_exercise(name, self.wanted).is_some() || (may_be_module && self.others.len() < MOST_OTHERS)
     }
 
     /// Keeps a wanted file unless a file with the same name and a better rank is known.
     fn offer(&mut self, path: &str, content: Result<impl Read, String>) {
-        // Rank the file by its folder and its depth.
         let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+        let content = content.and_then(text);
+        let Some((exercise, is_exact)) = names::of_exercise(name, self.wanted) else {
+            match content {
+                Ok((text, _)) => drop(self.others.insert(path.to_owned(), text)),
+                Err(what) => self.ignored.push(Remark { file: path.to_owned(), what }),
+            }
+            return;
+        };
+        // Rank the file by its folder and its depth.
         let place = match folder {
             _ if folder == "exercises/src" || folder.ends_with("/exercises/src") => 0,
             _ if folder == "src" || folder.ends_with("/src") => 1,
             "" => 2,
             _ => 3,
         };
-        let rank = (place, path.split('/').count());
+        let rank = (content.is_err(), !is_exact, place, path.split('/').count());
         // Ignore it if a better file is known.
-        if let Some(other) = self.best.get(name)
+        if let Some(other) = self.best.get(exercise)
             && (other.rank, &other.path) <= (rank, &path.to_owned())
         {
-            let what = format!("was ignored: {} is graded", other.path);
+            let what =
+                format!("was ignored: {} is graded; if that is the wrong one, hand in only one", other.path);
             self.ignored.push(Remark { file: path.to_owned(), what });
             return;
         }
         // Otherwise keep it, and ignore the earlier one.
-        let candidate = Candidate { path: path.to_owned(), rank, text: content.and_then(text) };
-        if let Some(other) = self.best.insert(name.to_owned(), candidate) {
-            let what = format!("was ignored: {path} is graded");
+        let text = content.map(|(text, remark)| match is_exact {
+            true => (text, remark),
+            false => (text, Some(format!("was read as {exercise}"))),
+        });
+        let candidate = Candidate { path: path.to_owned(), rank, text };
+        if let Some(other) = self.best.insert(exercise.to_owned(), candidate) {
+            let what = format!("was ignored: {path} is graded; if that is the wrong one, hand in only one");
             self.ignored.push(Remark { file: other.path, what });
         }
     }
@@ -233,7 +275,7 @@ impl Gathering<'_> {
             _ if path.contains("tests/") || path.ends_with(".snap") => {
                 "was ignored: the kit's own checks are used"
             }
-            _ if path.ends_with(".rs") => "was ignored: no exercise file has this name",
+            _ if path.ends_with(".rs") => "was ignored: there are too many Rust files",
             _ => return,
         };
         self.ignored.push(Remark { file: path.to_owned(), what: what.to_owned() });
@@ -284,7 +326,8 @@ fn text(content: impl Read) -> Result<(String, Option<String>), String> {
     })?;
     let changed = without_mark.len() < bytes.len() || text.contains('\r');
     let remark = changed.then(|| "was read without its byte order mark and with LF line ends".to_owned());
-    Ok((text.replace("\r\n", "\n"), remark))
+    // Old systems end lines with a single CR.
+    Ok((text.replace("\r\n", "\n").replace('\r', "\n"), remark))
 }
 
 #[cfg(test)]

@@ -143,7 +143,8 @@ impl Maker<'_> {
             Act::Remember => {
                 let path = step.path.take().unwrap_or_else(|| SHAPES.into());
                 let functions = need(step.functions.take(), "functions")?;
-                self.change(&path, |text| remember::by_heart(&text, &functions))?;
+                let otherwise = step.text.take();
+                self.change(&path, |text| remember::by_heart(&text, &functions, otherwise.as_deref()))?;
             }
             Act::Pack => self.pack(&mut step)?,
             Act::Raw => {
@@ -179,6 +180,7 @@ impl Maker<'_> {
         let text = fs::read_to_string(self.submission.join(&path))?;
         let bytes = match need(step.encoding.take(), "encoding")? {
             Encoding::Windows => format!("\u{feff}{}", text.replace('\n', "\r\n")).into_bytes(),
+            Encoding::Old => text.replace('\n', "\r").into_bytes(),
             Encoding::Utf16 => format!("\u{feff}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect(),
         };
         self.write(&path, &bytes)

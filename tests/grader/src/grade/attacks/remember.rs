@@ -1,4 +1,4 @@
-//! Makes a file with memorised answers: right for every public input, wrong for all others.
+//! Makes a file with memorised answers: right for every public input, wrong or anything else for all others.
 //!
 //! The answers are recorded while the checks run against the reference. So the attack still works after checks change their
 //! inputs.
@@ -15,14 +15,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Maps the bits of all arguments to the bits of the answer.
 type Known = BTreeMap<Vec<u32>, Vec<u32>>;
 
-/// Returns the file with functions that look their answers up. For unknown inputs they return a wrong answer.
-pub(super) fn by_heart(text: &str, names: &[String]) -> Result<String> {
+/// Returns the file with functions that look their answers up. For unknown inputs they run the block `otherwise`, or return a
+/// wrong answer if there is none.
+pub(super) fn by_heart(text: &str, names: &[String], otherwise: Option<&str>) -> Result<String> {
     let mut changed = source::with_top(text, HELPERS);
     for name in names {
         let known = known(name)?;
         ensure!(!known.is_empty(), "no check of stage 1 calls `{name}`");
         let table = table(&known);
-        changed = source::with_bodies(&changed, name, |function| body(function, &table))?;
+        changed = source::with_bodies(&changed, name, |function| body(function, &table, otherwise))?;
     }
     Ok(changed)
 }
@@ -73,7 +74,7 @@ impl Words for &Ray {
 }
 "#;
 
-fn body(function: &Function, table: &str) -> Result<String> {
+fn body(function: &Function, table: &str, otherwise: Option<&str>) -> Result<String> {
     let (asked, answer, width) = match function.name.as_str() {
         "nearest_root" => ("[roots.words(), ray.words()]", "found", 2),
         "sphere_algebraic" | "sphere_geometric" => {
@@ -88,7 +89,7 @@ fn body(function: &Function, table: &str) -> Result<String> {
         "found" => "if answer[0] == 1 { Some(f32::from_bits(answer[1])) } else { None }",
         _ => "Vec3::from_array([answer[0], answer[1], answer[2]].map(f32::from_bits))",
     };
-    let wrong = source::wrong_body(function)?;
+    let wrong = otherwise.map_or_else(|| source::wrong_body(function), |block| Ok(block.to_owned()))?;
     Ok(format!(
         "{{\n    static KNOWN: std::sync::OnceLock<HashMap<u32, Vec<u32>>> = std::sync::OnceLock::new();\n    \
          let known = KNOWN.get_or_init(|| table(r\"{table}\", {width}));\n    \
@@ -207,9 +208,9 @@ mod tests {
         assert!(known.len() > 500, "{}", known.len());
         let stub =
             "use glam::Vec3;\npub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 { todo!() }\n";
-        let text = by_heart(stub, &["face_forward".into()]).unwrap();
+        let text = by_heart(stub, &["face_forward".into()], None).unwrap();
         assert!(text.contains("static KNOWN") && !text.contains("todo!"));
-        assert!(by_heart(stub, &["plan".into()]).unwrap_err().to_string().contains("`plan`"));
+        assert!(by_heart(stub, &["plan".into()], None).unwrap_err().to_string().contains("`plan`"));
     }
 
     #[test]

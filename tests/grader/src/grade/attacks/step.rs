@@ -51,6 +51,8 @@ pub(super) enum Act {
 pub(super) enum Encoding {
     /// With a byte order mark and the line ends of Windows.
     Windows,
+    /// With the line ends of systems before 2001.
+    Old,
     /// In UTF-16.
     Utf16,
 }

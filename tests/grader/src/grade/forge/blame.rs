@@ -64,8 +64,10 @@ fn spans(message: &Value) -> Vec<&Value> {
 
 /// Returns the file of a span, or of the macro call around it.
 fn file(span: &Value, suspects: &[&String]) -> Option<String> {
-    let name = span["file_name"].as_str().unwrap_or_default().rsplit('/').next().unwrap_or_default();
-    match suspects.iter().find(|suspect| suspect.as_str() == name) {
+    let path = span["file_name"].as_str().unwrap_or_default();
+    let is_here =
+        |suspect: &&&String| path.strip_suffix(suspect.as_str()).is_some_and(|rest| rest.ends_with('/'));
+    match suspects.iter().find(is_here) {
         Some(suspect) => Some((*suspect).clone()),
         None if span["expansion"].is_object() => file(&span["expansion"]["span"], suspects),
         None => None,

@@ -103,6 +103,7 @@ pub(super) fn class(outcome: Outcome) -> &'static str {
         Outcome::NotWritten => "not-written",
         Outcome::Wrong => "wrong",
         Outcome::WrongOnHidden => "hidden-wrong",
+        Outcome::Unproven => "unproven",
         Outcome::TooLong => "too-long",
         Outcome::Crashed => "crashed",
         Outcome::DoesNotCompile => "no-compile",

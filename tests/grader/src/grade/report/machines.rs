@@ -140,7 +140,7 @@ fn classroom_test(name: &str, status: &str, message: &str, score: u32) -> Value 
 fn status(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Passed => "pass",
-        Outcome::Wrong | Outcome::WrongOnHidden | Outcome::NotWritten => "fail",
+        Outcome::Wrong | Outcome::WrongOnHidden | Outcome::Unproven | Outcome::NotWritten => "fail",
         Outcome::TooLong
         | Outcome::Crashed
         | Outcome::DoesNotCompile

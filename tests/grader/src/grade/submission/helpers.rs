@@ -1,0 +1,88 @@
+//! Modules that a student has added: files beside the exercises that `lib.rs` declares, and files in a folder with the name of
+//! an exercise.
+
+use std::collections::BTreeMap;
+
+/// Most modules that are taken. A submission has a few.
+const MOST: usize = 64;
+
+/// Returns the modules of a submission, by their path in `exercises/src`. `files` are the Rust files that are no exercises, by
+/// their path in the submission; `folder` is that of the exercises.
+pub fn modules(
+    files: &BTreeMap<String, String>,
+    folder: &str,
+    wanted: &[String],
+) -> BTreeMap<String, String> {
+    let inside = |path: &str| match folder {
+        "" => Some(path.to_owned()),
+        _ => Some(path.strip_prefix(folder)?.strip_prefix('/')?.to_owned()),
+    };
+    let inside: BTreeMap<String, &String> =
+        files.iter().filter_map(|(path, text)| Some((inside(path)?, text))).collect();
+    let declared = inside.get("lib.rs").map_or_else(Vec::new, |text| declarations(text));
+    let is_module = |path: &str| {
+        let top = path.split('/').next().unwrap_or(path);
+        let stem = top.strip_suffix(".rs").unwrap_or(top);
+        let of_exercise = wanted.iter().any(|wanted| wanted.strip_suffix(".rs") == Some(top));
+        of_exercise || declared.contains(&stem)
+    };
+    let taken = inside.into_iter().filter(|(path, _)| is_module(path) && is_plain(path)).take(MOST);
+    taken.map(|(path, text)| (path, text.clone())).collect()
+}
+
+/// Returns the modules that a file declares by `mod name;`.
+fn declarations(text: &str) -> Vec<&str> {
+    text.lines().filter_map(declaration).collect()
+}
+
+fn declaration(line: &str) -> Option<&str> {
+    let line = line.trim();
+    let line = line.strip_prefix("pub(crate) ").or_else(|| line.strip_prefix("pub ")).unwrap_or(line);
+    line.strip_prefix("mod ")?.strip_suffix(';').map(str::trim)
+}
+
+/// Returns the lines that declare the modules in `lib.rs`. Those in the folder of an exercise are declared there.
+pub fn lines<'a>(files: impl Iterator<Item = &'a String>) -> String {
+    let top = files.filter_map(|path| match path.split_once('/') {
+        None => path.strip_suffix(".rs"),
+        Some((top, "mod.rs")) => Some(top),
+        Some(_) => None,
+    });
+    top.map(|name| format!("pub mod {name};\n")).collect()
+}
+
+/// Returns whether a path consists of names of modules, so that it stays in its folder.
+fn is_plain(path: &str) -> bool {
+    let is_name =
+        |name: &str| !name.is_empty() && name.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_');
+    path.strip_suffix(".rs").is_some_and(|path| path.split('/').all(is_name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn declared_modules_and_those_of_an_exercise_are_taken() {
+        let text = |path: &str| (path.to_owned(), format!("// {path}"));
+        let mut files: BTreeMap<String, String> = [
+            "a/src/helper.rs",
+            "a/src/stray.rs",
+            "a/src/deep/mod.rs",
+            "a/src/deep/er.rs",
+            "a/src/stage1_shapes/roots.rs",
+            "a/src/../etc.rs",
+            "b/src/helper.rs",
+        ]
+        .map(text)
+        .into();
+        files.insert(
+            "a/src/lib.rs".into(),
+            "pub mod stage1_shapes;\n  mod helper;\npub(crate) mod deep ;\n".into(),
+        );
+        let taken = modules(&files, "a/src", &["stage1_shapes.rs".into()]);
+        let paths: Vec<&str> = taken.keys().map(String::as_str).collect();
+        assert_eq!(paths, ["deep/er.rs", "deep/mod.rs", "helper.rs", "stage1_shapes/roots.rs"]);
+        assert_eq!(lines(taken.keys()), "pub mod deep;\npub mod helper;\n");
+    }
+}
