@@ -5,6 +5,7 @@ use super::judge::Judge;
 use super::lint::{self, Finding, Reading};
 use super::report::clean::{clean, clean_line};
 use super::result::{Graded, Outcome, Remark};
+use super::scratch;
 use super::store::Store;
 use super::submission::{self, Submission, Taken};
 use crate::queue;
@@ -92,7 +93,7 @@ impl Grader {
             return Ok(graded);
         }
         // Compile in a temporary folder outside of the kit and of the submission.
-        let scratch = tempfile::tempdir().context("cannot make a temporary folder for the compiler")?;
+        let scratch = scratch::folder()?;
         // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =

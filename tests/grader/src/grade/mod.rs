@@ -16,6 +16,7 @@ pub mod report;
 pub mod result;
 mod run_attacks;
 mod sanity;
+mod scratch;
 mod store;
 mod submission;
 
@@ -149,6 +150,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let submissions: Vec<Submission> = submissions.into_iter().filter(mine).collect();
     ensure!(!submissions.is_empty(), "there is no submission in {}", options.submissions.display());
     // Open the database and begin or continue the session.
+    scratch::clean();
     crate::report::make_folder(&options.out)?;
     let store = Store::claim(&options.out)?;
     let begun = store.session()?;

@@ -61,7 +61,7 @@ fn worst(tallies: &[Tally]) -> Markup {
         section #reteach {
             h2 { "Most failed checks" }
             @if worst.is_empty() {
-                p { "Every submission passes every check." }
+                p { "No submission tried a check and failed." }
             } @else {
                 p.note { "The checks that most submissions tried and failed, with their slides in the lecture." }
                 table.checks {

@@ -43,8 +43,10 @@ pub(super) fn timings(class: &Class, pages: &[String]) -> Result<Vec<u8>> {
     table(rows)
 }
 
+/// Writes a table. All texts are in quotes, so that no text is divided where `;` or a tab separates cells.
 fn table(rows: Vec<Vec<String>>) -> Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut writer =
+        csv::WriterBuilder::new().quote_style(csv::QuoteStyle::NonNumeric).from_writer(Vec::new());
     for row in rows {
         writer.write_record(row.iter().map(|cell| defused(cell)))?;
     }
@@ -65,9 +67,10 @@ mod tests {
 
     #[test]
     fn formulas_are_text() -> Result<()> {
-        let row = ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\""].map(str::to_owned).to_vec();
-        let bytes = table(vec![row])?;
-        assert_eq!(String::from_utf8_lossy(&bytes), "'=1+1,'+1,'-1,'@SUM(A1),' =1,a=1,12,\"a,\"\"b\"\"\"\n");
+        let row = ["=1+1", "+1", "-1", "@SUM(A1)", " =1", "a=1", "12", "a,\"b\"", "x;=1+1", "x\t=1"];
+        let bytes = table(vec![row.map(str::to_owned).to_vec()])?;
+        let expected = r#""'=1+1","'+1","'-1","'@SUM(A1)","' =1","a=1",12,"a,""b""","x;=1+1","x	=1""#;
+        assert_eq!(String::from_utf8_lossy(&bytes), format!("{expected}\n"));
         Ok(())
     }
 }

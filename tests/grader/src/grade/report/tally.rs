@@ -30,7 +30,8 @@ impl Tally {
 
     /// Returns how many submissions tried the check and failed.
     pub fn tried_in_vain(&self) -> usize {
-        let in_vain = [Outcome::Wrong, Outcome::WrongOnHidden, Outcome::TooLong, Outcome::Crashed];
+        let in_vain =
+            [Outcome::Wrong, Outcome::WrongOnHidden, Outcome::Unproven, Outcome::TooLong, Outcome::Crashed];
         self.outcomes().filter(|(outcome, _)| in_vain.contains(outcome)).map(|(_, n)| n).sum()
     }
 
@@ -86,7 +87,7 @@ pub(super) fn stage_title(stage: u8) -> String {
 /// Returns the `n` checks that most submissions tried and failed, worst first. Unwritten functions only break ties, because
 /// they say more about lack of time than about the lecture.
 pub(super) fn worst(tallies: &[Tally], n: usize) -> Vec<&Tally> {
-    let mut worst: Vec<&Tally> = tallies.iter().filter(|tally| tally.passed() < tally.of()).collect();
+    let mut worst: Vec<&Tally> = tallies.iter().filter(|tally| tally.tried_in_vain() > 0).collect();
     worst.sort_by_key(|tally| (Reverse(tally.tried_in_vain()), tally.passed()));
     worst.truncate(n);
     worst
