@@ -24,7 +24,7 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
     }
     let (near, far) = (first.min(second), first.max(second));
     let among = |counts: &dyn Fn(f32) -> bool| [near, far].into_iter().find(|&t| counts(t));
-    // The first root that counts, or the first root if it counts.
+    // Whether the answer is the first root that counts, and whether it is the first root if that one counts.
     let first_that_counts = |roots: [f32; 2]| yours == roots.into_iter().find(|&t| counting(t));
     let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
     let has_nan = first.is_nan() || second.is_nan();
