@@ -77,14 +77,8 @@ impl Start {
         let shading = self.surface.shading_normal.as_dvec3();
         let shading = shading * self.side.dot(shading).signum();
         let smooth = self.surface.shading_normal != self.surface.geometric_normal;
-        // A round number, alone or in addition to the bound.
-        let fixed = |way: DVec3| {
-            (0..=7)
-                .flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)))
-                .any(|length| self.is(length * way) || self.is((length + self.least()) * way))
-        };
         let along_the_side = |distance: f64| self.is(distance * self.side);
-        vec![
+        let mut all = vec![
             (
                 self.moved == DVec3::ZERO,
                 "your ray starts on the rounded point, so it may hit its own surface (shadow acne)",
@@ -110,11 +104,16 @@ impl Start {
                 smooth && self.is_along(shading),
                 "you move along the shading normal: move along the geometric normal",
             ),
-            (fixed(self.side), "your offset has the same length at every scale: move by error·|n|"),
-            (
-                self.is_along(self.direction),
-                "you move the origin along the ray: move it along the geometric normal",
-            ),
-        ]
+        ];
+        // A round number, alone or in addition to the bound.
+        let lengths = (0..=7).flat_map(|digits| [1.0, 2.0, 5.0].map(|n| n * 10f64.powi(-digits)));
+        all.extend(lengths.flat_map(|length| [length, length + self.least()]).map(|length| {
+            (along_the_side(length), "your offset has the same length at every scale: move by error·|n|")
+        }));
+        all.push((
+            self.is_along(self.direction),
+            "you move the origin along the ray: move it along the geometric normal",
+        ));
+        all
     }
 }

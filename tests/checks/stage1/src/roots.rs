@@ -10,6 +10,11 @@ use proptest::prelude::*;
 use raykata::kit::RootQuery;
 use raykata::ray::Ray;
 
+const OPEN_AT_BOTH_ENDS: &str = "you return an end of the range, but the range is open at both ends";
+
+const SORTED_WITH_NAN: &str =
+    "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max";
+
 fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
     let ([first, second], ray) = (query.roots, query.ray);
     let counting = |t: f32| ray.contains(t);
@@ -19,12 +24,9 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
     }
     let (near, far) = (first.min(second), first.max(second));
     let among = |counts: &dyn Fn(f32) -> bool| [near, far].into_iter().find(|&t| counts(t));
-    // An if-else that sorts keeps this order for a NaN, because each comparison with it is false.
-    let sorts = |swap: bool| {
-        let sorted = if swap { [second, first] } else { [first, second] };
-        yours == Some(sorted[0]).filter(|&t| counting(t))
-            || yours == sorted.into_iter().find(|&t| counting(t))
-    };
+    // Whether the answer is the first root that counts, and whether it is the first root if that one counts.
+    let first_that_counts = |roots: [f32; 2]| yours == roots.into_iter().find(|&t| counting(t));
+    let first_if_it_counts = |roots: [f32; 2]| yours == Some(roots[0]).filter(|&t| counting(t));
     let has_nan = first.is_nan() || second.is_nan();
     let broken = Broken::new(query.call("nearest_root"), yours, expected, "the definition");
     Err(broken.explained_by([
@@ -34,10 +36,8 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
             yours == among(&|t| ray.t_min <= t && t <= ray.t_max),
             "you return an end of the range; the range is open: t_min and t_max do not count",
         ),
-        (
-            yours == among(&|t| ray.t_min < t && t <= ray.t_max) || yours == among(&|t| ray.t_min <= t && t < ray.t_max),
-            "you return an end of the range, but the range is open at both ends",
-        ),
+        (yours == among(&|t| ray.t_min < t && t <= ray.t_max), OPEN_AT_BOTH_ENDS),
+        (yours == among(&|t| ray.t_min <= t && t < ray.t_max), OPEN_AT_BOTH_ENDS),
         (yours == among(&|t| t > ray.t_min), "you return a root beyond t_max, which ray.contains(t) refuses"),
         (yours == among(&|t| t < ray.t_max), "you return a root before t_min, which ray.contains(t) refuses"),
         (
@@ -50,21 +50,22 @@ fn judge(query: &RootQuery, yours: Option<f32>) -> CheckResult {
             "you return None if the smaller root does not count, but the larger one may",
         ),
         (
-            !has_nan && yours == Some(first).filter(|&t| counting(t)),
+            !has_nan && first_if_it_counts([first, second]),
             "you only look at the first root, but they come in any order",
         ),
         (
-            !has_nan && yours == [first, second].into_iter().find(|&t| counting(t)),
+            !has_nan && first_that_counts([first, second]),
             "you take the first root that counts for the smaller one, but they come in any order",
         ),
         (
             yours == Some(far).filter(|&t| counting(t)),
             "you return the larger root, also if the smaller one counts",
         ),
-        (
-            has_nan && (sorts(false) || sorts(true)),
-            "comparisons with NaN are false, so NaN takes the place of the other root: use f32::min and f32::max",
-        ),
+        // Each comparison with NaN is false, so a sort by an if-else always swaps the roots, or never.
+        (has_nan && first_if_it_counts([first, second]), SORTED_WITH_NAN),
+        (has_nan && first_that_counts([first, second]), SORTED_WITH_NAN),
+        (has_nan && first_if_it_counts([second, first]), SORTED_WITH_NAN),
+        (has_nan && first_that_counts([second, first]), SORTED_WITH_NAN),
         (has_nan && yours.is_none(), "one root is NaN, but the other one may still count"),
     ]))
 }

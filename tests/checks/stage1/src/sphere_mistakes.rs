@@ -62,8 +62,11 @@ pub(super) fn mistakes(
     all
 }
 
+const ALGEBRAIC: &str = "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²";
+const GEOMETRIC: &str = "L·L - t_ca² cancels for a distant or small sphere: use |L - t_ca d|²";
+
 /// The formulas of the slides in single precision, which cancel for a distant or small sphere.
-fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static str); 2] {
+fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> Vec<(bool, &'static str)> {
     let SphereQuery { ray, sphere } = query;
     let (d, r_squared) = (ray.direction, sphere.radius * sphere.radius);
     let f = ray.origin - sphere.center;
@@ -77,31 +80,33 @@ fn of_cancellation(query: &SphereQuery, yours: Option<f32>) -> [(bool, &'static 
         }
     };
     let twice = 2.0 * b;
-    let algebraic = is(b * b - a * c, &|root| [(b - root) / a, (b + root) / a])
-        || is(b * b - a * c, &|root| [c / (b + root.copysign(b)), (b + root.copysign(b)) / a])
-        || is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]);
+    let mut all = vec![
+        (is(b * b - a * c, &|root| [(b - root) / a, (b + root) / a]), ALGEBRAIC),
+        (is(b * b - a * c, &|root| [c / (b + root.copysign(b)), (b + root.copysign(b)) / a]), ALGEBRAIC),
+        (
+            is(twice * twice - 4.0 * a * c, &|root| [(twice - root) / (2.0 * a), (twice + root) / (2.0 * a)]),
+            ALGEBRAIC,
+        ),
+    ];
     let t_ca = b / a;
-    let geometric = [
+    for squared in [
         r_squared - (f.dot(f) - t_ca * t_ca * a),
         r_squared - (f.dot(f) - b * t_ca),
         r_squared - (f.dot(f) - t_ca * t_ca),
-    ]
-    .into_iter()
-    .any(|squared| {
+    ] {
         let far = |t_hc: f32| t_ca + (t_hc / a.sqrt()).copysign(t_ca);
-        is(squared, &|t_hc| [t_ca - t_hc / a.sqrt(), t_ca + t_hc / a.sqrt()])
-            || is(squared / a, &|t_hc| [t_ca - t_hc, t_ca + t_hc])
-            || is(squared, &|t_hc| [c / a / far(t_hc), far(t_hc)])
-    });
+        all.extend([
+            (is(squared, &|t_hc| [t_ca - t_hc / a.sqrt(), t_ca + t_hc / a.sqrt()]), GEOMETRIC),
+            (is(squared / a, &|t_hc| [t_ca - t_hc, t_ca + t_hc]), GEOMETRIC),
+            (is(squared, &|t_hc| [c / a / far(t_hc), far(t_hc)]), GEOMETRIC),
+        ]);
+    }
     // The same for a direction that is normalized first, with t divided by its length.
     let length = d.length();
     let t_ca = -f.dot(d / length);
     let squared = r_squared - (f.dot(f) - t_ca * t_ca);
-    let geometric = geometric || is(squared, &|t_hc| [(t_ca - t_hc) / length, (t_ca + t_hc) / length]);
-    [
-        (algebraic, "b² - a c cancels for a distant or small sphere: use r² - |f⊥|²"),
-        (geometric, "L·L - t_ca² cancels for a distant or small sphere: use |L - t_ca d|²"),
-    ]
+    all.push((is(squared, &|t_hc| [(t_ca - t_hc) / length, (t_ca + t_hc) / length]), GEOMETRIC));
+    all
 }
 
 /// Mistakes that the answer alone shows.
@@ -176,12 +181,16 @@ fn of_choices(
             "you return the t of the point nearest to the centre: half the chord is missing",
         ),
     ];
-    all.push((
-        EPSILONS.iter().any(|&epsilon| is(&|roots| Within(t_min.max(epsilon), t_max).first(roots))),
-        "you drop hits with a small t: compare with t_min, not with a fixed epsilon",
-    ));
+    all.extend(EPSILONS.map(|epsilon| {
+        (
+            is(&|roots| Within(t_min.max(epsilon), t_max).first(roots)),
+            "you drop hits with a small t: compare with t_min, not with a fixed epsilon",
+        )
+    }));
     all
 }
+
+const A_IS_ONE: &str = "direction is not a unit vector here: you take a = d·d for 1";
 
 /// Wrong roots.
 fn of_formulas(
@@ -216,10 +225,8 @@ fn of_formulas(
             "your t counts world units; it must count lengths of direction (which is no unit vector here)",
         ),
         (is_no_unit && of(quadratic, a), "direction is not a unit vector here: divide by a = d·d"),
-        (
-            is_no_unit && (of(&a_is_one, 1.0) || gives(yours, &chord, by_product, first)),
-            "direction is not a unit vector here: you take a = d·d for 1",
-        ),
+        (is_no_unit && of(&a_is_one, 1.0), A_IS_ONE),
+        (is_no_unit && gives(yours, &chord, by_product, first), A_IS_ONE),
         (!loses_only && of(&Quadratic::with_radius(query, radius.sqrt()), 1.0), "r stands where r² belongs"),
     ]
 }

@@ -38,20 +38,20 @@ pub(super) fn interpolation_weighs_the_corners(trial: &Trial<'_>) -> CheckResult
             let other_orders =
                 [[w.y, w.z, w.x], [w.z, w.x, w.y], [w.x, w.z, w.y], [w.z, w.y, w.x], [w.y, w.x, w.z]];
             let input = format!("interpolate({}, [{}, {}, {}])", w.paste(), a.paste(), b.paste(), c.paste());
-            Err(Broken::new(input, yours, expected, "closed form").explained_by([
-                (
-                    (yours.as_dvec3() - direction(expected)).length() < 1e-6,
-                    "your value is normalized: return the weighted sum as it is",
-                ),
-                (
-                    other_orders.iter().any(|&order| yours == sum(order)),
-                    "multiply the corners a, b, c by α, β, γ in this order",
-                ),
-                (
-                    yours == (a + b + c) / 3.0,
-                    "you return the average of the corners without their coordinates",
-                ),
-            ]))
+            let mut mistakes = vec![(
+                (yours.as_dvec3() - direction(expected)).length() < 1e-6,
+                "your value is normalized: return the weighted sum as it is",
+            )];
+            mistakes.extend(
+                other_orders.map(|order| {
+                    (yours == sum(order), "multiply the corners a, b, c by α, β, γ in this order")
+                }),
+            );
+            mistakes.push((
+                yours == (a + b + c) / 3.0,
+                "you return the average of the corners without their coordinates",
+            ));
+            Err(Broken::new(input, yours, expected, "closed form").explained_by(mistakes))
         })
     })
 }

@@ -38,6 +38,8 @@ fn exact(triangle: &Triangle) -> Exact {
     }
 }
 
+const SWAPPED_WITH_UV: &str = "u·v and another product look swapped";
+
 fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
     let exact = exact(triangle);
     let near = |yours: f32, exact: f64, slack: f64| (f64::from(yours) - exact).abs() <= slack;
@@ -65,10 +67,8 @@ fn judge(triangle: &Triangle, yours: GramScalars) -> CheckResult {
     let root = exact.d.abs().sqrt();
     Err(Broken::with_texts(input, yours_in_words, expected, "double precision").explained_by([
         (products(exact.uv, exact.uu, exact.vv), "u·u and v·v look swapped"),
-        (
-            products(exact.uu, exact.vv, exact.uv) || products(exact.vv, exact.uv, exact.uu),
-            "u·v and another product look swapped",
-        ),
+        (products(exact.uu, exact.vv, exact.uv), SWAPPED_WITH_UV),
+        (products(exact.vv, exact.uv, exact.uu), SWAPPED_WITH_UV),
         (
             products_are_right && near(yours.d, -exact.d, exact.d_slack) && yours.d >= 0.0,
             "the sign of D is wrong: it is UV² - UU·VV = -|u × v|²",

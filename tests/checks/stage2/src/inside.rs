@@ -70,6 +70,8 @@ fn clearly_inside((query, weights, exact): &Case) -> Option<bool> {
     (sharp && least.abs() > 1e-3).then_some(least > 0.0)
 }
 
+const ONE_ORDER: &str = "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0";
+
 /// Known mistakes in inside tests I and II, each with whether it gives this answer.
 fn mistakes((query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static str)> {
     // The side opposite of corner a is b c, so the signs of α, β and γ are those of the sides bc, ca and ab.
@@ -110,10 +112,8 @@ fn mistakes((query, weights, exact): &Case, yours: bool) -> Vec<(bool, &'static 
             "do not normalize: that rounds points off an edge, and is 0/0 if the ray's origin is on the line of a side",
         ),
         (yours == strictly, "points on an edge are inside: compare with ≥ and ≤, not with > and <"),
-        (
-            yours == (inside && faces < 0.0) || yours == (inside && faces > 0.0),
-            "for a point inside, all three signs are equal, but they depend on the order of the corners: accept all ≥ 0 or all ≤ 0",
-        ),
+        (yours == (inside && faces < 0.0), ONE_ORDER),
+        (yours == (inside && faces > 0.0), ONE_ORDER),
         (gives(&[bc, ca]), "a side left out, a b: test all three sides"),
         (gives(&[ca, ab]), "a side left out, b c: test all three sides"),
         (gives(&[bc, ab]), "a side left out, c a: test all three sides"),
@@ -178,6 +178,9 @@ pub(super) fn inside_by_direction_agrees_with_double_precision(trial: &Trial<'_>
     judge_inside(trial, "inside_by_direction", |kit, queries| kit.inside_by_direction(queries), &[])
 }
 
+const WRONG_SUM: &str = "your coordinates do not add up to 1: |u × v| is twice the area of the triangle";
+const UNSIGNED_AREAS: &str = "areas without a sign cannot tell inside from outside: use signed areas";
+
 /// Known mistakes in inside test III, each with whether it gives this answer.
 fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static str)> {
     let exact = DVec3::from_array(*weights);
@@ -189,10 +192,8 @@ fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static
     let absolute = exact.abs();
     let sum = absolute.element_sum();
     vec![
-        (
-            is(0.5 * exact, inside) || is(2.0 * exact, inside),
-            "your coordinates do not add up to 1: |u × v| is twice the area of the triangle",
-        ),
+        (is(0.5 * exact, inside), WRONG_SUM),
+        (is(2.0 * exact, inside), WRONG_SUM),
         (
             is(DVec3::new(gamma, beta, alpha), inside),
             "your values belong to other corners, (γ, β, α): α to a, β to b, γ to c (the slide differs)",
@@ -214,12 +215,12 @@ fn area_mistakes(weights: &[f64; 3], yours: Option<Vec3>) -> Vec<(bool, &'static
             "your values belong to other corners, (β, α, γ): α to a, β to b, γ to c (the slide differs)",
         ),
         (
-            is(absolute, absolute.x <= 1.0 && absolute.y <= 1.0 && absolute.x + absolute.y <= 1.0)
-                || is(absolute, absolute.max_element() <= 1.0)
-                || is(absolute, true)
-                || is(absolute / sum, true),
-            "areas without a sign cannot tell inside from outside: use signed areas",
+            is(absolute, absolute.x <= 1.0 && absolute.y <= 1.0 && absolute.x + absolute.y <= 1.0),
+            UNSIGNED_AREAS,
         ),
+        (is(absolute, absolute.max_element() <= 1.0), UNSIGNED_AREAS),
+        (is(absolute, true), UNSIGNED_AREAS),
+        (is(absolute / sum, true), UNSIGNED_AREAS),
         (is(exact, true), "you return coordinates for a point outside: None if one of them is negative"),
         (is(exact, exact.min_element() > 0.0), "points on an edge are inside: compare with ≥, not with >"),
         (is(exact, beta >= 0.0 && gamma >= 0.0), "one of the three coordinates is not tested: α"),

@@ -193,6 +193,8 @@ fn of_tests(answer: &Answer<'_>, line: &Line) -> Vec<(bool, &'static str)> {
     all
 }
 
+const UNSIGNED_AREAS: &str = "areas without a sign accept a β or γ below 0: measure them along the normal";
+
 /// Wrong values of `t`, β and γ.
 fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &'static str)> {
     let &Line { t, alpha, beta, gamma, .. } = line;
@@ -240,11 +242,8 @@ fn of_values(answer: &Answer<'_>, line: &Line, loses_only: bool) -> Vec<(bool, &
             (length - 1.0).abs() > 1e-3 && answer.is_inside([t * length, beta, gamma], least),
             "your t counts world units; it must count lengths of direction",
         ),
-        (
-            answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0)
-                || answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()),
-            "areas without a sign accept a β or γ below 0: measure them along the normal",
-        ),
+        (answer.is_inside([t, beta.abs() / sum, gamma.abs() / sum], 1.0), UNSIGNED_AREAS),
+        (answer.is_inside([t, beta.abs(), gamma.abs()], 1.0 - beta.abs() - gamma.abs()), UNSIGNED_AREAS),
         (
             of_a_point,
             "your answer is off by the rounding of o + t d or of n·o, far from the origin: subtract o first",

@@ -41,18 +41,23 @@ fn sums(mesh: &Mesh, vertex: usize) -> Sums {
     sums
 }
 
+const WRONG_COUNT: &str = "the result has one normal per vertex, not per triangle or corner";
+
 /// The normals of a mesh are judged per vertex. A sum that nearly cancels is judged by its length only.
 fn judge(what: &str, mesh: &Mesh, normals: &[Vec3]) -> CheckResult {
     if normals.len() != mesh.positions.len() {
         let [yours, expected] = [normals.len(), mesh.positions.len()].map(|n| format!("{n} normals"));
-        return Err(Broken::with_texts(what, yours, expected, "one per vertex").explained_by([(
-            normals.len() == 3 * mesh.triangles.len() || normals.len() == mesh.triangles.len(),
-            "the result has one normal per vertex, not per triangle or corner",
-        )]));
+        return Err(Broken::with_texts(what, yours, expected, "one per vertex").explained_by([
+            (normals.len() == 3 * mesh.triangles.len(), WRONG_COUNT),
+            (normals.len() == mesh.triangles.len(), WRONG_COUNT),
+        ]));
     }
     let outcomes = normals.iter().enumerate().map(|(vertex, &yours)| judge_one(what, mesh, vertex, yours));
     all_hold(outcomes.collect())
 }
+
+const NOT_NORMALIZED: &str = "your normal is not of unit length: normalize the sum";
+const ONE_FACE: &str = "you return the normal of one face: add up those of all faces around the vertex";
 
 fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult {
     let sums = sums(mesh, vertex);
@@ -76,6 +81,7 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult
     };
     let input = format!("{what}, vertex {vertex} at {}", mesh.positions[vertex].paste());
     let is = |n: DVec3| near(n.normalize_or_zero());
+    let has_faces = !sums.faces.is_empty();
     let source = if cancels { "a face, because the sum is 0" } else { "double precision" };
     Err(Broken::new(input, yours, expected, source).explained_by([
         (
@@ -83,23 +89,16 @@ fn judge_one(what: &str, mesh: &Mesh, vertex: usize, yours: Vec3) -> CheckResult
             "a sum of 0 has no direction (0/0 is NaN): take the normal of one face, or any unit vector if there is none",
         ),
         (yours.is_nan(), "you return NaN: a triangle without area has no normal and does not count"),
-        (
-            !sums.faces.is_empty()
-                && (near(sums.plain) || near(sums.plain / sums.faces.len() as f64))
-                && !unit,
-            "your normal is not of unit length: normalize the sum",
-        ),
+        (has_faces && !unit && near(sums.plain), NOT_NORMALIZED),
+        (has_faces && !unit && near(sums.plain / sums.faces.len() as f64), NOT_NORMALIZED),
         (is(-sums.plain), "your normal points inwards: is the face normal u × v?"),
         (
             is(sums.by_area),
             "you weight each face by its area: normalize the face normals before you add them",
         ),
         (is(sums.by_angle), "you weight each face by its angle: each triangle counts once"),
-        (
-            sums.faces.first().is_some_and(|&face| near(face))
-                || sums.faces.last().is_some_and(|&face| near(face)),
-            "you return the normal of one face: add up those of all faces around the vertex",
-        ),
+        (sums.faces.first().is_some_and(|&face| near(face)), ONE_FACE),
+        (sums.faces.last().is_some_and(|&face| near(face)), ONE_FACE),
     ]))
 }
 

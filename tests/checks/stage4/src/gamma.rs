@@ -38,25 +38,28 @@ fn judge_encoded(linear: f32, yours: u8) -> CheckResult {
     if (f64::from(yours) - right).abs() <= 0.501 {
         return Ok(());
     }
-    // A wrong formula is known if it gives this byte, rounded to the nearest one or down, up to the rounding of the formula.
+    // Whether a number rounded down gives this byte, up to the rounding of the formula.
     let down = |value: f64| (-0.001..1.001).contains(&(value - f64::from(yours)));
-    let gives = |value: f64| down(value) || down(value + 0.5);
-    let input = format!("encode_gamma({})", linear.paste());
-    Err(Broken::new(input, yours, right.round() as u8, "255 √linear, rounded").explained_by([
+    let mut mistakes = vec![
         (down(right), "you round down: add 0.5 before the cast"),
         (
             down((256.0 * exact.sqrt()).min(255.9)),
             "you round 256 √linear down: round 255 √linear to the nearest byte",
         ),
         (down(right + 1.0), "you round up: round to the nearest byte"),
-        (gives(255.0 * exact), "the square root is missing: the byte is 255 times the root"),
-        (gives(right.sqrt() * 255f64.sqrt()), "you take the root twice: take it once"),
-        (gives(255.0 * exact * exact), "you square: encoding takes the root, decoding squares"),
-        (
-            gives(255.0 * exact.powf(1.0 / 2.2)),
-            "you use gamma 2.2: the lecture uses gamma 2, the square root",
-        ),
-    ]))
+    ];
+    let formulas = [
+        (255.0 * exact, "the square root is missing: the byte is 255 times the root"),
+        (right.sqrt() * 255f64.sqrt(), "you take the root twice: take it once"),
+        (255.0 * exact * exact, "you square: encoding takes the root, decoding squares"),
+        (255.0 * exact.powf(1.0 / 2.2), "you use gamma 2.2: the lecture uses gamma 2, the square root"),
+    ];
+    // A wrong formula may be rounded down, or to the nearest byte.
+    mistakes.extend(
+        formulas.into_iter().flat_map(|(value, text)| [(down(value), text), (down(value + 0.5), text)]),
+    );
+    let input = format!("encode_gamma({})", linear.paste());
+    Err(Broken::new(input, yours, right.round() as u8, "255 √linear, rounded").explained_by(mistakes))
 }
 
 pub(super) fn gamma_survives_invalid_numbers(trial: &Trial<'_>) -> CheckResult {

@@ -105,6 +105,9 @@ pub(super) fn judge_shades(trial: &Trial<'_>, queries: &[ShadeQuery]) -> Vec<Che
     judged.iter().zip(answers).map(|(query, answer)| judge_shade(query, &answer)).collect()
 }
 
+const LIGHT_BEHIND: &str =
+    "you add a light behind the surface: skip lights for which shadow_ray returns None";
+
 fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
     let lights: Vec<usize> = (0..query.lights.len()).collect();
     if lights.iter().any(|&light| is_on_edge(query, light)) {
@@ -121,14 +124,15 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
         let near = (color - other).abs().cmplt(DVec3::splat(tolerance(other)));
         (0..3).all(|channel| near.test(channel) || (color[channel].is_nan() && other[channel].is_nan()))
     };
-    // The colour that the lights of a list give with the right terms and with the student's own.
+    // The colour that the lights of a list give with these specular terms.
     let sum = |lights: &[usize], specular: &dyn Fn(usize) -> f64| {
         ambient
             + lights.iter().map(|&light| share(query, light, diffuse(light), specular(light))).sum::<DVec3>()
     };
-    let gives = |lights: &[usize]| same(sum(lights, &right)) || same(sum(lights, &yours_of));
+    // Whether they give the student's colour with the right terms, and whether with the student's own.
+    let gives = |lights: &[usize]| [same(sum(lights, &right)), same(sum(lights, &yours_of))];
     let (visible, occluded): (Vec<usize>, Vec<usize>) = lights.iter().partition(|light| seen(light));
-    if gives(&visible) {
+    if gives(&visible).contains(&true) {
         return Ok(());
     }
 
@@ -162,37 +166,35 @@ fn judge_shade((query, own): &Judged, yours: &ShadeAnswer) -> CheckResult {
         ambient + visible.iter().map(|&light| of(light)).sum::<DVec3>()
     };
     let n_lights = query.lights.len().max(1) as f64;
-    let broken =
-        Broken::new(query.call("shade"), yours.color, expected.as_vec3(), "the formula in double precision");
-    Err(broken.explained_by([
-        (same(expected - ambient), "the ambient term A·ka is missing"),
-        (!occluded.is_empty() && gives(&lights), "you add lights that are occluded: multiply by V_i"),
-        (
-            !occluded.is_empty() && gives(&occluded),
-            "you add the occluded lights and leave out the visible ones",
-        ),
+    let of_lights = |lights: &[usize], text: &'static str| gives(lights).map(|gives| (gives, text));
+    let mut mistakes = vec![(same(expected - ambient), "the ambient term A·ka is missing")];
+    if !occluded.is_empty() {
+        mistakes.extend(of_lights(&lights, "you add lights that are occluded: multiply by V_i"));
+        mistakes.extend(of_lights(&occluded, "you add the occluded lights and leave out the visible ones"));
+    }
+    mistakes.extend([
         (same(expected.min(DVec3::ONE)), "you clamp the colour to 1: return it without a clamp"),
         (same(ambient + of_visible(&|light| split(light)[1])), "the diffuse term is missing"),
         (same(ambient + of_visible(&|light| split(light)[0])), "the specular term is missing"),
-        (
-            visible.first().is_some_and(|&light| gives(&[light])) || gives(&counted[..counted.len().min(1)]),
-            "you count one light, the first that is visible: add up all lights",
-        ),
-        (
-            visible.last().is_some_and(|&light| gives(&[light]))
-                || gives(&counted[counted.len().max(1) - 1..]),
-            "you count one light, the last that is visible: add up all lights",
-        ),
+    ]);
+    for lights in [&visible, &counted] {
+        let (first, last) = (&lights[..lights.len().min(1)], &lights[lights.len().max(1) - 1..]);
+        mistakes
+            .extend(of_lights(first, "you count one light, the first that is visible: add up all lights"));
+        mistakes.extend(of_lights(last, "you count one light, the last that is visible: add up all lights"));
+    }
+    mistakes.extend([
         (same(ambient + of_visible(&white)), "you leave out the radiance of the light"),
         (same(ambient + of_visible(&geometric)), "you use the geometric normal: use surface.shading_normal"),
         (same(ambient + of_visible(&flat)), "you leave out the cosine of the diffuse term"),
         (same(ambient + (expected - ambient) * kd), "you multiply the light by kd twice"),
         (same(expected + (n_lights - 1.0) * ambient), "you add the ambient term once per light: add it once"),
-        (
-            same(unclamped(0.0)) || same(unclamped(-1.0)),
-            "you add a light behind the surface: skip lights for which shadow_ray returns None",
-        ),
-    ]))
+        (same(unclamped(0.0)), LIGHT_BEHIND),
+        (same(unclamped(-1.0)), LIGHT_BEHIND),
+    ]);
+    let broken =
+        Broken::new(query.call("shade"), yours.color, expected.as_vec3(), "the formula in double precision");
+    Err(broken.explained_by(mistakes))
 }
 
 /// A surface with two lights for which every known mistake gives a different colour.

@@ -101,13 +101,17 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
     if reach < distance && reach >= 0.99 * distance {
         return None;
     }
-    let subtracted = (1..=7).any(|digits| ray.t_max == light.distance - 10f32.powi(-digits));
-    let mistakes = vec![
+    let mut mistakes = vec![(
+        (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
+        "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
+    )];
+    mistakes.extend((1..=7).map(|digits| {
         (
-            (length - 1.0).abs() > 1e-3 && (0.99 * distance..=distance).contains(&end),
-            "t counts lengths of the direction: if the direction ends at the light, t is 1 there",
-        ),
-        (subtracted, "you subtract the same length at every scale: end at a fraction of the distance"),
+            ray.t_max == light.distance - 10f32.powi(-digits),
+            "you subtract the same length at every scale: end at a fraction of the distance",
+        )
+    }));
+    mistakes.extend([
         (
             reach == f64::INFINITY,
             "your ray goes on behind the light, where no object can occlude the light: set t_max",
@@ -117,7 +121,7 @@ fn judge_end(query: &ShadowQuery, ray: &Ray) -> Option<Fault> {
             "your ray reaches the light, so the light would occlude itself: end slightly before it",
         ),
         (reach < 0.99 * distance, "your ray ends too early: it misses objects just in front of the light"),
-    ];
+    ]);
     Some((format!("ends after {reach:?}"), format!("just below {distance:?}"), mistakes))
 }
 

@@ -29,6 +29,9 @@ pub(super) fn reflect_keeps_the_angle(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
+const ADDED: &str = "you add 2 n (d·n): subtract it, d - 2 n (d·n)";
+const SUBTRACTED_ONCE: &str = "you subtract n (d·n) once: subtract it twice";
+
 fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
     let (direction, normal) = query;
     let (d, n) = (direction.as_dvec3(), normal.as_dvec3());
@@ -39,22 +42,19 @@ fn judge_reflection(query: &(Vec3, Vec3), yours: Vec3) -> CheckResult {
         return Ok(());
     }
     let is = |v: DVec3| near(v, 1e-5);
-    let along = d - d.dot(n) * n;
+    let (along, added) = (d - d.dot(n) * n, d + 2.0 * d.dot(n) * n);
     let broken = Broken::new(call("reflect", &[direction, normal]), yours, expected.as_vec3(), "closed form");
     Err(broken.explained_by([
         (is(d), "you return the direction unchanged"),
         (is(-d), "you reverse the whole direction: reverse only its part along n"),
         (is(-expected), "your result is negated: it points into the surface"),
-        (
-            is(d + 2.0 * d.dot(n) * n) || is((d + 2.0 * d.dot(n) * n).normalize_or_zero()),
-            "you add 2 n (d·n): subtract it, d - 2 n (d·n)",
-        ),
+        (is(added), ADDED),
+        (is(added.normalize_or_zero()), ADDED),
+        (is(along), SUBTRACTED_ONCE),
         (
             // The part along the surface of a ray close to the normal is small, and has a large rounding error.
-            is(along)
-                || near(along.normalize_or_zero(), 1e-5 + 1e-6 / along.length().max(1e-7))
-                || along.length() < 1e-5,
-            "you subtract n (d·n) once: subtract it twice",
+            near(along.normalize_or_zero(), 1e-5 + 1e-6 / along.length().max(1e-7)) || along.length() < 1e-5,
+            SUBTRACTED_ONCE,
         ),
     ]))
 }
@@ -115,6 +115,9 @@ const CAREFUL: f64 = 4e-6;
 /// The error by the formula of the slide, whose `sin θ1` comes from the cosine.
 const SLIDE: f64 = 4e-5;
 
+const ANGLE: &str = "you multiply the angle by n1 / n2: multiply its sine";
+const RATIO_NOT_SQUARED: &str = "you do not square the ratio: sin² θ2 = (n1 / n2)² sin² θ1";
+
 fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> CheckResult {
     let (expected, margin) = snell(query);
     // Near the critical angle the error grows with the root of the rounding, and both `None` and a direction pass.
@@ -159,25 +162,27 @@ fn judge_refraction(query: &RefractQuery, yours: Option<Vec3>, error: f64) -> Ch
             gives(turned(query, |sine, ratio| -ratio * sine)),
             "you negate the part along the surface: keep its sign",
         ),
+        // Near a right angle the arc sine enlarges a rounding error of 1e-7 to 4e-4.
         (
-            // Near a right angle the arc sine enlarges a rounding error of 1e-7 to 4e-4.
             gives_within(
                 turned(query, |sine, ratio| match ratio * sine.min(1.0).asin() {
                     angle if angle > std::f64::consts::FRAC_PI_2 => f64::INFINITY,
                     angle => angle.sin(),
                 }),
                 5e-3,
-            ) || gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), 5e-3),
-            "you multiply the angle by n1 / n2: multiply its sine",
+            ),
+            ANGLE,
         ),
+        (gives_within(turned(query, |sine, ratio| (ratio * sine.min(1.0).asin()).sin()), 5e-3), ANGLE),
         (
             gives(turned(query, |sine, ratio| {
                 // The sine after normalizing a direction with the cosine √(1 - n1 / n2 sin² θ1).
                 let (along, across) = (ratio * sine, (1.0 - ratio * sine * sine).sqrt());
                 along / along.hypot(across)
-            })) || gives(turned(query, |sine, ratio| ratio.sqrt() * sine)),
-            "you do not square the ratio: sin² θ2 = (n1 / n2)² sin² θ1",
+            })),
+            RATIO_NOT_SQUARED,
         ),
+        (gives(turned(query, |sine, ratio| ratio.sqrt() * sine)), RATIO_NOT_SQUARED),
         (
             expected.is_none() && ratio * sine > 1.0 && yours.is_some(),
             "you return a ray beyond the critical angle: return None",

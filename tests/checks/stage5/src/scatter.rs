@@ -149,6 +149,8 @@ pub(super) fn drawn() -> [ScatterQuery; 3] {
     ]
 }
 
+const WEIGHT_TWICE: &str = "you multiply by the weight of the incoming ray twice";
+
 fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> CheckResult {
     let [weight, mirror, transmission] =
         [query.weight, query.material.mirror, query.material.transmission].map(Vec3::as_dvec3);
@@ -197,19 +199,15 @@ fn judge_weights(query: &ScatterQuery, own: Own, yours: Vec<SecondaryRay>) -> Ch
             is([mirror + share * transmission, (1.0 - share) * transmission]),
             "you leave out the weight of the incoming ray: multiply by `weight`",
         ),
-        (
-            is([weight * reflected, weight * through])
-                || is([weight * reflected, through])
-                || is([reflected, weight * through]),
-            "you multiply by the weight of the incoming ray twice",
-        ),
+        (is([weight * reflected, weight * through]), WEIGHT_TWICE),
+        (is([weight * reflected, through]), WEIGHT_TWICE),
+        (is([reflected, weight * through]), WEIGHT_TWICE),
         (
             mirror == DVec3::ZERO && is([DVec3::ZERO, through]),
             "clear glass reflects by Fresnel: test the reflected weight, not material.mirror",
         ),
         (
-            is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror])
-                || is([weight * (transmission + share * mirror), weight * mirror * (1.0 - share)]),
+            is([weight * (transmission + share * mirror), weight * (1.0 - share) * mirror]),
             "you exchange material.mirror and material.transmission",
         ),
         (is([weight * mirror, weight * transmission]), "you leave out material.fresnel"),
