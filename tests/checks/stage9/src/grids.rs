@@ -109,6 +109,9 @@ pub(super) fn grid_visits_cells_in_order_and_stops(trial: &Trial<'_>) -> CheckRe
     }))
 }
 
+const FARTHEST_FACE: &str =
+    "you step across the farthest of the three faces: step along the axis whose plane comes first";
+
 /// The visits of a search that steps across the farthest of the three faces. It begins at the `t` of the entry, or earlier by
 /// this share of it.
 fn across_the_farthest(query: &CellsQuery<Grid>, earlier: f64) -> Vec<u32> {
@@ -168,15 +171,15 @@ fn judge_way(query: &CellsQuery<Grid>, visits: &[u32]) -> CheckResult {
             left_out.is_some() && visits.is_empty(),
             "you do not find the first cell: clip the ray to the grid's bounds, and start there",
         ),
-        (
-            [0.0, 1e-6].iter().any(|earlier| visits == across_the_farthest(query, *earlier)),
-            "you step across the farthest of the three faces: step along the axis whose plane comes first",
-        ),
+        (visits == across_the_farthest(query, 0.0), FARTHEST_FACE),
+        (visits == across_the_farthest(query, 1e-6), FARTHEST_FACE),
         (missed.is_some(), "you visit a cell that the ray does not enter"),
         (twice.is_some(), "you visit a cell twice"),
         (backwards, "you do not visit the cells in the order of t"),
     ]))
 }
+
+const ADDED_UP: &str = "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision";
 
 /// Trap A8, second part: 250 cells along an axis.
 pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResult {
@@ -208,13 +211,11 @@ pub(super) fn grid_steps_do_not_add_up_roundings(trial: &Trial<'_>) -> CheckResu
             format!("{at} cells, then {:?}", &cells[at.min(cells.len())..cells.len().min(at + 3)])
         };
         let input = format!("a ray beside the diagonal of a grid of 250 × 125 cells\n{}", query.ray.paste());
-        let (yours, sums) = (yours.visits, added_up(query, axes));
+        let yours = yours.visits;
         let texts = (describe(&yours), describe(&expected));
         Err(Broken::with_texts(input, texts.0, texts.1, "planes in double precision").explained_by([
-            (
-                sums.contains(&yours),
-                "trap A8: tMax += tDelta accumulates one rounding error per step: compute t from the index of the cell, in double precision",
-            ),
+            (yours == added_up(query, axes, true), ADDED_UP),
+            (yours == added_up(query, axes, false), ADDED_UP),
             (
                 in_single(query, axes) == yours,
                 "you compute the t of a plane in single precision, which cannot tell these corners apart: use double precision",
@@ -239,28 +240,26 @@ fn visits_by(query: &CellsQuery<Grid>, axes: [usize; 2], t: impl Fn(usize, u32) 
     }
 }
 
-/// The visits of searches that add up tDelta in single precision, with the first `t` and the step rounded once or computed
-/// in single precision.
-fn added_up(query: &CellsQuery<Grid>, axes: [usize; 2]) -> [Vec<u32>; 2] {
+/// The visits of a search that adds up tDelta in single precision. The first `t` and the step are rounded once, or computed in
+/// single precision.
+fn added_up(query: &CellsQuery<Grid>, axes: [usize; 2], rounded_once: bool) -> Vec<u32> {
     let (grid, ray) = (&query.cells, &query.ray);
-    [true, false].map(|rounded_once| {
-        let sums = [0, 1, 2].map(|axis| {
-            let (low, high) = (grid.bounds.min[axis], grid.bounds.max[axis]);
-            let n = grid.resolution[axis];
-            let (first, delta) = if rounded_once {
-                let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
-                let size = (f64::from(high) - f64::from(low)) / f64::from(n);
-                (((grid.plane(axis, 1) - o) / d) as f32, (size / d) as f32)
-            } else {
-                let size = (high - low) / n as f32;
-                ((low + size - ray.origin[axis]) / ray.direction[axis], size / ray.direction[axis])
-            };
-            let mut sums = vec![f32::NAN, first];
-            (1..n as usize).for_each(|i| sums.push(sums[i] + delta));
-            sums
-        });
-        visits_by(query, axes, |axis, index| sums[axis][index as usize])
-    })
+    let sums = [0, 1, 2].map(|axis| {
+        let (low, high) = (grid.bounds.min[axis], grid.bounds.max[axis]);
+        let n = grid.resolution[axis];
+        let (first, delta) = if rounded_once {
+            let (o, d) = (f64::from(ray.origin[axis]), f64::from(ray.direction[axis]));
+            let size = (f64::from(high) - f64::from(low)) / f64::from(n);
+            (((grid.plane(axis, 1) - o) / d) as f32, (size / d) as f32)
+        } else {
+            let size = (high - low) / n as f32;
+            ((low + size - ray.origin[axis]) / ray.direction[axis], size / ray.direction[axis])
+        };
+        let mut sums = vec![f32::NAN, first];
+        (1..n as usize).for_each(|i| sums.push(sums[i] + delta));
+        sums
+    });
+    visits_by(query, axes, |axis, index| sums[axis][index as usize])
 }
 
 /// The visits of a search that computes the `t` of each plane in single precision.
