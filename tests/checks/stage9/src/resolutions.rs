@@ -27,13 +27,13 @@ pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> C
     trial.forall_and(&[empty], 1000, inputs, |queries| judge_spans(trial, queries))
 }
 
-/// The ray with a range that begins or ends where the ray leaves or enters the box, or one float beside it. There are twelve
-/// such ranges; for other numbers the range is that of the ray.
+/// The ray with a range that begins or ends where the ray enters the box (six ranges) or leaves it (six more), or one float
+/// beside it. For other numbers, and if the ray never does, the range is that of the ray.
 fn at_border(ray: Ray, bounds: &Aabb, range: usize) -> Ray {
     let (near, far) = slabs_interval(&ray, bounds);
-    let ranges = [near, far].map(|t| nasty::ranges(t as f32));
-    match ranges.as_flattened().get(range) {
-        Some(((t_min, t_max), _)) if near.is_finite() && far.is_finite() => ray.with_range(*t_min, *t_max),
+    let t = if range < 6 { near } else { far } as f32;
+    match nasty::ranges(t).get(range % 6) {
+        Some(((t_min, t_max), _)) if range < 12 && t > 0.0 && t.is_finite() => ray.with_range(*t_min, *t_max),
         _ => ray,
     }
 }
