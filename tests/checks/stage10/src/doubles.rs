@@ -283,6 +283,8 @@ pub(super) fn double_triangle_has_the_nearest_t(trial: &Trial<'_>) -> CheckResul
     all_hold(judge_ends("triangle_in_double", &queries, judge))
 }
 
+const HAS_ALPHA: &str = "one of your two numbers is α, the barycentric coordinate of corner a";
+
 /// Judges β and γ of hits well inside, up to `tolerance`.
 pub(super) fn judge_weights(
     function: &str,
@@ -312,10 +314,10 @@ pub(super) fn judge_weights(
         )
         .explained_by([
             (is(gamma, beta), "you exchange β and γ: β belongs to corner b, and γ to corner c"),
-            (
-                is(alpha, beta) || is(alpha, gamma) || is(beta, alpha) || is(gamma, alpha),
-                "one of your two numbers is α, the barycentric coordinate of corner a",
-            ),
+            (is(alpha, beta), HAS_ALPHA),
+            (is(alpha, gamma), HAS_ALPHA),
+            (is(beta, alpha), HAS_ALPHA),
+            (is(gamma, alpha), HAS_ALPHA),
         ]))
     })
 }

@@ -234,6 +234,9 @@ fn from_depths(TriangleQuery { ray, triangle: Triangle { a, b, c } }: &TriangleQ
     [depth(ray.direction[z]) / sum, depth(1.0) / (sum * ray.direction[z])]
 }
 
+const OF_DEPTHS: &str =
+    "t has lost its digits: the weighted depths of the corners cancel on a needle. Compute t from the plane";
+
 pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
     for name in ["interior", "needle", "1e-14", "1e14"] {
         let queries = draw(trial, name, 400);
@@ -260,11 +263,10 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
             if (f64::from(yours.t) - exact).abs() <= tolerance {
                 return Ok(());
             }
+            let [divided_before, divided_after] = from_depths(query);
             Err(Broken::new(query.call("watertight"), yours.t, exact, "exactly").explained_by([
-                (
-                    from_depths(query).contains(&yours.t),
-                    "t has lost its digits: the weighted depths of the corners cancel on a needle. Compute t from the plane",
-                ),
+                (yours.t == divided_before, OF_DEPTHS),
+                (yours.t == divided_after, OF_DEPTHS),
                 (f64::from(yours.t) * exact < 0.0, "t has the wrong sign"),
             ]))
         };

@@ -55,6 +55,8 @@ pub(super) fn places_on_a_rectangle_are_even(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
+const CORNER_AS_CENTER: &str = "you use the corner as the centre of the rectangle";
+
 /// Whether a point belongs to its rectangle. Adds its fractions of both edges to `shares`.
 fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(f64, f64)>) -> CheckResult {
     let [corner, first, second] = [query.corner, query.edges.0, query.edges.1].map(Vec3::as_dvec3);
@@ -86,11 +88,8 @@ fn judge_rectangle_point(query: &RectangleQuery, point: Vec3, shares: &mut Vec<(
             is((1.0 - x - y) * corner + x * first + y * second),
             "you use the edges as positions of corners: they are vectors from the corner",
         ),
-        (
-            is(corner + (x - 0.5) * first + (y - 0.5) * second)
-                || is(corner + (2.0 * x - 1.0) * first + (2.0 * y - 1.0) * second),
-            "you use the corner as the centre of the rectangle",
-        ),
+        (is(corner + (x - 0.5) * first + (y - 0.5) * second), CORNER_AS_CENTER),
+        (is(corner + (2.0 * x - 1.0) * first + (2.0 * y - 1.0) * second), CORNER_AS_CENTER),
         (is(x * first + y * second), "you leave out the corner"),
     ]))
 }

@@ -50,6 +50,9 @@ pub(super) fn uneven_disk(counts: &[u64], reproduced: Mistakes) -> Mistakes {
     reproduced.into_iter().chain(shown).collect()
 }
 
+const IN_THE_SQUARE: &str =
+    "your point is in the square around the disk: the corners of the square are outside it";
+
 pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
     let u = pairs(trial.seed, SAMPLES);
     let places = trial.kit.sample_disk(&u);
@@ -58,10 +61,11 @@ pub(super) fn places_on_the_disk_are_even(trial: &Trial<'_>) -> CheckResult {
         if place.length() <= 1.0 + 1e-6 {
             return Ok(());
         }
-        let square = (*place - (2.0 * *u - 1.0)).length() < 1e-5 || (*place - *u).length() < 1e-5;
+        let is = |wrong: Vec2| (*place - wrong).length() < 1e-5;
         let broken = Broken::new(call("sample_disk", &[u]), place, "a length of 1 at most", "the definition");
         Err(broken.explained_by([
-            (square, "your point is in the square around the disk: the corners of the square are outside it"),
+            (is(2.0 * *u - 1.0), IN_THE_SQUARE),
+            (is(*u), IN_THE_SQUARE),
             (place.is_nan(), "you return NaN"),
             (!place.is_nan(), "your point is outside the disk"),
         ]))

@@ -94,6 +94,10 @@ pub(super) fn times_lie_in_their_slots(trial: &Trial<'_>) -> CheckResult {
     })
 }
 
+const FROM_ZERO: &str = "you count slots from 0: slot 1 begins at open";
+const WITHOUT_OPEN: &str = "you start at 0: the shutter opens at open";
+const TIMES_CLOSE: &str = "you multiply by close: use open + share * (close - open)";
+
 fn judge_time(query: &TimeQuery, yours: f32) -> CheckResult {
     let (open, close) = (f64::from(query.shutter.open), f64::from(query.shutter.close));
     let u = f64::from(query.u);
@@ -106,21 +110,16 @@ fn judge_time(query: &TimeQuery, yours: f32) -> CheckResult {
     if near(expected) && open_then {
         return Ok(());
     }
+    let next = at(share(query.slot + 1));
     Err(Broken::new(paste(query), yours, expected, "double precision").explained_by([
         (near(expected), "your time is outside open..=close by a rounding error: clamp"),
-        (
-            near(at(share(query.slot + 1))) || near(at(share(query.slot + 1)).min(close)),
-            "you count slots from 0: slot 1 begins at open",
-        ),
+        (near(next), FROM_ZERO),
+        (near(next.min(close)), FROM_ZERO),
         (near(here), "you return a fraction of the interval: scale it to open..close"),
-        (
-            near(expected - open) || near((expected - open).clamp(open, close)),
-            "you start at 0: the shutter opens at open",
-        ),
-        (
-            near(open + here * close) || near((open + here * close).clamp(open, close)),
-            "you multiply by close: use open + share * (close - open)",
-        ),
+        (near(expected - open), WITHOUT_OPEN),
+        (near((expected - open).clamp(open, close)), WITHOUT_OPEN),
+        (near(open + here * close), TIMES_CLOSE),
+        (near((open + here * close).clamp(open, close)), TIMES_CLOSE),
         (near(at(u)), "you leave out the slot: u is the position in the slot"),
         (
             near(at((f64::from(query.slot) - 1.0) / f64::from(query.slots))),
@@ -168,6 +167,9 @@ fn ways() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
     prop_oneof![3 => near_each_other, 1 => (nasty::point(), nasty::point())]
 }
 
+const ROUNDED_END: &str = "start + t (end - start) has a rounding error at the end";
+const CLAMPED_IN_ORDER: &str = "you clamp as if start were below end: use start.min(end) and start.max(end)";
+
 pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
     let ends = || prop_oneof![(rough_point(1000.0), rough_point(1000.0)), (nasty::point(), nasty::point())];
     let inputs = (ends(), 0.0..=1.0f32, 0..4i32).prop_map(|((start, end), time, which)| match which {
@@ -189,26 +191,17 @@ pub(super) fn lerp_is_exact_where_it_must(trial: &Trial<'_>) -> CheckResult {
             // A start at any time but 1, or an end at time 1, must be exact.
             let source = if still { "start, because start equals end" } else { "bit for bit" };
             Err(Broken::new(describe(query), yours, expected, source).explained_by([
-                (
-                    yours == start + time * (end - start),
-                    "start + t (end - start) has a rounding error at the end",
-                ),
+                (yours == start + time * (end - start), ROUNDED_END),
                 (
                     yours == (start + time * (end - start)).max(start.min(end)).min(start.max(end)),
-                    "start + t (end - start) has a rounding error at the end",
+                    ROUNDED_END,
                 ),
                 (
                     still && is((1.0 - time) * start + time * end),
                     "(1 - t) a + t a has a rounding error: clamp between start and end",
                 ),
-                (
-                    yours == ((1.0 - time) * start + time * end).min(end).max(start),
-                    "you clamp as if start were below end: use start.min(end) and start.max(end)",
-                ),
-                (
-                    yours == ((1.0 - time) * start + time * end).max(start).min(end),
-                    "you clamp as if start were below end: use start.min(end) and start.max(end)",
-                ),
+                (yours == ((1.0 - time) * start + time * end).min(end).max(start), CLAMPED_IN_ORDER),
+                (yours == ((1.0 - time) * start + time * end).max(start).min(end), CLAMPED_IN_ORDER),
                 (!still && yours == if time == 1.0 { start } else { end }, "you exchange start and end"),
             ]))
         })
@@ -235,7 +228,6 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
             let at = |time: f64| start.as_dvec3().lerp(end.as_dvec3(), time);
             let is = |place: DVec3| off(place).cmple(2.0 * slack).all();
             let (start_at, end_at, t) = (start.as_dvec3(), end.as_dvec3(), f64::from(time));
-            let clamped = |place: DVec3, low: DVec3, high: DVec3| place.max(low).min(high);
             let source = "double precision, within the ends";
             Err(Broken::new(describe(query), yours, exact.as_vec3(), source).explained_by([
                 (near, "your point is outside the box of both ends by a rounding error: clamp"),
@@ -245,10 +237,8 @@ pub(super) fn lerp_stays_on_the_way(trial: &Trial<'_>) -> CheckResult {
                 (is(at(0.5)), "you return the midpoint for every time"),
                 (is(start_at), "you return start for every time"),
                 (is(end_at), "you return end for every time"),
-                (
-                    is(clamped(exact, start_at, end_at)) || is(exact.min(end_at).max(start_at)),
-                    "you clamp as if start were below end: use start.min(end) and start.max(end)",
-                ),
+                (is(exact.max(start_at).min(end_at)), CLAMPED_IN_ORDER),
+                (is(exact.min(end_at).max(start_at)), CLAMPED_IN_ORDER),
             ]))
         })
     })

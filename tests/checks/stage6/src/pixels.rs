@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use raykata::kit::{FILTER_RADIUS, WeightedColor};
 use raykata::random::Stratum;
 use raykata::scene::Sampler;
+use std::f64::consts::FRAC_2_PI;
 
 /// The largest random number, just below 1.
 pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
@@ -151,6 +152,9 @@ pub(super) fn gaussian_weight_is_a_bell_that_ends(trial: &Trial<'_>) -> CheckRes
     })
 }
 
+const STEP_AT_R: &str = "your weight ends in a step at R: subtract e^(-2R²) along each axis";
+const NORMALIZED: &str = "you normalize the weight: leave it, because filter_pixel divides by the sum";
+
 fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
     let (x, y) = (f64::from(offset.x), f64::from(offset.y));
     let expected = bell(x) * bell(y);
@@ -165,29 +169,22 @@ fn judge_weight(offset: Vec2, yours: f32) -> CheckResult {
         let factor = |x: f64| (power(x).exp() - power(radius).exp()).max(0.0);
         factor(x) * factor(y)
     };
+    // The weight of a bell that does not end.
+    let infinite = (-2.0 * (x * x + y * y)).exp();
     // The difference of the two powers without a clamp.
     let raw = |x: f64| (-2.0 * x * x).exp() - (-2.0 * radius * radius).exp();
     Err(Broken::new(call("gaussian_weight", &[&offset]), yours, expected, "double precision").explained_by([
-        (
-            near((-2.0 * (x * x + y * y)).exp()),
-            "your weight ends in a step at R: subtract e^(-2R²) along each axis",
-        ),
-        (
-            near(if outside { 0.0 } else { (-2.0 * (x * x + y * y)).exp() }),
-            "your weight ends in a step at R: subtract e^(-2R²) along each axis",
-        ),
+        (near(infinite), STEP_AT_R),
+        (near(if outside { 0.0 } else { infinite }), STEP_AT_R),
         (near(bell(x.hypot(y))), "your filter is round: multiply a weight along x by a weight along y"),
         (near(with(|x| -x * x)), "your bell is too wide: it is e^(-2x²), not e^(-x²)"),
         (near(with(|x| -2.0 * x.abs())), "you do not square x: e^(-2x²)"),
         (near(bell(x) + bell(y)), "you add the two weights: multiply them"),
         (near(bell(x)), "you do not use y: multiply the weight along x by that along y"),
         (near(bell(y)), "you do not use x: multiply the weight along x by that along y"),
-        // The area of e^(-2x²) is √(π / 2).
-        (
-            near(expected * std::f64::consts::FRAC_2_PI)
-                || near(expected * std::f64::consts::FRAC_2_PI.sqrt()),
-            "you normalize the weight: leave it, because filter_pixel divides by the sum",
-        ),
+        // The area of e^(-2x²) is √(π / 2), along one axis; students divide by it once or twice.
+        (near(expected * FRAC_2_PI), NORMALIZED),
+        (near(expected * FRAC_2_PI.sqrt()), NORMALIZED),
         (
             near((raw(x) * raw(y)).max(0.0)) && outside,
             "two negative factors give a positive weight: each is 0 beyond FILTER_RADIUS",

@@ -215,6 +215,9 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
             let through = above < 1e-6;
             // A student who reflects every ray has reflected the free sample along ideal.
             let unreflected = *drawn - 2.0 * drawn.dot(query.ideal) * query.ideal;
+            // A student who returns ideal in place of a direction below the surface has replaced free samples that rounding
+            // puts below it, too. They are at a right angle to ideal.
+            let replaced = *drawn == query.ideal && yours.dot(query.ideal).abs() < 1e-5;
             let mirrored = unreflected - 2.0 * unreflected.dot(query.normal) * query.normal;
             Err(Broken::new(paste(query), yours, expected, source).explained_by([
                 (yours.is_nan(), "you return NaN: ln 0 is -∞, and 0 · ∞ is NaN"),
@@ -227,7 +230,7 @@ pub(super) fn phong_lobe_stays_on_its_side(trial: &Trial<'_>) -> CheckResult {
                     "you subtract the part along the normal once: subtract it twice",
                 ),
                 (
-                    (through && near(query.ideal)) || *drawn == query.ideal,
+                    (through && near(query.ideal)) || replaced,
                     "you return ideal, which changes the distribution: reflect the ray back by the normal",
                 ),
                 (through && near(*drawn), "your ray goes through the surface: reflect it back by the normal"),

@@ -321,6 +321,11 @@ fn is_transform(yours: &Affine3A, right: &DAffine3, tolerance: f64) -> bool {
     near(0..9, 0.0) && near(9..12, 4.0 * matrix_size)
 }
 
+const OWN_ONLY: &str = "you use the node's own transform only: multiply all transforms of the path";
+const ROOT_ONLY: &str = "you use the root's transform only: multiply all transforms of the path";
+const FROM_THE_NODE: &str =
+    "you multiply from the node up to the root: the root's transform is the first factor";
+
 fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResult {
     let product =
         |path: &mut dyn Iterator<Item = DAffine3>| path.fold(DAffine3::IDENTITY, |all, one| all * one);
@@ -350,6 +355,9 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResul
     let transposed = yours.to_object.as_daffine3().matrix3 == exact.matrix3.transpose();
     let own = all().next_back().unwrap_or(DAffine3::IDENTITY);
     let root = all().next().unwrap_or(DAffine3::IDENTITY);
+    let is = |world: &DAffine3, object: &DAffine3| {
+        near(&yours.to_world, world) && near(&yours.to_object, &object.inverse())
+    };
     let (got, right) = if up { (yours.to_object, exact.inverse()) } else { (yours.to_world, exact) };
     let which = if up { "to_object" } else { "to_world" };
     let describe = |entries: Vec<f64>| format!("{which} {entries:.3?}");
@@ -362,18 +370,13 @@ fn judge_placement(path: &Vec<Affine3A>, yours: Option<Placement>) -> CheckResul
     .explained_by([
         (up && near(&yours.to_object, &exact), "you return to_world as to_object, without the inverse"),
         (up && transposed, "you take the transpose for the inverse: this is right for rotations only"),
-        (
-            near(&yours.to_world, &own) && (down || near(&yours.to_object, &own.inverse())),
-            "you use the node's own transform only: multiply all transforms of the path",
-        ),
-        (
-            near(&yours.to_world, &root) && (down || near(&yours.to_object, &root.inverse())),
-            "you use the root's transform only: multiply all transforms of the path",
-        ),
-        (
-            near(&yours.to_world, &turned) && (down || near(&yours.to_object, &turned.inverse())),
-            "you multiply from the node up to the root: the root's transform is the first factor",
-        ),
+        // Each of these in to_world alone, or in both matrices.
+        (is(&own, &exact), OWN_ONLY),
+        (is(&own, &own), OWN_ONLY),
+        (is(&root, &exact), ROOT_ONLY),
+        (is(&root, &root), ROOT_ONLY),
+        (is(&turned, &exact), FROM_THE_NODE),
+        (is(&turned, &turned), FROM_THE_NODE),
         (
             up && near(&yours.to_object, &turned.inverse()),
             "you multiply the inverses in the order of the transforms: the order must be reversed",

@@ -349,16 +349,15 @@ impl<'a> Step<'a> {
         };
         // If all other vertices are neighbours, uneven weights are the only sign of positions from after the step.
         let has_others = around.len() + 1 < self.mesh.positions.len();
-        let from_before = (
-            self.takes_of_others(index, &[&around[..], &[vertex]].concat())
-                || (!has_others && !border && !is_even(&around)),
-            FROM_BEFORE,
-        );
+        let from_before = match has_others {
+            true => self.takes_of_others(index, &[&around[..], &[vertex]].concat()),
+            false => !border && !is_even(&around),
+        };
         let adds_up = (sum - 1.0).abs() <= NEAR_WEIGHT;
         let mistakes = vec![
             (around.is_empty(), "you move a vertex that belongs to no triangle: it stays"),
             (!around.is_empty() && own_only, "you do not move the old vertices: they move, too"),
-            from_before,
+            (from_before, FROM_BEFORE),
             (border && self.takes(index, &shared(vertex, &around, inner_share(around.len()))), BORDER),
             (
                 border && !own_only && is_even(&along),

@@ -24,6 +24,9 @@ fn describe(query: &PatchQuery) -> String {
     format!("bezier_point(&BezierPatch {{ rows: [{a}, {b},\n{c}, {d}] }},\n{})", query.uv.paste())
 }
 
+const BY_DIFFERENCES: &str = "you compute p + t (q - p), which is not exactly q at t = 1, so neighbouring patches \
+                              have gaps: use (1 - t) p + t q";
+
 pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckResult {
     let rough = patch().prop_map(|mut patch| {
         // Use thirds: p + t (q - p) does not return them exactly at t = 1.
@@ -50,27 +53,22 @@ pub(super) fn bezier_starts_and_ends_at_its_corners(trial: &Trial<'_>) -> CheckR
                 let of = blend(t);
                 of(of(of(p, q), of(q, r)), of(of(q, r), of(r, s)))
             };
-            let by_differences = along(query.patch.rows.map(|row| along(row, query.uv.x)), query.uv.y);
-            let first_columns = along(
+            let rows_first = along(query.patch.rows.map(|row| along(row, query.uv.x)), query.uv.y);
+            let columns_first = along(
                 [0, 1, 2, 3].map(|column| along(query.patch.rows.map(|row| row[column]), query.uv.y)),
                 query.uv.x,
             );
-            let is_rounded = yours == by_differences || yours == first_columns || {
-                let right = by_differences.as_dvec3() - corner.as_dvec3();
-                right != DVec3::ZERO
-                    && (yours.as_dvec3() - corner.as_dvec3()).length() <= 8.0 * right.length()
-            };
+            // Some round in another order, so their error at t = 1 has another size.
+            let off = |place: Vec3| (place.as_dvec3() - corner.as_dvec3()).length();
+            let is = |wrong: Vec3| query.uv != Vec2::ZERO && off(yours) <= 8.0 * off(wrong);
             Err(Broken::new(describe(query), yours, corner, "the corner of the control net").explained_by([
                 (
                     yours == query.patch.rows[column][row],
                     "you exchange u and v: u runs along the rows, v along the columns",
                 ),
                 (yours == opposite, "you exchange t and 1 - t"),
-                (
-                    is_rounded && query.uv != Vec2::ZERO,
-                    "you compute p + t (q - p), which is not exactly q at t = 1, so neighbouring patches \
-                     have gaps: use (1 - t) p + t q",
-                ),
+                (is(rows_first), BY_DIFFERENCES),
+                (is(columns_first), BY_DIFFERENCES),
             ]))
         };
         queries

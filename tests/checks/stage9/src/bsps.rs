@@ -3,8 +3,9 @@
 use super::lists::{Fault, ended, fact, judge_references};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
-use checks::generate::point;
+use checks::generate::{point, rough_point};
 use checks::judge::compare;
+use checks::nasty;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -111,15 +112,20 @@ fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
 }
 
 pub(super) fn bsp_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
-    let tile = (point(4), point(4), point(4), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
+    let corner = || prop_oneof![2 => point(4), 1 => nasty::lattice(2), 1 => rough_point(4.0)];
+    let tile = (corner(), corner(), corner(), 0..16i32).prop_map(|(a, b, c, kind)| match kind {
         0 => vec![a, Vec3::NAN, c],
         1..=3 => vec![vec3(a.x, a.y, 1.0), vec3(b.x, b.y, 1.0), vec3(c.x, c.y, 1.0)],
         4..=6 => corners(&Aabb::new(a, a + b.abs())),
         _ => vec![a, b, c],
     });
-    let inputs = (prop::collection::vec(tile, 1..20), 1..=4usize, 0..=6usize)
-        .prop_map(|(hulls, leaf_size, max_depth)| BspQuery { hulls, leaf_size, max_depth });
-    trial.forall(200, inputs, |queries| {
+    // At these scales the square of a normal, whose length is an area, is a normal number in single precision.
+    let inputs = (prop::collection::vec(tile, 1..20), nasty::scale(-24..=24), 1..=4usize, 0..=6usize);
+    let inputs = inputs.prop_map(|(mut hulls, scale, leaf_size, max_depth): (Vec<Vec<Vec3>>, _, _, _)| {
+        hulls.iter_mut().flatten().for_each(|corner| *corner *= scale);
+        BspQuery { hulls, leaf_size, max_depth }
+    });
+    trial.forall(140, inputs, |queries| {
         compare(queries, trial.kit.bsp_build(queries), |query, yours| judge_tree(query, &yours))
     })
 }

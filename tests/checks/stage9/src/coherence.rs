@@ -71,7 +71,7 @@ pub(super) fn cached_hit_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
     };
     let behind = Scene::new(vec![sphere(2.0, 0.0, 0.0, 0.5), sphere(5.0, 0.0, 0.0, 1.0)]);
     let nearer = (cached(&behind, &ray, Some(1)), 2);
-    trial.forall_and(&[nearer, tie], 1000, inputs, judge)
+    trial.forall_and(&[nearer, tie], 700, inputs, judge)
 }
 
 pub(super) fn cached_hit_saves_tests(trial: &Trial<'_>) -> CheckResult {

@@ -71,7 +71,7 @@ fn heuristics() -> impl Strategy<Value = KdHeuristics> + Clone {
 pub(super) fn kd_tree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), heuristics(), 1..=4usize)
         .prop_map(|(bounds, heuristics, leaf_size)| KdQuery { bounds, heuristics, leaf_size });
-    trial.forall(300, inputs, |queries| {
+    trial.forall(200, inputs, |queries| {
         compare(queries, trial.kit.kd_build(queries), |query, yours| judge_tree(query, &yours))
     })
 }

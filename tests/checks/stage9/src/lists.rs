@@ -1,6 +1,8 @@
 //! The laws that all builders share: which primitives a cell lists.
 
 use checks::broken::{Broken, CheckResult};
+use checks::generate::{point, rough_point};
+use checks::nasty;
 use checks::paste::Paste;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -8,17 +10,21 @@ use raykata::aabb::Aabb;
 use raykata::kit::kit_error::{self, KitError};
 use raykata::partition::Cell;
 
-/// Boxes on a coarse grid, so that many touch. Some are flat, and some have NaN coordinates.
+/// Boxes on a lattice, so that many touch or are flat, on a finer grid, and with full mantissas. Some have NaN coordinates.
+/// A volume is a normal number in single precision at any of these scales.
 pub(super) fn some_boxes() -> impl Strategy<Value = Vec<Aabb>> + Clone {
-    let one =
-        (checks::generate::point(4), checks::generate::point(2), 0..20i32).prop_map(|(p, size, kind)| {
-            match kind {
-                0 => Aabb::new(Vec3::NAN, Vec3::NAN),
-                1..=5 => Aabb::new(p.round(), p.round() + size.abs().round()),
-                _ => Aabb::new(p, p + size.abs()),
-            }
-        });
-    prop::collection::vec(one, 1..24)
+    let corner_and_size = prop_oneof![
+        2 => (nasty::lattice(4), nasty::lattice(2)),
+        3 => (point(4), point(2)),
+        1 => (rough_point(4.0), rough_point(2.0)),
+    ];
+    let one = (corner_and_size, 0..20i32).prop_map(|((corner, size), kind)| match kind {
+        0 => Aabb::new(Vec3::NAN, Vec3::NAN),
+        _ => Aabb::new(corner, corner + size.abs()),
+    });
+    (prop::collection::vec(one, 1..24), nasty::scale(-30..=30)).prop_map(|(boxes, scale)| {
+        boxes.into_iter().map(|one| Aabb::new(scale * one.min, scale * one.max)).collect()
+    })
 }
 
 /// `(yours, expected)` if the bounds of a structure do not contain all boxes that are not empty.

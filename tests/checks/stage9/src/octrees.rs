@@ -60,7 +60,7 @@ fn fault(query: &OctreeQuery, yours: &Octree) -> Option<Fault> {
 pub(super) fn octree_lists_what_reaches_into_leaves(trial: &Trial<'_>) -> CheckResult {
     let inputs = (some_boxes(), 1..=4usize, 0..=4usize)
         .prop_map(|(bounds, leaf_size, max_depth)| OctreeQuery { bounds, leaf_size, max_depth });
-    trial.forall(200, inputs, |queries| {
+    trial.forall(140, inputs, |queries| {
         compare(queries, trial.kit.octree_build(queries), |query, yours| judge_octree(query, &yours))
     })
 }

@@ -173,11 +173,10 @@ pub(super) fn near_grid(grid: &Grid, ray: &Ray, room: f64) -> Parts {
         .collect()
 }
 
-/// The cells that the ray passes through well inside their faces.
+/// The cells that the ray passes through well inside their faces: by more than a 256th of their longest side.
 pub(super) fn inside_grid(grid: &Grid, ray: &Ray) -> Parts {
-    numbered(grid)
-        .filter_map(|(i, cell)| part_of(ray, &cell, -0.01).map(|(near, far)| (i, near, far)))
-        .collect()
+    let inside = |cell: &Cell| part_of(ray, cell, (cell.max - cell.min).max_element() / -256.0);
+    numbered(grid).filter_map(|(i, cell)| inside(&cell).map(|(near, far)| (i, near, far))).collect()
 }
 
 pub(super) fn of_octree(octree: &Octree, ray: &Ray) -> Parts {

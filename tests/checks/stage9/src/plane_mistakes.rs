@@ -167,9 +167,11 @@ fn at_planes<'a>(
 
 /// The known mistakes at the planes of a kd-tree, each with whether it finds this hit.
 pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
-    let plane = |node: u32| match tree.nodes[node as usize] {
-        KdNode::Leaf { first, count } => Plane::Leaf(tree.primitives(first, count)),
-        KdNode::Inner { axis, at, left, right } => {
+    let plane = |node: u32| match tree.nodes.get(node as usize).copied() {
+        // A tree without nodes lists nothing.
+        None => Plane::Leaf(&[]),
+        Some(KdNode::Leaf { first, count }) => Plane::Leaf(tree.primitives(first, count)),
+        Some(KdNode::Inner { axis, at, left, right }) => {
             let axis = usize::from(axis);
             let height = f64::from(ray.origin[axis]) - f64::from(at);
             Plane::Cut { height, rate: f64::from(ray.direction[axis]), below: left, above: right }
@@ -180,9 +182,11 @@ pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray, hits: &[f32], found: Hit) -> 
 
 /// The known mistakes at the planes of a BSP tree, each with whether it finds this hit.
 pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(bool, &'static str)> {
-    let plane = |node: u32| match bsp.nodes[node as usize] {
-        BspNode::Leaf { first, count } => Plane::Leaf(bsp.primitives(first, count)),
-        BspNode::Inner { plane, back, front } => {
+    let plane = |node: u32| match bsp.nodes.get(node as usize).copied() {
+        // A tree without nodes lists nothing.
+        None => Plane::Leaf(&[]),
+        Some(BspNode::Leaf { first, count }) => Plane::Leaf(bsp.primitives(first, count)),
+        Some(BspNode::Inner { plane, back, front }) => {
             let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
             Plane::Cut { height, rate, below: back, above: front }
         }

@@ -1,27 +1,65 @@
 //! The laws of the resolution of a grid and of the interval of a ray in a cell.
 
+use super::scenes::{Scales, rays, scales};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::slabs_interval;
-use checks::generate::point;
+use checks::generate::rough_point;
 use checks::judge::compare;
+use checks::nasty;
 use checks::paste::{Arguments, Paste};
 use glam::{UVec3, Vec3, uvec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{ResolutionQuery, SlabQuery};
+use raykata::ray::Ray;
 
 pub(super) fn spans_of_cells_agree_with_double_precision(trial: &Trial<'_>) -> CheckResult {
-    let inputs = (point(4), point(3), super::scenes::rays()).prop_map(|(p, size, ray)| SlabQuery {
-        ray,
-        bounds: Aabb::new(p.round(), p.round() + size.abs().round()),
+    let on_lattice = (nasty::lattice(4), nasty::lattice(3));
+    let cell = prop_oneof![3 => on_lattice, 1 => (rough_point(4.0), rough_point(3.0))]
+        .prop_map(|(corner, size)| Aabb::new(corner, corner + size.abs()));
+    let inputs = (cell, rays(), scales(), 0..24usize).prop_map(|(bounds, ray, scales, range)| Spanned {
+        plain: SlabQuery { ray: at_border(ray, &bounds, range), bounds },
+        scales,
     });
-    let empty = SlabQuery { ray: raykata::ray::Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY };
-    trial.forall_and(&[empty], 1500, inputs, |queries| judge_spans(trial, queries))
+    let empty = SlabQuery { ray: Ray::new(Vec3::ZERO, Vec3::X), bounds: Aabb::EMPTY };
+    let empty = Spanned { plain: empty, scales: Scales { size: 1.0, speed: 1.0 } };
+    trial.forall_and(&[empty], 1000, inputs, |queries| judge_spans(trial, queries))
 }
 
-fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
-    compare(queries, trial.kit.cell_span(queries), |query, yours| {
+/// The ray with a range that begins or ends where the ray enters the box (six ranges) or leaves it (six more), or one float
+/// beside it. For other numbers, and if the ray never does, the range is that of the ray.
+fn at_border(ray: Ray, bounds: &Aabb, range: usize) -> Ray {
+    let (near, far) = slabs_interval(&ray, bounds);
+    let t = if range < 6 { near } else { far } as f32;
+    match nasty::ranges(t).get(range % 6) {
+        Some(((t_min, t_max), _)) if range < 12 && t > 0.0 && t.is_finite() => ray.with_range(*t_min, *t_max),
+        _ => ray,
+    }
+}
+
+/// A cell and a ray, and the scales at which the student's function receives them.
+#[derive(Clone, Copy, Debug)]
+struct Spanned {
+    plain: SlabQuery,
+    scales: Scales,
+}
+
+impl Spanned {
+    fn asked(&self) -> SlabQuery {
+        let Spanned { plain: SlabQuery { ray, bounds }, scales } = self;
+        let bounds = Aabb::new(scales.size * bounds.min, scales.size * bounds.max);
+        SlabQuery { ray: scales.of_ray(ray), bounds }
+    }
+}
+
+fn judge_spans(trial: &Trial<'_>, queries: &[Spanned]) -> Vec<CheckResult> {
+    let asked: Vec<SlabQuery> = queries.iter().map(Spanned::asked).collect();
+    compare(queries, trial.kit.cell_span(&asked), |spanned, yours| {
+        let query = &spanned.plain;
+        // All scales are powers of two, so the answer for the plain query is exactly this.
+        let t_scale = f64::from(spanned.scales.size / spanned.scales.speed);
+        let yours = yours.map(|(t, t_end)| (t / t_scale, t_end / t_scale));
         let (near, far) = slabs_interval(&query.ray, &query.bounds);
         let range = (f64::from(query.ray.t_min), f64::from(query.ray.t_max));
         let expected = (near.max(range.0), far.min(range.1));
@@ -87,7 +125,10 @@ fn judge_spans(trial: &Trial<'_>, queries: &[SlabQuery]) -> Vec<CheckResult> {
             (is_none && near == far, "you return None for a ray that touches the cell: the cell is closed"),
         ];
         let expected = (expected.0 <= expected.1).then_some(expected);
-        Err(Broken::new(query.call("span"), yours, expected, "double precision").explained_by(mistakes))
+        let at_scale = |span: Option<(f64, f64)>| span.map(|(t, t_end)| (t_scale * t, t_scale * t_end));
+        let input = spanned.asked().call("span");
+        Err(Broken::new(input, at_scale(yours), at_scale(expected), "double precision")
+            .explained_by(mistakes))
     })
 }
 
@@ -98,12 +139,13 @@ fn describe(query: &ResolutionQuery) -> String {
 pub(super) fn grid_resolution_makes_cubes(trial: &Trial<'_>) -> CheckResult {
     let size =
         (4..=40i32, 4..=40i32, 4..=40i32).prop_map(|(x, y, z)| vec3(x as f32, y as f32, z as f32) / 4.0);
-    let inputs =
-        (size, 500..20_000usize, 1..=8i32).prop_map(|(size, n_primitives, density)| ResolutionQuery {
-            bounds: Aabb::new(Vec3::ONE, Vec3::ONE + size),
+    let inputs = (size, nasty::lattice(4), nasty::any_scale(), 500..20_000usize, 1..=8i32).prop_map(
+        |(size, min, scale, n_primitives, density)| ResolutionQuery {
+            bounds: Aabb::new(scale * min, scale * (min + size)),
             n_primitives,
             density: density as f32 / 2.0,
-        });
+        },
+    );
     trial.forall(200, inputs, |queries| {
         compare(queries, trial.kit.grid_resolution(queries), |query, yours| {
             let wanted = f64::from(query.density) * query.n_primitives as f64;

@@ -3,6 +3,7 @@
 
 use checks::double::sphere_roots;
 use checks::generate::point;
+use checks::nasty;
 use glam::{Vec3, vec3};
 use proptest::prelude::*;
 use raykata::aabb::Aabb;
@@ -26,6 +27,40 @@ pub(super) struct Scene {
     /// Whether every second primitive has a `t` two floats too large and every other one two floats too small, as
     /// different formulas would give.
     pub rough: bool,
+}
+
+/// A scale for scenes, and one for the directions of rays. Both are powers of two, so they change no rounding.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scales {
+    pub size: f32,
+    pub speed: f32,
+}
+
+/// Any scales for which a volume in a scene, and the square of a length times that of a direction, are normal numbers in
+/// single precision.
+pub(super) fn scales() -> impl Strategy<Value = Scales> + Clone {
+    let scaled = (nasty::scale(-30..=30), nasty::scale(-24..=24));
+    prop_oneof![1 => Just((1.0f32, 1.0f32)), 1 => scaled].prop_map(|(size, speed)| Scales { size, speed })
+}
+
+impl Scales {
+    /// The ray at this scale. Each `t` is that of the plain ray times `size / speed`.
+    pub(super) fn of_ray(self, ray: &Ray) -> Ray {
+        let t = self.size / self.speed;
+        Ray::new(self.size * ray.origin, self.speed * ray.direction).with_range(t * ray.t_min, t * ray.t_max)
+    }
+
+    fn of_thing(self, thing: Thing) -> Thing {
+        let size = self.size;
+        match thing {
+            Thing::Sphere(Sphere { center, radius }) => {
+                Thing::Sphere(Sphere { center: size * center, radius: size * radius })
+            }
+            Thing::Tile(Triangle { a, b, c }) => {
+                Thing::Tile(Triangle { a: size * a, b: size * b, c: size * c })
+            }
+        }
+    }
 }
 
 impl Scene {
@@ -108,22 +143,28 @@ pub(super) fn sphere(x: f32, y: f32, z: f32, radius: f32) -> Thing {
 }
 
 /// Scenes of spheres and walls on a coarse grid, where many primitives touch or coincide, with a ray that often runs
-/// along an axis or a diagonal or has zeros of either sign.
+/// along an axis or a diagonal or has zeros of either sign, at any scale. The range of some rays begins or ends at the closest
+/// hit, or one float before or after it.
 pub(super) fn scenes() -> impl Strategy<Value = (Scene, Ray)> + Clone {
     let spheres = prop::collection::vec((point(6), 1..=12i32), 0..16);
     let walls = prop::collection::vec((0..3usize, -4..=4i32, 1..=4i32), 0..5);
-    (spheres, walls, rays(), any::<bool>(), any::<bool>()).prop_map(|(spheres, walls, ray, rough, twice)| {
+    let kinds = (any::<bool>(), any::<bool>(), scales(), 0..24usize);
+    (spheres, walls, rays(), kinds).prop_map(|(spheres, walls, ray, (rough, twice, scales, range))| {
         let spheres = spheres.into_iter().map(|(p, r)| sphere(p.x, p.y, p.z, r as f32 / 8.0));
         let walls = walls.into_iter().flat_map(|(axis, at, size)| wall(axis, at as f32, size as f32));
-        let mut things: Vec<Thing> = spheres.chain(walls).collect();
+        let mut things: Vec<Thing> = spheres.chain(walls).map(|thing| scales.of_thing(thing)).collect();
         if twice && !rough {
             things.extend(things.clone());
         }
-        (Scene { things, rough }, ray)
+        let (scene, ray) = (Scene { things, rough }, scales.of_ray(&ray));
+        // A quarter of these numbers choose a range.
+        let at_hit = closest(&scene.hits(&ray), &ray).and_then(|(_, t)| nasty::ranges(t).get(range).copied());
+        let ray = at_hit.map_or(ray, |((t_min, t_max), _)| ray.with_range(t_min, t_max));
+        (scene, ray)
     })
 }
 
-/// Rays from a coarse grid.
+/// Rays from a coarse grid. Half of the directions lead through edges and corners of cells.
 pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
     let plain = prop::sample::select(vec![
         vec3(1.0, 0.0, 0.0),
@@ -136,8 +177,7 @@ pub(super) fn rays() -> impl Strategy<Value = Ray> + Clone {
         vec3(1.0, -1.0, 0.0),
         vec3(-0.0, 0.5, 0.5),
     ]);
-    let any = point(4).prop_map(|v| if v == Vec3::ZERO { Vec3::X } else { v.normalize() });
-    let direction = prop_oneof![1 => plain, 1 => any];
+    let direction = prop_oneof![1 => plain, 1 => nasty::unit()];
     let origin = prop_oneof![2 => point(10), 1 => point(5).prop_map(Vec3::round)];
     (origin, direction, 0..=6i32, 0..=9i32).prop_map(|(origin, direction, t_min, t_max)| {
         let t_max = if t_max < 6 { f32::INFINITY } else { 2.0 * (t_max - 5) as f32 };
