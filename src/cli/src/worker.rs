@@ -64,6 +64,8 @@ pub struct Worker {
     frame_patience: Duration,
     asks_again: AtomicBool,
     process: Mutex<Option<Process>>,
+    /// The processor time of the processes that have ended.
+    ended: Mutex<Duration>,
 }
 
 impl Worker {
@@ -76,6 +78,7 @@ impl Worker {
             frame_patience: FRAME_PATIENCE,
             asks_again: AtomicBool::new(false),
             process: Mutex::new(None),
+            ended: Mutex::default(),
         }
     }
 
@@ -96,6 +99,12 @@ impl Worker {
             asks_again: AtomicBool::new(true),
             ..Worker::new(program, patience)
         }
+    }
+
+    /// The processor time that the processes of untrusted code have used so far. It is 0 for trusted code.
+    pub fn cpu_time(&self) -> Duration {
+        let running = lock(&self.process).as_ref().map_or(Duration::ZERO, Process::cpu_time);
+        *lock(&self.ended) + running
     }
 
     fn ask(&self, request: &Request, watch: &dyn Watch, patience: Duration) -> Result<Answer, KitError> {
@@ -121,6 +130,7 @@ impl Worker {
             Ok(_) => Ok(Answer::Render(None)),
             Err(error) => {
                 drop(slot);
+                *lock(&self.ended) += process.cpu_time();
                 Err(process.post_mortem(&error, patience))
             }
         }
@@ -168,6 +178,11 @@ impl Process {
             stderr: std::thread::spawn(move || keep_start(stderr)),
             launcher,
         })
+    }
+
+    /// The processor time so far, of untrusted code. It is also known for a process that has ended and was not waited for.
+    fn cpu_time(&self) -> Duration {
+        self.launcher.as_ref().map_or(Duration::ZERO, |launcher| launcher.cpu_time(lock(&self.child).id()))
     }
 
     /// The reply to `request`; `None` if `watch` cancelled it.

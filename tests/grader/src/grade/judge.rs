@@ -27,9 +27,12 @@ use std::time::{Duration, Instant};
 /// Time limit per call, in processor time. The reference's slowest call takes half a second without optimisation.
 const CALL_PATIENCE: Duration = Duration::from_secs(4);
 
-/// Time limit for all checks of a submission together. The slowest failure is a call that never returns; the limit allows
+/// Processor time for all checks of a submission together. The slowest failure is a call that never returns; the limit allows
 /// 70 of them. Checks beyond the limit are not tried.
 const BUDGET: Duration = Duration::from_secs(300);
+
+/// Elapsed time for all checks of a submission together, for code that waits and does not compute.
+const LONGEST: Duration = Duration::from_secs(900);
 
 /// Longest message that is kept, in bytes.
 const MOST_SAID: usize = 2048;
@@ -99,7 +102,8 @@ impl Judge {
         Ok(Judge { checks, seed, confinement, drawn: Arc::default() })
     }
 
-    /// Runs all checks against the program `worker`. Checks of the files in `replaced` get the outcome given there.
+    /// Runs all checks against the program `worker`, and returns their results and the processor time of the program. Checks
+    /// of the files in `replaced` get the outcome given there.
     ///
     /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets new
     /// processes. Public and hidden inputs go to different processes in any case: whatever a process says about public
@@ -109,20 +113,24 @@ impl Judge {
         worker: &Path,
         replaced: &BTreeMap<String, (Outcome, String)>,
         may_remember: bool,
-    ) -> Vec<CheckResult> {
+    ) -> (Vec<CheckResult>, Duration) {
         let start = || {
             let sandbox = Sandbox::with(self.confinement, Purpose::Worker);
             Arc::new(Worker::sandboxed(worker.to_owned(), CALL_PATIENCE, sandbox))
         };
-        let processes = || Processes { start: &start, may_remember, seasoned: None };
+        let processes = || Processes { start: &start, may_remember, seasoned: None, spent: Duration::ZERO };
         let (mut public, mut hidden) = (processes(), processes());
-        let until = Instant::now() + BUDGET;
+        let started = Instant::now();
         let judged: Vec<Answered> = self
             .checks
             .iter()
             .map(|put| {
+                if public.spent() + hidden.spent() > BUDGET || started.elapsed() > LONGEST {
+                    let message = "not tried: earlier checks used up the time of the submission";
+                    return Answered::new(Outcome::NotTried, message);
+                }
                 // Use the public inputs first, so that students can reproduce the message.
-                let answered = public.answer(|worker| self.ask_public(put, worker, until));
+                let answered = public.answer(|worker| self.ask_public(put, worker));
                 // The message of an empty exercise names its file. Replace it by the reason why the file was replaced.
                 let mut lost = replaced.iter().filter(|_| answered.outcome == Outcome::NotWritten);
                 let lost = lost.find(|(file, _)| answered.message.contains(file.as_str()));
@@ -145,7 +153,7 @@ impl Judge {
             }
             result(put.check, answered)
         });
-        results.collect()
+        (results.collect(), public.spent() + hidden.spent())
     }
 
     /// The functions that a check with hidden inputs asks and that pass it.
@@ -173,11 +181,7 @@ impl Judge {
     }
 
     /// Runs one check with the public inputs.
-    fn ask_public(&self, put: &Put, worker: Arc<Worker>, until: Instant) -> Answered {
-        if Instant::now() > until {
-            let message = "not tried: earlier checks used up the time of the submission";
-            return Answered::new(Outcome::NotTried, message);
-        }
+    fn ask_public(&self, put: &Put, worker: Arc<Worker>) -> Answered {
         let known = self.examine(put, worker, 0);
         let (outcome, picture) = (outcome(&known), picture(&known));
         match checks::verdict(put.check, known) {
@@ -217,25 +221,42 @@ struct Processes<'a> {
     may_remember: bool,
     /// The process of the check before, if it may be used again.
     seasoned: Option<Arc<Worker>>,
+    /// The processor time of the processes before.
+    spent: Duration,
 }
 
 impl Processes<'_> {
     /// Asks the process of the check before, or else a new one. An answer that earlier questions may have caused is not
     /// used: a new process is asked.
     fn answer(&mut self, ask: impl Fn(Arc<Worker>) -> Answered) -> Answered {
+        let mut spent = self.spent;
         let asked = self.seasoned.take().map(|worker| (ask(worker.clone()), worker));
         // Earlier questions cannot cause these outcomes.
         let settled = |asked: &(Answered, Arc<Worker>)| {
             matches!(asked.0.outcome, Outcome::Passed | Outcome::NotWritten | Outcome::TooLong)
         };
-        let (answered, worker) = asked.filter(settled).unwrap_or_else(|| {
-            let worker = (self.start)();
-            (ask(worker.clone()), worker)
-        });
+        let (answered, worker) = match asked {
+            Some(asked) if settled(&asked) => asked,
+            unsettled => {
+                spent += unsettled.map_or(Duration::ZERO, |(_, worker)| worker.cpu_time());
+                let worker = (self.start)();
+                (ask(worker.clone()), worker)
+            }
+        };
         // After a timeout the thread of the check may still send questions.
         let is_alone = answered.outcome != Outcome::TooLong;
-        self.seasoned = (is_alone && !self.may_remember).then_some(worker);
+        if is_alone && !self.may_remember {
+            self.seasoned = Some(worker);
+        } else {
+            spent += worker.cpu_time();
+        }
+        self.spent = spent;
         answered
+    }
+
+    /// The processor time of all processes so far.
+    fn spent(&self) -> Duration {
+        self.spent + self.seasoned.as_ref().map_or(Duration::ZERO, |worker| worker.cpu_time())
     }
 }
 

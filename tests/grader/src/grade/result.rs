@@ -115,7 +115,7 @@ pub struct Graded {
     pub compiler: String,
     /// Why nothing could be graded (an archive that cannot be read, …); empty otherwise.
     pub trouble: String,
-    /// Processor time of the build, plus the elapsed time of the checks, in milliseconds. It differs from run to run, so
+    /// Processor time of the build and of the submission's answers, in milliseconds. It differs from run to run, so
     /// `results.json` leaves it out.
     #[serde(default)]
     pub cpu_ms: u64,
