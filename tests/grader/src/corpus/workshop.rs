@@ -89,6 +89,11 @@ impl Workshop {
         Ok(workshop)
     }
 
+    /// Returns the same workshop for workers of another kind.
+    pub fn with(&self, need: Need) -> Workshop {
+        Workshop { root: self.root.clone(), folder: self.folder.clone(), need }
+    }
+
     /// Restores the kit's solutions.
     fn reset(&self) -> Result<()> {
         copy_folder(&self.root.join("solutions/src"), &self.folder.join("solutions/src"))

@@ -143,15 +143,18 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     queue::run(&workshops, mutants, |workshop, mutant| {
         bar.set_message(mutant.file.clone());
         if lock().of(mutant).is_none() {
-            let fate = match workshop.build(&mutant.file, &mutant.diff)? {
-                Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
-                    Fate::Survived if mutant.stage().is_none() => {
-                        judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
-                    }
-                    fate => fate,
+            let fate = match first_failure(workshop, mutant)? {
+                Some(fate) => fate,
+                None => match workshop.build(&mutant.file, &mutant.diff)? {
+                    Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                        Fate::Survived if mutant.stage().is_none() => {
+                            judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                        }
+                        fate => fate,
+                    },
+                    Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+                    Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
                 },
-                Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-                Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
             };
             lock().write(mutant, fate)?;
         }
@@ -162,32 +165,32 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     Ok(())
 }
 
-/// Tests a change: for an exercise by the checks of its stage, then by pictures, then by the other stages; for other files
-/// by pictures.
+/// Tests a change of an exercise by the checks of its stage. They need no frames, without which the build is much quicker.
+fn first_failure(workshop: &Workshop, mutant: &Mutant) -> Result<Option<Fate>> {
+    let Some(own) = mutant.stage() else { return Ok(None) };
+    Ok(match workshop.with(Need::Checks).build(&mutant.file, &mutant.diff)? {
+        Built::Worker(worker) => failed_check(&worker, |stage| stage == own).map(Fate::ByItsStage),
+        Built::DoesNotCompile(_) => Some(Fate::DoesNotCompile),
+        Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
+    })
+}
+
+/// Tests a change that passes the checks of its stage by pictures, then by the other stages.
 fn judge(mutant: &Mutant, worker: &Path, scenes: &Scenes, expected: &[Shown]) -> Fate {
-    let own = mutant.stage();
+    let shown = Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE));
+    if let Some(scene) = scenes.first_difference(&shown, expected) {
+        return Fate::ByPicture(scene);
+    }
+    let elsewhere = mutant.stage().and_then(|own| failed_check(worker, |stage| stage != own));
+    elsewhere.map_or(Fate::Survived, Fate::ByAnotherStage)
+}
+
+/// Returns the first check of the `wanted` stages that the worker fails.
+fn failed_check(worker: &Path, wanted: impl Fn(u8) -> bool) -> Option<String> {
     let source = Source { which: Which::Solutions, program: worker.to_owned() };
-    let by_checks = |wanted: &dyn Fn(u8) -> bool| {
-        let mut checks =
-            STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());
-        let failed = |check: &&Check| !checks::passes(check, &source.fresh(), 0);
-        checks.find(failed).map(|check| match Some(check.stage) == own {
-            true => Fate::ByItsStage(check.name.into()),
-            false => Fate::ByAnotherStage(check.name.into()),
-        })
-    };
-    let by_picture = || {
-        scenes
-            .first_difference(&Door(Worker::hasty(worker.to_owned(), CALL_PATIENCE)), expected)
-            .map(Fate::ByPicture)
-    };
-    let noticed = match own {
-        Some(own) => {
-            by_checks(&|stage| stage == own).or_else(by_picture).or_else(|| by_checks(&|stage| stage != own))
-        }
-        None => by_picture(),
-    };
-    noticed.unwrap_or(Fate::Survived)
+    let mut checks = STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter());
+    let failed = |check: &&Check| !checks::passes(check, &source.fresh(), 0);
+    checks.find(failed).map(|check| check.name.into())
 }
 
 /// Tests a change with each gap that changes a picture. The code that leaves out parts of a picture runs only while a
