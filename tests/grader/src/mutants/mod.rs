@@ -140,24 +140,34 @@ fn try_all(root: &Path, mutants: &[Mutant], journal: &mut Journal, jobs: usize) 
     };
     let journal = Mutex::new(journal);
     let lock = || journal.lock().unwrap_or_else(|broken| broken.into_inner());
+    // Test all changes by the checks of their stage first, which is quick and notices most of them.
     queue::run(&workshops, mutants, |workshop, mutant| {
         bar.set_message(mutant.file.clone());
-        if lock().of(mutant).is_none() {
-            let fate = match first_failure(workshop, mutant)? {
-                Some(fate) => fate,
-                None => match workshop.build(&mutant.file, &mutant.diff)? {
-                    Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
-                        Fate::Survived if mutant.stage().is_none() => {
-                            judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
-                        }
-                        fate => fate,
-                    },
-                    Built::DoesNotCompile(_) => Fate::DoesNotCompile,
-                    Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
-                },
-            };
+        if lock().of(mutant).is_none()
+            && let Some(fate) = first_failure(workshop, mutant)?
+        {
             lock().write(mutant, fate)?;
         }
+        bar.inc(1);
+        Ok(())
+    })?;
+    // Test the others by everything else.
+    let others: Vec<&Mutant> = mutants.iter().filter(|mutant| lock().of(mutant).is_none()).collect();
+    bar.finish_and_clear();
+    let bar = bar_of_steps(others.len());
+    queue::run(&workshops, &others, |workshop, &mutant| {
+        bar.set_message(mutant.file.clone());
+        let fate = match workshop.build(&mutant.file, &mutant.diff)? {
+            Built::Worker(worker) => match judge(mutant, &worker, &scenes, &expected) {
+                Fate::Survived if mutant.stage().is_none() => {
+                    judge_by_gaps(mutant, workshop, &gaps, &of_gaps)?
+                }
+                fate => fate,
+            },
+            Built::DoesNotCompile(_) => Fate::DoesNotCompile,
+            Built::DoesNotApply(why) => bail!("{mutant}: {why}"),
+        };
+        lock().write(mutant, fate)?;
         bar.inc(1);
         Ok(())
     })?;
