@@ -93,7 +93,8 @@ impl Forge {
             ensure!(!suspects.is_empty(), "the empty exercises do not compile:\n{}", text_of(&ended));
             let verdict = blame::blame(&ended, &suspects);
             if verdict.is_empty() {
-                // The compiler died without a message. Compile each file alone to find the cause.
+                // The compiler died without a message, or its errors lie in the glue. Compile each file alone to find the
+                // cause.
                 for name in suspects {
                     let alone = files.keys().filter(|other| *other != name).chain(replaced.keys());
                     let alone = alone
@@ -103,7 +104,13 @@ impl Forge {
                     let ended = self.compile_exercises(scratch)?;
                     cpu += ended.cpu;
                     if ended.how != How::Exited(0) {
-                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, died(&ended)));
+                        let why = match blame::texts(&ended) {
+                            errors if errors.is_empty() => died(&ended),
+                            errors => format!(
+                                "a function has other arguments or another result than the exercise:\n{errors}"
+                            ),
+                        };
+                        replaced.insert(name.clone(), (Outcome::DoesNotCompile, why));
                     }
                 }
                 ensure!(!replaced.is_empty(), "the compiler ended without a message: {}", died(&ended));

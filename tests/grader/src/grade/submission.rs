@@ -123,7 +123,7 @@ pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
     for path in gathering.others.keys().filter(|path| !path.ends_with("/lib.rs") && *path != "lib.rs") {
         let inside = if folder.is_empty() { path } else { path.trim_start_matches(&format!("{folder}/")) };
         if !modules.contains_key(inside) {
-            let what = "was ignored: no exercise has this name, and `mod` in lib.rs does not name it";
+            let what = "was ignored: no exercise file has this name, and `mod` in lib.rs does not name it";
             gathering.ignored.push(Remark { file: path.clone(), what: what.into() });
         }
     }

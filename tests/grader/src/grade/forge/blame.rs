@@ -12,11 +12,7 @@ type Sign = fn(&Value, &[&String]) -> BTreeSet<String>;
 
 /// Returns the files that cause the errors, each with the messages about it. The map is empty if the messages name no file.
 pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
-    let errors: Vec<Value> = String::from_utf8_lossy(&ended.stderr)
-        .lines()
-        .filter_map(|line| serde_json::from_str::<Value>(line).ok())
-        .filter(|message| message["level"] == "error" && message["spans"].is_array())
-        .collect();
+    let errors = errors(ended);
     // Try the most reliable sign first: the place of the error, then the places it points to, then the modules it names. If
     // an exercise is missing or has other arguments, the error lies in the glue that calls it.
     let signs: [Sign; 3] = [primary, pointed_to, named];
@@ -36,6 +32,19 @@ pub fn blame(ended: &Ended, suspects: &[&String]) -> BTreeMap<String, String> {
         }
     }
     BTreeMap::new()
+}
+
+/// Returns the texts of all errors, for a file that no error names. The list is empty if the compiler died.
+pub fn texts(ended: &Ended) -> String {
+    let errors = errors(ended);
+    let text = errors.iter().filter_map(|error| error["rendered"].as_str()).collect::<String>();
+    text.chars().take(SHOWN).collect()
+}
+
+fn errors(ended: &Ended) -> Vec<Value> {
+    let messages = String::from_utf8_lossy(&ended.stderr);
+    let messages = messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok());
+    messages.filter(|message| message["level"] == "error" && message["spans"].is_array()).collect()
 }
 
 fn primary(error: &Value, suspects: &[&String]) -> BTreeSet<String> {

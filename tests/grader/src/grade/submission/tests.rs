@@ -49,7 +49,7 @@ fn a_folder_gives_the_files_that_students_write_and_says_what_it_keeps_back() {
     assert!(remark(&taken, "ray/build.rs").contains("without cargo"));
     assert!(remark(&taken, "ray/.cargo/config.toml").contains("cargo"));
     assert!(remark(&taken, "ray/tests/golden/a.snap").contains("own checks"));
-    assert!(remark(&taken, "ray/exercises/src/helper.rs").contains("no exercise has this name"));
+    assert!(remark(&taken, "ray/exercises/src/helper.rs").contains("no exercise file has this name"));
     assert_eq!(remark(&taken, "ray/notes.txt"), "");
 }
 
