@@ -106,8 +106,8 @@ impl Judge {
     /// of the files in `replaced` get the outcome given there.
     ///
     /// No check may depend on an earlier one. If the program `may_remember` earlier questions, each check gets new
-    /// processes. Public and hidden inputs go to different processes in any case: whatever a process says about public
-    /// inputs, it has not seen hidden ones.
+    /// processes. Public and hidden inputs always go to different processes, so that no message about public inputs
+    /// depends on hidden ones.
     pub fn judge(
         &self,
         worker: &Path,
@@ -146,7 +146,7 @@ impl Judge {
         let proven = self.proven(&judged);
         let results = self.checks.iter().zip(judged).map(|(put, answered)| {
             let others = self.missing_proofs(put, &proven);
-            // Right answers to inputs that everybody knows can be a table.
+            // Right answers to known inputs can be a table.
             if answered.outcome == Outcome::Passed && !put.varies && !others.is_empty() {
                 let message = unproven_message(put.check, &others);
                 return result(put.check, Answered::new(Outcome::Unproven, message));
@@ -269,7 +269,7 @@ fn hidden_message(check: &Check) -> String {
 
 fn unproven_message(check: &Check, others: &[&str]) -> String {
     format!(
-        "{}  right, but its inputs are the same for everybody: it counts when one of these checks of the same function \
+        "{}  right, but its inputs are fixed: it counts when one of these checks of the same function \
          passes: {}\n",
         rubric::entry(check.stage, check.name).header(),
         others.join(", ")

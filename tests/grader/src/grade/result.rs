@@ -14,7 +14,7 @@ pub enum Outcome {
     Wrong,
     /// The answers are right on the public inputs, and one is wrong on the hidden inputs.
     WrongOnHidden,
-    /// The answers are right, but on inputs that everybody knows, and no check of the same function with hidden inputs
+    /// The answers are right, but on known inputs, and no check of the same function with hidden inputs
     /// passed.
     Unproven,
     /// There was no answer in time.

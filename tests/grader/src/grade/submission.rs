@@ -1,5 +1,5 @@
-//! Reads the stage files of a submission as text. Other files are not read, and links are not followed. A remark names
-//! ignored files that a student may wonder about.
+//! Reads the stage files of a submission as text, and the modules that belong to them. Links are not followed. A remark names
+//! renamed and ignored files that a student may wonder about.
 
 use super::result::Remark;
 use sha2::{Digest, Sha256};
@@ -23,7 +23,8 @@ const MOST_ENTRIES: usize = 50_000;
 /// only if no exercise is found elsewhere, because any folder may have such a name.
 const PASSED_OVER: [&str; 4] = ["target", ".git", "solutions", "node_modules"];
 
-/// Most Rust files beside the exercises that are read.
+/// Most Rust files beside the exercises that are read: any of them may be a module. A working copy of the whole kit without
+/// its folders `target` and `tests` has about 120.
 const MOST_OTHERS: usize = 256;
 
 /// Most remarks about ignored files. A working copy may have thousands of such files.
@@ -107,9 +108,9 @@ pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
     }
     // Keep the best file of each name, and the modules beside them.
     let mut taken = Taken::default();
-    let folder_of = |path: &str| path.rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
-    let folder =
-        gathering.best.values().map(|candidate| folder_of(&candidate.path)).next().unwrap_or_default();
+    let likeliest = gathering.best.values().min_by_key(|candidate| candidate.rank);
+    let folder = likeliest.and_then(|candidate| Some(candidate.path.rsplit_once('/')?.0.to_owned()));
+    let folder = folder.unwrap_or_default();
     for (name, candidate) in gathering.best {
         match candidate.text {
             Ok((text, remarks)) => {
@@ -121,10 +122,12 @@ pub fn take(path: &Path, wanted: &[String], expected: &[String]) -> Taken {
     }
     let modules = helpers::modules(&gathering.others, &folder, wanted);
     for path in gathering.others.keys().filter(|path| !path.ends_with("/lib.rs") && *path != "lib.rs") {
-        let inside = if folder.is_empty() { path } else { path.trim_start_matches(&format!("{folder}/")) };
-        if !modules.contains_key(inside) {
+        let remark = |what: &str| Remark { file: path.clone(), what: what.into() };
+        if helpers::inside(path, &folder).is_some_and(|inside| modules.contains_key(inside)) {
+            taken.remarks.push(remark("was taken as a module"));
+        } else {
             let what = "was ignored: no exercise file has this name, and `mod` in lib.rs does not name it";
-            gathering.ignored.push(Remark { file: path.clone(), what: what.into() });
+            gathering.ignored.push(remark(what));
         }
     }
     taken.files.extend(modules);
@@ -251,9 +254,10 @@ impl Gathering<'_> {
             return;
         }
         // Otherwise keep it, and ignore the earlier one.
-        let text = content.map(|(text, remark)| match is_exact {
-            true => (text, remark),
-            false => (text, Some(format!("was read as {exercise}"))),
+        let text = content.map(|(text, changed)| {
+            let renamed = (!is_exact).then(|| format!("was read as {exercise}"));
+            let remarks: Vec<String> = renamed.into_iter().chain(changed).collect();
+            (text, (!remarks.is_empty()).then(|| remarks.join("; ")))
         });
         let candidate = Candidate { path: path.to_owned(), rank, text };
         if let Some(other) = self.best.insert(exercise.to_owned(), candidate) {

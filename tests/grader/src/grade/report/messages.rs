@@ -46,7 +46,7 @@ fn in_a_sentence(outcome: Outcome) -> &'static str {
         Outcome::Wrong => "the answer is wrong",
         Outcome::WrongOnHidden => "wrong on hidden inputs",
         Outcome::Unproven => {
-            "right on inputs that everybody knows; it counts when a check with hidden inputs passes"
+            "right on known inputs; it counts when a check with hidden inputs passes"
         }
         Outcome::TooLong => "no answer in time: look for a loop or a recursion that never ends",
         Outcome::Crashed => {

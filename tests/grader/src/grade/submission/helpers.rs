@@ -13,12 +13,8 @@ pub fn modules(
     folder: &str,
     wanted: &[String],
 ) -> BTreeMap<String, String> {
-    let inside = |path: &str| match folder {
-        "" => Some(path.to_owned()),
-        _ => Some(path.strip_prefix(folder)?.strip_prefix('/')?.to_owned()),
-    };
-    let inside: BTreeMap<String, &String> =
-        files.iter().filter_map(|(path, text)| Some((inside(path)?, text))).collect();
+    let inside: BTreeMap<&str, &String> =
+        files.iter().filter_map(|(path, text)| Some((inside(path, folder)?, text))).collect();
     let declared = inside.get("lib.rs").map_or_else(Vec::new, |text| declarations(text));
     let is_module = |path: &str| {
         let top = path.split('/').next().unwrap_or(path);
@@ -27,7 +23,15 @@ pub fn modules(
         of_exercise || declared.contains(&stem)
     };
     let taken = inside.into_iter().filter(|(path, _)| is_module(path) && is_plain(path)).take(MOST);
-    taken.map(|(path, text)| (path, text.clone())).collect()
+    taken.map(|(path, text)| (path.to_owned(), text.clone())).collect()
+}
+
+/// Returns the rest of a path in `folder`; the empty name stands for the top of the submission.
+pub fn inside<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
+    match folder {
+        "" => Some(path),
+        _ => path.strip_prefix(folder)?.strip_prefix('/'),
+    }
 }
 
 /// Returns the modules that a file declares by `mod name;`.
