@@ -6,10 +6,13 @@
 //! elsewhere requests come through standard input and replies leave through standard output.
 
 use crate::frame::Watch;
+use crate::kit::questions::{self, Question, Response};
 use crate::kit::{Answer, KitError, Request, StudentKit, kit_error};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::cell::RefCell;
 use std::io::{self, Read, Write};
-use std::sync::Mutex;
+use std::rc::Rc;
+use std::sync::{Arc, Mutex};
 
 /// The longest message that [`receive`] accepts, in bytes (1 GiB).
 pub const LONGEST_MESSAGE: usize = 1 << 30;
@@ -18,7 +21,7 @@ pub const LONGEST_MESSAGE: usize = 1 << 30;
 /// at a few hundred bytes per call.
 pub const STACK_BYTES: usize = 64 << 20;
 
-/// A message from a worker: progress, an answer, or the reason why there is no answer.
+/// A message from a worker: progress, a question, an answer, or the reason why there is no answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
     /// The progress of a frame; the answer follows later.
@@ -35,6 +38,8 @@ pub enum Reply {
         /// The number of all primitives.
         total: u64,
     },
+    /// A question about a [withheld](Request::Withheld) request. The worker waits for a [`Response`].
+    Question(Question),
     /// The answer to the request.
     Answer(Box<Answer>),
     /// The reason why there is no answer.
@@ -125,15 +130,32 @@ pub fn serve_with(answer: &Answering<'_>) {
 /// A function that answers a request and reports its progress.
 pub type Answering<'a> = dyn Fn(&Request, &dyn Watch) -> Answer + Sync + 'a;
 
-fn answer_all(answer: &Answering<'_>, mut reader: impl Read, writer: impl Write + Send) -> io::Result<()> {
-    let writer = Mutex::new(writer);
-    let say = |reply: &Reply| match writer.lock() {
-        Ok(mut writer) => send(&mut *writer, reply),
-        Err(_) => Err(io::Error::other("a thread ended while it was writing")),
+fn answer_all(
+    answer: &Answering<'_>,
+    reader: impl Read + 'static,
+    writer: impl Write + Send + 'static,
+) -> io::Result<()> {
+    let (reader, writer) = (Rc::new(RefCell::new(reader)), Arc::new(Mutex::new(writer)));
+    let say = {
+        let writer = writer.clone();
+        move |reply: &Reply| match writer.lock() {
+            Ok(mut writer) => send(&mut *writer, reply),
+            Err(_) => Err(io::Error::other("a thread ended while it was writing")),
+        }
+    };
+    let ask: questions::Ask = {
+        let (say, reader) = (say.clone(), reader.clone());
+        Rc::new(move |question: &Question| -> io::Result<Response> {
+            say(&Reply::Question(question.clone()))?;
+            receive(&mut *reader.borrow_mut())
+        })
     };
     loop {
-        let request: Request = receive(&mut reader)?;
-        let reply = match kit_error::catch(|| answer(&request, &Relay(&say))) {
+        let request: Request = receive(&mut *reader.borrow_mut())?;
+        let reply = match kit_error::catch(|| match &request {
+            Request::Withheld(request) => questions::asking(ask.clone(), || answer(request, &Relay(&say))),
+            request => answer(request, &Relay(&say)),
+        }) {
             Ok(answer) => Reply::Answer(Box::new(answer)),
             Err(error) => Reply::KitError(error),
         };
@@ -156,7 +178,7 @@ impl Watch for Relay<'_> {
 }
 
 #[cfg(unix)]
-fn pipes() -> io::Result<(impl Read, impl Write + Send)> {
+fn pipes() -> io::Result<(impl Read + 'static, impl Write + Send + 'static)> {
     use std::os::fd::AsFd;
     use std::os::unix::net::UnixStream;
     let socket = UnixStream::from(io::stdin().as_fd().try_clone_to_owned()?);
@@ -166,7 +188,7 @@ fn pipes() -> io::Result<(impl Read, impl Write + Send)> {
 }
 
 #[cfg(not(unix))]
-fn pipes() -> io::Result<(impl Read, impl Write + Send)> {
+fn pipes() -> io::Result<(impl Read + 'static, impl Write + Send + 'static)> {
     Ok((io::stdin(), io::stdout()))
 }
 

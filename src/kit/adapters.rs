@@ -54,7 +54,7 @@ pub(super) fn look<S>(
 ) -> CellsAnswer {
     let mut probe = CellsProbe::new(&query.hits);
     let hit = find(&mut probe);
-    CellsAnswer { hit, ..probe.answer }
+    probe.finish(hit)
 }
 
 /// Divides a copy of `primitives` by `split`; returns their new order and the index at which the right side

@@ -109,6 +109,9 @@ macro_rules! door {
             Outlines(Box<RenderJob>, u32),
             /// Asks for the first hit of each ray in a scene.
             FirstHits(Box<RenderJob>, Vec<Ray>),
+            /// The request in the box, whose tables stay with the judge: its probes ask
+            /// [questions](crate::kit::questions).
+            Withheld(Box<Request>),
         }
 
         /// The answer to a [`Request`] as a message: one answer per query, in the same order.
@@ -138,6 +141,7 @@ macro_rules! door {
                     Request::Trace(job, x, y) => Answer::Trace(kit.trace(job, *x, *y)),
                     Request::Outlines(job, depth) => Answer::Outlines(kit.outlines(job, *depth)),
                     Request::FirstHits(job, rays) => Answer::FirstHits(kit.first_hits(job, rays)),
+                    Request::Withheld(request) => request.answer(kit, watch),
                 }
             }
         }

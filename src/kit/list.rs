@@ -233,15 +233,11 @@ macro_rules! student_functions {
                 ) -> Vec3
                     = stage4_shading::shade;
                 |q: ShadeQuery| -> ShadeAnswer {
-                    let (mut traced, mut rays) = (Vec::new(), Vec::new());
-                    let visible = |light: usize, ray: &Ray| {
-                        traced.push(light);
-                        rays.push(*ray);
-                        q.visible[light]
-                    };
+                    let mut shadows = ShadowProbe::new(q);
+                    let visible = |light: usize, ray: &Ray| shadows.visible(light, ray);
                     let color =
                         F::shade(&q.surface, q.to_viewer, &q.material, q.ambient, &q.lights, visible);
-                    ShadeAnswer { color, traced, rays }
+                    shadows.finish(color)
                 }
                 /// The byte `0..=255` for a component of linear light with gamma 2, rounded to nearest. Input
                 /// is clamped to `0..=1`.
@@ -562,7 +558,7 @@ macro_rules! student_functions {
                     let mut probe = CellsProbe::new(&q.hits);
                     let search = |probe: &mut CellsProbe<'_>, ray: &Ray| q.search(probe, ray);
                     let hit = F::cached_search(q.last, &mut probe, &q.ray, search);
-                    CellsAnswer { hit, ..probe.answer }
+                    probe.finish(hit)
                 }
                 /// The closest hit of each ray, by a traversal of the hierarchy with several rays at once;
                 /// `None` for a ray that hits nothing.

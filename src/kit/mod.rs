@@ -13,6 +13,7 @@ mod functions;
 pub mod kit_error;
 mod list;
 mod partitions;
+pub mod questions;
 mod recursion;
 mod scene_graph;
 mod shading;
@@ -49,7 +50,7 @@ pub use scene_graph::{
     BoundingSphereQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery,
     SolidHit, SolidQuery,
 };
-pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowQuery, Surface, TermQuery};
+pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
 pub use stability::OffsetQuery;
 pub use table::{

@@ -5,6 +5,8 @@ use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, PrimitiveHit, Probe};
 use crate::count::{Counts, Event, Tally};
 use crate::kit::Table;
+use crate::kit::questions::Asker;
+use crate::kit::table::Known;
 use crate::partition::{Cells, KdHeuristics};
 use crate::ray::Ray;
 use glam::{UVec3, Vec3};
@@ -106,6 +108,9 @@ impl CachedQuery {
     ///
     /// If `hits` is shorter than `entries`.
     pub fn search(&self, probe: &mut CellsProbe<'_>, ray: &Ray) -> Option<PrimitiveHit> {
+        if let Some(asker) = &mut probe.asker {
+            return asker.search(ray);
+        }
         for (primitive, _) in (0..).zip(&self.entries).filter(|(_, entry)| **entry < ray.t_max) {
             probe.visit(primitive);
             probe.hit(primitive, ray);
@@ -147,6 +152,8 @@ pub struct CellsProbe<'a> {
     hits: &'a [f32],
     /// The calls so far; its `hit` remains `None`.
     pub answer: CellsAnswer,
+    /// Asks the judge, which has the table.
+    asker: Option<Asker>,
 }
 
 /// A search with more visits does not end by itself.
@@ -156,7 +163,15 @@ impl<'a> CellsProbe<'a> {
     /// A probe that answers from `hits`: for each primitive the `t` of its nearest hit, `inf` if there is
     /// none.
     pub fn new(hits: &'a [f32]) -> Self {
-        CellsProbe { hits, answer: CellsAnswer::default() }
+        CellsProbe { hits, answer: CellsAnswer::default(), asker: Asker::for_next_query() }
+    }
+
+    /// The answer of a search that returned `hit`, with the calls that it made.
+    pub fn finish(mut self, hit: Option<PrimitiveHit>) -> CellsAnswer {
+        if let Some(asker) = &mut self.asker {
+            asker.end();
+        }
+        CellsAnswer { hit, ..self.answer }
     }
 }
 
@@ -165,9 +180,15 @@ impl Cells for CellsProbe<'_> {
     fn visit(&mut self, node: u32) {
         assert!(self.answer.visits.len() < MOST_VISITS, "the search does not end: does every step advance?");
         self.answer.visits.push(node);
+        if let Some(asker) = &mut self.asker {
+            asker.note_visit(node);
+        }
     }
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        if let Some(asker) = &mut self.asker {
+            return asker.hit(primitive, ray);
+        }
         self.answer.tests.push(primitive);
         let t = self.hits[primitive as usize];
         ray.contains(t).then_some(t)
@@ -175,7 +196,8 @@ impl Cells for CellsProbe<'_> {
 }
 
 /// Answers a packet search from the tables of several rays, and counts its calls. A ray is recognised by its
-/// `origin`, `direction` and `t_min`.
+/// `origin`, `direction` and `t_min`. As in [`TableProbe`](super::TableProbe), a call for a node or a primitive
+/// opens the nodes above it.
 ///
 /// # Panics
 ///
@@ -185,12 +207,24 @@ pub struct PacketProbe<'a> {
     query: &'a PacketQuery,
     /// The calls so far; its `hits` remain empty.
     pub answer: PacketAnswer,
+    /// The nodes that have been opened.
+    known: Known,
+    /// Asks the judge, which has the tables.
+    asker: Option<Asker>,
 }
 
 impl<'a> PacketProbe<'a> {
     /// A probe that answers from the hierarchy and the tables of `query`.
     pub fn new(query: &'a PacketQuery) -> Self {
-        PacketProbe { query, answer: PacketAnswer::default() }
+        let known = Known::new(&query.bvh);
+        PacketProbe { query, answer: PacketAnswer::default(), known, asker: Asker::for_next_query() }
+    }
+
+    fn note_visits(&mut self, nodes: impl IntoIterator<Item = u32>) {
+        for node in nodes {
+            self.answer.counts.note(Event::NodeVisit);
+            self.answer.opened.push(node);
+        }
     }
 
     #[track_caller]
@@ -206,20 +240,34 @@ impl<'a> PacketProbe<'a> {
 
 impl Probe for PacketProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
-        self.answer.counts.note(Event::NodeVisit);
-        self.answer.opened.push(node);
+        if let Some(asker) = &mut self.asker {
+            return asker.open(node);
+        }
+        let above = self.known.open_above(node);
+        self.known.open(node);
+        self.note_visits(above.into_iter().chain([node]));
         self.query.bvh.nodes[node as usize].contents
     }
 
     #[track_caller]
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        if let Some(asker) = &mut self.asker {
+            return asker.enter(node, ray);
+        }
         self.answer.counts.note(Event::BoxTest);
+        let above = self.known.open_above(node);
+        self.note_visits(above);
         self.table(ray).enter(node, ray)
     }
 
     #[track_caller]
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        if let Some(asker) = &mut self.asker {
+            return asker.hit(primitive, ray);
+        }
         self.answer.counts.note(Event::PrimitiveTest);
+        let above = self.known.open_leaf_of(primitive);
+        self.note_visits(above);
         self.table(ray).hit(primitive, ray)
     }
 }

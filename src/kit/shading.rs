@@ -1,5 +1,6 @@
 //! Stage 4, shading and shadows: queries and answers.
 
+use crate::kit::questions::Asker;
 use crate::material::Material;
 use crate::ray::Ray;
 use glam::Vec3;
@@ -78,4 +79,40 @@ pub struct ShadeAnswer {
     pub traced: Vec<usize>,
     /// The shadow rays that were traced, in the same order.
     pub rays: Vec<Ray>,
+}
+
+/// Answers the shadow rays of a shading from the query, and records them.
+pub struct ShadowProbe<'a> {
+    query: &'a ShadeQuery,
+    traced: Vec<usize>,
+    rays: Vec<Ray>,
+    /// Asks the judge, which knows the visible lights.
+    asker: Option<Asker>,
+}
+
+impl<'a> ShadowProbe<'a> {
+    /// A probe that answers from `query.visible`.
+    pub fn new(query: &'a ShadeQuery) -> Self {
+        ShadowProbe { query, traced: Vec::new(), rays: Vec::new(), asker: Asker::for_next_query() }
+    }
+
+    /// Whether the shadow ray `ray` to the light with the index `light` is not occluded.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such light.
+    #[track_caller]
+    pub fn visible(&mut self, light: usize, ray: &Ray) -> bool {
+        if let Some(asker) = &mut self.asker {
+            return asker.visible(light, ray);
+        }
+        self.traced.push(light);
+        self.rays.push(*ray);
+        self.query.visible[light]
+    }
+
+    /// The answer of a shading that returned `color`, with the shadow rays that it traced.
+    pub fn finish(self, color: Vec3) -> ShadeAnswer {
+        ShadeAnswer { color, traced: self.traced, rays: self.rays }
+    }
 }

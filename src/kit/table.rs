@@ -4,6 +4,7 @@
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, PrimitiveRef, Probe};
 use crate::count::{Counts, Event, Tally};
+use crate::kit::questions::Asker;
 use crate::ray::Ray;
 use crate::scene::Split;
 use serde::{Deserialize, Serialize};
@@ -79,6 +80,14 @@ impl Table {
         let t = self.primitives[primitive as usize];
         ray.contains(t).then_some(t)
     }
+
+    /// A table of the same size in which every answer is NaN, for a worker that must ask the judge.
+    pub fn withheld(&self) -> Table {
+        Table {
+            boxes: vec![(f32::NAN, f32::NAN); self.boxes.len()],
+            primitives: vec![f32::NAN; self.primitives.len()],
+        }
+    }
 }
 
 /// Asks for a hit in `bvh`, with a table that has the answer to every call of the search. The answer is a
@@ -107,6 +116,9 @@ pub struct SearchAnswer {
 
 /// Answers a search from a [`Table`] and counts its calls.
 ///
+/// A search learns of a node from its parent and of a primitive from its leaf. A call for one whose parent or
+/// leaf has not been opened counts a visit of each node above it that has not been opened.
+///
 /// # Panics
 ///
 /// A call with a node or primitive that does not exist panics.
@@ -121,18 +133,31 @@ pub struct TableProbe<'a> {
     pub tests_after_hit: u64,
     /// The numbers of the primitives that were tested, in order.
     pub asked: Vec<u32>,
+    /// The nodes that have been opened.
+    known: Known,
+    /// Asks the judge, which has the table.
+    asker: Option<Asker>,
 }
 
 impl<'a> TableProbe<'a> {
     /// A probe that answers from the hierarchy and the table of `query`.
     pub fn new(query: &'a SearchQuery) -> Self {
-        TableProbe { nodes: &query.bvh.nodes, ..TableProbe::without_hierarchy(&query.table) }
+        let known = Known::new(&query.bvh);
+        TableProbe { nodes: &query.bvh.nodes, known, ..TableProbe::without_hierarchy(&query.table) }
     }
 
     /// A probe without nodes, for a search that keeps its nodes itself: `open` panics.
     pub fn without_hierarchy(table: &'a Table) -> Self {
-        let counts = Counts::default();
-        TableProbe { nodes: &[], table, counts, last_hit: None, tests_after_hit: 0, asked: Vec::new() }
+        TableProbe {
+            nodes: &[],
+            table,
+            counts: Counts::default(),
+            last_hit: None,
+            tests_after_hit: 0,
+            asked: Vec::new(),
+            known: Known::default(),
+            asker: Asker::for_next_query(),
+        }
     }
 
     /// The answer of a search that returned `hit`, with the calls that it made.
@@ -143,21 +168,94 @@ impl<'a> TableProbe<'a> {
 
 impl Probe for TableProbe<'_> {
     fn open(&mut self, node: u32) -> Contents {
-        self.counts.note(Event::NodeVisit);
+        if let Some(asker) = &mut self.asker {
+            return asker.open(node);
+        }
+        self.counts.node_visits += 1 + self.known.open_above(node).len() as u64;
+        self.known.open(node);
         self.nodes[node as usize].contents
     }
 
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
+        if let Some(asker) = &mut self.asker {
+            return asker.enter(node, ray);
+        }
         self.counts.note(Event::BoxTest);
+        self.counts.node_visits += self.known.open_above(node).len() as u64;
         self.table.enter(node, ray)
     }
 
     fn hit(&mut self, primitive: u32, ray: &Ray) -> Option<f32> {
+        if let Some(asker) = &mut self.asker {
+            return asker.hit(primitive, ray);
+        }
         self.counts.note(Event::PrimitiveTest);
+        self.counts.node_visits += self.known.open_leaf_of(primitive).len() as u64;
         self.asked.push(primitive);
         self.tests_after_hit += u64::from(self.last_hit.is_some());
         let t = self.table.hit(primitive, ray)?;
         self.last_hit = Some(PrimitiveHit { t, primitive });
         Some(t)
+    }
+}
+
+/// The nodes of a hierarchy that a search has opened.
+#[derive(Default)]
+pub(super) struct Known {
+    /// For each node its parent; the root has none.
+    parent: Vec<Option<u32>>,
+    /// For each primitive the leaf that contains it.
+    leaf: Vec<Option<u32>>,
+    is_open: Vec<bool>,
+}
+
+impl Known {
+    /// No node of `bvh` has been opened yet.
+    ///
+    /// # Panics
+    ///
+    /// If a node refers to a node or a primitive that does not exist.
+    pub(super) fn new(bvh: &Bvh) -> Known {
+        let mut parent = vec![None; bvh.nodes.len()];
+        let mut leaf = vec![None; bvh.order.len()];
+        for (index, node) in (0..).zip(&bvh.nodes) {
+            let (above, below) = match node.contents {
+                Contents::Inner { left, right } => (&mut parent, &[left, right][..]),
+                Contents::Leaf { first, count } => (&mut leaf, bvh.primitives(first, count)),
+            };
+            for entry in below {
+                above[*entry as usize] = Some(index);
+            }
+        }
+        Known { is_open: vec![false; bvh.nodes.len()], parent, leaf }
+    }
+
+    /// Opens `node`. Its index may be out of range.
+    pub(super) fn open(&mut self, node: u32) {
+        if let Some(is_open) = self.is_open.get_mut(node as usize) {
+            *is_open = true;
+        }
+    }
+
+    /// Opens all nodes above `node`; returns those that were not open.
+    pub(super) fn open_above(&mut self, node: u32) -> Vec<u32> {
+        let mut opened = Vec::new();
+        let mut above = self.parent.get(node as usize).copied().flatten();
+        while let Some(node) = above.filter(|node| !self.is_open[*node as usize]) {
+            self.open(node);
+            opened.push(node);
+            above = self.parent[node as usize];
+        }
+        opened
+    }
+
+    /// Opens the leaf of `primitive` and all nodes above it; returns those that were not open.
+    pub(super) fn open_leaf_of(&mut self, primitive: u32) -> Vec<u32> {
+        let leaf = self.leaf.get(primitive as usize).copied().flatten();
+        let Some(leaf) = leaf.filter(|leaf| !self.is_open[*leaf as usize]) else { return Vec::new() };
+        let mut opened = self.open_above(leaf);
+        self.open(leaf);
+        opened.push(leaf);
+        opened
     }
 }

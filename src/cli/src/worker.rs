@@ -5,6 +5,7 @@
 
 mod autopsy;
 mod watchdog;
+mod withheld;
 
 pub use autopsy::last_words;
 use autopsy::{cause_of_death, keep_start, shortened, wait_briefly};
@@ -18,6 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use watchdog::Watchdog;
+use withheld::Withheld;
 
 /// The longest time for a call of a check. The slowest needs a tenth of a second.
 pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
@@ -63,6 +65,8 @@ pub struct Worker {
     call_patience: Duration,
     frame_patience: Duration,
     asks_again: AtomicBool,
+    /// Whether the tables of searches stay here, so that the worker must ask for each entry.
+    withholds: AtomicBool,
     process: Mutex<Option<Process>>,
     /// The processor time of the processes that have ended.
     ended: Mutex<Duration>,
@@ -77,6 +81,7 @@ impl Worker {
             call_patience,
             frame_patience: FRAME_PATIENCE,
             asks_again: AtomicBool::new(false),
+            withholds: AtomicBool::new(false),
             process: Mutex::new(None),
             ended: Mutex::default(),
         }
@@ -101,6 +106,12 @@ impl Worker {
         }
     }
 
+    /// From now on keeps the tables of searches here, or no longer. The worker then asks for each entry, and the counts in an
+    /// answer are those of the questions. A question takes about 10 µs.
+    pub fn withhold_tables(&self, withholds: bool) {
+        self.withholds.store(withholds, Ordering::Relaxed);
+    }
+
     /// The processor time that the processes of untrusted code have used so far. It is 0 for trusted code.
     pub fn cpu_time(&self) -> Duration {
         let running = lock(&self.process).as_ref().map_or(Duration::ZERO, Process::cpu_time);
@@ -114,7 +125,15 @@ impl Worker {
             Ok(process) => process,
             Err(error) => return Err(KitError::Crashed { how: format!("it cannot be started: {error}") }),
         };
-        match process.ask(request, watch, patience) {
+        let blank = self.withholds.load(Ordering::Relaxed).then(|| withheld::withheld(request)).flatten();
+        let mut tables = blank.as_ref().map(|_| Withheld::of(request));
+        match process.ask(blank.as_ref().unwrap_or(request), tables.as_mut(), watch, patience) {
+            // A process that answers has neither ended nor exceeded its time.
+            Ok(Some(Reply::KitError(KitError::Crashed { .. } | KitError::TimedOut { .. })))
+                if self.launcher.is_some() =>
+            {
+                Err(KitError::Malformed { what: "an end that did not happen".into() })
+            }
             Ok(Some(Reply::KitError(error))) => {
                 *slot = Some(process);
                 Err(shortened(error))
@@ -123,8 +142,11 @@ impl Worker {
             Ok(Some(Reply::Answer(answer))) if matches!(*answer, Answer::Render(None)) => {
                 Err(KitError::Malformed { what: "no picture".into() })
             }
-            Ok(Some(Reply::Answer(answer))) => {
+            Ok(Some(Reply::Answer(mut answer))) => {
                 *slot = Some(process);
+                if let Some(tables) = tables {
+                    tables.correct(&mut answer);
+                }
                 Ok(*answer)
             }
             Ok(_) => Ok(Answer::Render(None)),
@@ -185,8 +207,14 @@ impl Process {
         self.launcher.as_ref().map_or(Duration::ZERO, |launcher| launcher.cpu_time(lock(&self.child).id()))
     }
 
-    /// The reply to `request`; `None` if `watch` cancelled it.
-    fn ask(&mut self, request: &Request, watch: &dyn Watch, patience: Duration) -> io::Result<Option<Reply>> {
+    /// The reply to `request`; `None` if `watch` cancelled it. Questions are answered from `tables`.
+    fn ask(
+        &mut self,
+        request: &Request,
+        mut tables: Option<&mut Withheld<'_>>,
+        watch: &dyn Watch,
+        patience: Duration,
+    ) -> io::Result<Option<Reply>> {
         let trusted = self.launcher.is_none();
         let longest = if trusted { LONGEST_MESSAGE } else { LONGEST_UNTRUSTED_REPLY };
         // Start the watchdog before writing, because a worker that does not read would block the write forever.
@@ -213,6 +241,12 @@ impl Process {
                         self.watchdog.bark_after(patience);
                     }
                 }
+                Reply::Question(question) => match &mut tables {
+                    Some(tables) => worker::send(&mut self.to_worker, &tables.answer(&question))?,
+                    None => {
+                        return Err(io::Error::other("it asks a question, but its request has all tables"));
+                    }
+                },
                 reply => {
                     self.watchdog.rest();
                     return Ok(Some(reply));

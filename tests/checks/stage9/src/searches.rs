@@ -244,9 +244,9 @@ pub(super) fn agrees(trial: &Trial<'_>, searcher: Searcher) -> CheckResult {
 /// The interval of a ray in each node of a structure: `(node, entry, exit)`, in double precision.
 pub(super) type Parts = Vec<(u32, f64, f64)>;
 
-/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit. `parts` are all
-/// nodes that the ray enters or touches.
-pub(super) fn judge_visits<S>(
+/// Judges the visits of a search that must find a hit: the ray must enter each visited node before its hit, and each tested
+/// primitive must be listed in a visited node. `parts` are all nodes that the ray enters or touches.
+pub(super) fn judge_visits<S: Structure>(
     what: &str,
     query: &CellsQuery<S>,
     parts: &Parts,
@@ -273,6 +273,11 @@ pub(super) fn judge_visits<S>(
     let behind =
         yours.visits.iter().find_map(|&visit| enter(visit).filter(|&t| is_behind(t)).map(|t| (visit, t)));
     let twice = yours.visits.iter().copied().find(|&visit| again(visit));
+    let is_listed =
+        |primitive: &u32| yours.visits.iter().any(|node| query.cells.listed(*node).contains(primitive));
+    // A visit that the ray misses may be to a cell that does not exist.
+    let mut tests = yours.tests.iter().copied().filter(|_| missed.is_none());
+    let unlisted = tests.find(|primitive| !is_listed(primitive));
     let (yours, expected, source) = match (missed, behind, twice) {
         (Some(visit), ..) => (format!("a visit to {visit}"), "none".to_owned(), "the ray misses it"),
         (None, Some((visit, t)), _) => (
@@ -281,7 +286,14 @@ pub(super) fn judge_visits<S>(
             "counted",
         ),
         (None, None, Some(visit)) => (format!("{visit} is visited again"), "once".to_owned(), "counted"),
-        (None, None, None) => return Ok(()),
+        (None, None, None) => match unlisted {
+            Some(primitive) => (
+                format!("a test of primitive {primitive}"),
+                "a visit to a cell that lists it".to_owned(),
+                "counted",
+            ),
+            None => return Ok(()),
+        },
     };
     Err(Broken::with_texts(input(), yours, expected, source).explained_by([
         (missed.is_some(), "you visit a cell that the ray does not enter"),
@@ -290,5 +302,9 @@ pub(super) fn judge_visits<S>(
             "the search goes on behind the best hit: visit the nearest cells first, and stop at a cell that begins behind the hit",
         ),
         (twice.is_some(), "you visit a cell several times"),
+        (
+            unlisted.is_some(),
+            "you test a primitive that no visited cell lists: call `visit` for each cell that the search comes to",
+        ),
     ]))
 }

@@ -1,6 +1,7 @@
 //! The judge: runs the checks against the worker of a submission, over a socket. The judge's process contains no code of the
 //! submission.
 
+use super::counted::Costly;
 use super::result::{CheckResult, Outcome, Picture};
 use super::sanity;
 use crate::grade::report::clean;
@@ -54,6 +55,8 @@ struct Put {
     check: &'static Check,
     /// Whether the hidden inputs differ from the public ones.
     varies: bool,
+    /// Whether it judges the cost of a search, so that the judge counts.
+    counts: bool,
     /// The functions that it calls.
     asks: HashSet<Discriminant<Request>>,
 }
@@ -94,7 +97,9 @@ impl Judge {
             if !passes_hidden {
                 eprintln!("warning: {} of stage {} uses only the public inputs", check.name, check.stage);
             }
-            Ok(Put { check, varies: passes_hidden && known != hidden, asks })
+            let costly: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Costly(reference.clone())));
+            let counts = !matches!(checks::examine(check, &costly, 0), Ok(Ok(())));
+            Ok(Put { check, varies: passes_hidden && known != hidden, counts, asks })
         };
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
@@ -182,6 +187,8 @@ impl Judge {
 
     /// Runs one check with the public inputs.
     fn ask_public(&self, put: &Put, worker: Arc<Worker>) -> Answered {
+        // If the hidden inputs decide, count only there.
+        worker.withhold_tables(put.counts && !put.varies);
         let known = self.examine(put, worker, 0);
         let (outcome, picture) = (outcome(&known), picture(&known));
         match checks::verdict(put.check, known) {
@@ -195,6 +202,7 @@ impl Judge {
 
     /// Runs one check with the hidden inputs. The message quotes nothing, because the worker knows these inputs.
     fn ask_hidden(&self, put: &Put, worker: Arc<Worker>) -> Answered {
+        worker.withhold_tables(put.counts);
         match outcome(&self.examine(put, worker, self.seed)) {
             Outcome::Passed => Answered::new(Outcome::Passed, ""),
             Outcome::Wrong | Outcome::NotWritten => {
@@ -353,3 +361,6 @@ impl Transport for StoppableWorker {
         }
     }
 }
+
+#[cfg(test)]
+mod hostile;

@@ -5,6 +5,7 @@
 //! saves the grade, `report` writes the reports.
 
 pub mod attacks;
+mod counted;
 mod forge;
 mod grader;
 mod judge;

@@ -45,9 +45,7 @@ fn in_a_sentence(outcome: Outcome) -> &'static str {
         Outcome::NotWritten => "not written yet: the function still contains `todo!`",
         Outcome::Wrong => "the answer is wrong",
         Outcome::WrongOnHidden => "wrong on hidden inputs",
-        Outcome::Unproven => {
-            "right on known inputs; it counts when a check with hidden inputs passes"
-        }
+        Outcome::Unproven => "right on known inputs; it counts when a check with hidden inputs passes",
         Outcome::TooLong => "no answer in time: look for a loop or a recursion that never ends",
         Outcome::Crashed => {
             "the program ended before it answered: it crashed, exited, or took too much memory"

@@ -1,0 +1,84 @@
+//! Finds the checks that judge a cost. For these the judge keeps the tables of the searches and counts the questions itself,
+//! because a worker could invent its counts.
+
+use crate::worker::Worker;
+use raykata::count::Counts;
+use raykata::frame::Watch;
+use raykata::kit::{Answer, Request, SearchAnswer, Transport};
+use raykata::ray::Ray;
+use std::sync::Arc;
+
+/// How much larger than the costs of the reference those of [`Costly`] are. No limit of a check is that generous.
+const TIMES: u64 = 20;
+
+/// The reference with the same answers at [`TIMES`] the cost. A check that it fails judges a cost.
+pub(super) struct Costly(pub Arc<Worker>);
+
+impl Transport for Costly {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        let lights = match &request {
+            Request::Shade(queries) => queries.iter().map(|query| query.lights.len()).collect(),
+            _ => Vec::new(),
+        };
+        let mut answer = self.0.call(request, watch);
+        raise_costs(&mut answer, &lights);
+        answer
+    }
+}
+
+fn raise_costs(answer: &mut Answer, lights: &[usize]) {
+    match answer {
+        Answer::BruteForce(answers) | Answer::ClosestHitBoth(answers) | Answer::ClosestHit(answers) => {
+            answers.iter_mut().for_each(raise_search);
+        }
+        Answer::AnyHit(answers) => answers.iter_mut().for_each(|(_, search)| raise_search(search)),
+        Answer::GraphHit(answers) => {
+            for answer in answers {
+                raise_search(&mut answer.search);
+                raise_list(&mut answer.asked);
+            }
+        }
+        Answer::GridSearch(answers)
+        | Answer::OctreeByCells(answers)
+        | Answer::OctreeSearch(answers)
+        | Answer::KdSearch(answers)
+        | Answer::BspSearch(answers)
+        | Answer::CachedSearch(answers) => {
+            for answer in answers {
+                raise_list(&mut answer.visits);
+                raise_list(&mut answer.tests);
+            }
+        }
+        Answer::PacketSearch(answers) => {
+            for answer in answers {
+                raise_list(&mut answer.opened);
+                raise_counts(&mut answer.counts);
+            }
+        }
+        Answer::Shade(answers) => {
+            for (answer, n_lights) in answers.iter_mut().zip(lights) {
+                // Trace a shadow ray to every light, also where it cannot matter.
+                answer.traced.extend(0..*n_lights);
+                let ray = answer.rays.first().copied();
+                let ray = ray.unwrap_or_else(|| Ray::new(glam::Vec3::ZERO, glam::Vec3::X));
+                answer.rays.resize(answer.traced.len(), ray);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn raise_search(answer: &mut SearchAnswer) {
+    raise_counts(&mut answer.counts);
+    answer.tests_after_hit = answer.tests_after_hit * TIMES + 1;
+}
+
+fn raise_counts(counts: &mut Counts) {
+    for count in [&mut counts.node_visits, &mut counts.box_tests, &mut counts.primitive_tests] {
+        *count *= TIMES;
+    }
+}
+
+fn raise_list(calls: &mut Vec<u32>) {
+    *calls = calls.repeat(TIMES as usize);
+}
