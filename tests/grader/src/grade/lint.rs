@@ -1,11 +1,12 @@
 //! The syntax check: before compilation it lists constructs that no exercise needs, each with line and reason.
 //!
 //! It gives early and clear messages but no security. Safe Rust can avoid it, and only the sandbox stops such code. The
-//! check reads tokens instead of syntax trees, so that it also sees the contents of macros. The compiler reports files
-//! that are not valid Rust.
+//! check reads tokens instead of syntax trees, so that it also sees the contents of macros. It leaves out top-level items
+//! under `#[cfg(test)]`, which are not compiled. The compiler reports files that are not valid Rust.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::str::FromStr;
 
 /// A construct that no exercise needs.
@@ -58,7 +59,7 @@ const MACROS: [(&str, &str, &str); 8] = [
 ];
 
 /// Attributes that change the build, by rule.
-const ATTRIBUTES: [(&str, &str, &str); 14] = [
+const ATTRIBUTES: [(&str, &str, &str); 11] = [
     ("include", "path", "an exercise must be complete in its own file"),
     ("linkage", "link", "an exercise must not link libraries"),
     ("linkage", "link_section", "an exercise must not change how programs are linked"),
@@ -74,9 +75,12 @@ const ATTRIBUTES: [(&str, &str, &str); 14] = [
     ),
     ("linkage", "no_std", "an exercise must not change how it is built"),
     ("linkage", "no_main", "an exercise must not change how it is built"),
-    ("linkage", "feature", "exercises are built with a stable compiler"),
-    ("linkage", "unsafe_code", "unsafe code is not part of any exercise"),
-    ("linkage", "long_running_const_eval", "this lint stops constants whose evaluation never ends"),
+];
+
+/// Lints that a file must not switch off, each with the reason. Forbidding them is allowed.
+const LINTS: [(&str, &str); 2] = [
+    ("unsafe_code", "unsafe code is not part of any exercise"),
+    ("long_running_const_eval", "this lint stops constants whose evaluation never ends"),
 ];
 
 /// Checks the text of a file. The findings are sorted by line.
@@ -85,11 +89,71 @@ pub fn read(text: &str) -> Reading {
     let Ok(tokens) = TokenStream::from_str(text) else {
         return Reading { findings: Vec::new(), may_remember: true };
     };
-    let mut findings = Vec::new();
-    look(tokens.clone(), &mut findings);
+    let tokens = compiled(tokens);
+    let mut search = Search { own: declared(tokens.clone()), findings: Vec::new() };
+    search.look(tokens.clone(), false);
+    let mut findings = search.findings;
     findings.sort_by_key(|finding| finding.line);
     findings.dedup();
     Reading { findings, may_remember: keeps(tokens) }
+}
+
+/// Returns the tokens of a file without its items under `#[cfg(test)]`. Only items at the top level are left out: a macro may
+/// give other tokens another meaning.
+fn compiled(tokens: TokenStream) -> TokenStream {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let mut kept = Vec::new();
+    let mut index = 0;
+    while index < tokens.len() {
+        let rest = &tokens[index..];
+        match is_test_attribute(rest).then(|| item_length(&rest[2..])).flatten() {
+            Some(length) => index += 2 + length,
+            None => {
+                kept.push(tokens[index].clone());
+                index += 1;
+            }
+        }
+    }
+    kept.into_iter().collect()
+}
+
+fn is_test_attribute(tokens: &[TokenTree]) -> bool {
+    match tokens {
+        [hash, TokenTree::Group(group), ..] if is(Some(hash), '#') => {
+            group.delimiter() == Delimiter::Bracket && group.to_string().replace(' ', "") == "[cfg(test)]"
+        }
+        _ => false,
+    }
+}
+
+/// Returns the number of tokens of the item at the beginning, up to its `;` or its `{…}`; `None` if it is no item.
+fn item_length(tokens: &[TokenTree]) -> Option<usize> {
+    const ITEMS: [&str; 10] =
+        ["mod", "fn", "use", "impl", "struct", "enum", "const", "static", "trait", "type"];
+    let is_end = |token: &TokenTree| match token {
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
+        token => is(Some(token), ';'),
+    };
+    let end = tokens.iter().position(is_end)?;
+    let names_an_item =
+        |token: &TokenTree| matches!(token, TokenTree::Ident(word) if ITEMS.contains(&plain(word).as_str()));
+    tokens[..end].iter().any(names_an_item).then_some(end + 1)
+}
+
+/// Returns the names of the modules and types that the tokens declare.
+fn declared(tokens: TokenStream) -> BTreeSet<String> {
+    let mut names = BTreeSet::new();
+    let mut declares = false;
+    for token in tokens {
+        match &token {
+            TokenTree::Ident(word) if declares => drop(names.insert(plain(word))),
+            TokenTree::Group(group) => names.extend(declared(group.stream())),
+            _ => {}
+        }
+        let keywords = ["mod", "struct", "enum", "trait", "type"];
+        declares = matches!(&token, TokenTree::Ident(word) if keywords.contains(&word.to_string().as_str()));
+    }
+    names
 }
 
 /// Returns whether the tokens contain a static or a thread-local variable. `'static` is a lifetime and does not count.
@@ -109,58 +173,108 @@ fn keeps(tokens: TokenStream) -> bool {
     })
 }
 
-fn look(tokens: TokenStream, findings: &mut Vec<Finding>) {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    for (index, token) in tokens.iter().enumerate() {
-        let rest = &tokens[index + 1..];
-        let line = token.span().start().line;
-        let mut say = |rule: &str, what: String, why: &str| {
-            findings.push(Finding { rule: rule.into(), line, why: format!("{what}: {why}") });
-        };
-        match token {
-            TokenTree::Ident(word) => match plain(word).as_str() {
-                "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
-                "extern" => say("linkage", "`extern`".into(), "an exercise must not call foreign code"),
-                root @ ("std" | "core" | "alloc") => {
-                    for (rule, what, why) in of_root(root, rest) {
-                        say(rule, what, why);
+/// A search for constructs that no exercise needs.
+struct Search {
+    /// Names of the file's own modules and types.
+    own: BTreeSet<String>,
+    findings: Vec<Finding>,
+}
+
+impl Search {
+    /// Looks at tokens. `in_use` says whether they are in the braces of a `use` declaration.
+    fn look(&mut self, tokens: TokenStream, mut in_use: bool) {
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        for (index, token) in tokens.iter().enumerate() {
+            in_use = match token {
+                TokenTree::Ident(word) if word == "use" => true,
+                token => in_use && !is(Some(token), ';'),
+            };
+            let rest = &tokens[index + 1..];
+            let line = token.span().start().line;
+            let mut say = |rule: &str, what: String, why: &str| {
+                self.findings.push(Finding { rule: rule.into(), line, why: format!("{what}: {why}") });
+            };
+            match token {
+                TokenTree::Ident(word) => match plain(word).as_str() {
+                    "unsafe" => say("unsafe", "`unsafe`".into(), "unsafe code is not part of any exercise"),
+                    "extern" => say("linkage", "`extern`".into(), "an exercise must not call foreign code"),
+                    root @ ("std" | "core" | "alloc") if is_crate(root, &tokens[..index], &self.own) => {
+                        if in_use && matches!(rest.first(), Some(TokenTree::Ident(word)) if word == "as") {
+                            say("system", format!("`{root} as …`"), "a renamed import hides what is used");
+                        }
+                        for (rule, what, why) in of_root(root, rest) {
+                            say(rule, what, why);
+                        }
                     }
-                }
-                name if is(rest.first(), '!') => {
-                    for (rule, _, why) in MACROS.iter().filter(|(_, banned, _)| *banned == name) {
-                        say(rule, format!("`{name}!`"), why);
+                    name if is(rest.first(), '!') => {
+                        for (rule, _, why) in MACROS.iter().filter(|(_, banned, _)| *banned == name) {
+                            say(rule, format!("`{name}!`"), why);
+                        }
                     }
-                }
-                _ => {}
-            },
-            TokenTree::Punct(mark) if mark.as_char() == '#' => {
-                let attribute = if is(rest.first(), '!') { rest.get(1) } else { rest.first() };
-                if let Some(TokenTree::Group(group)) = attribute
-                    && group.delimiter() == Delimiter::Bracket
-                {
-                    let words = words(group.stream());
-                    for (rule, name, why) in ATTRIBUTES {
-                        if words.iter().any(|word| word == name) {
-                            say(rule, format!("`#[{name}]`"), why);
+                    _ => {}
+                },
+                TokenTree::Punct(mark) if mark.as_char() == '#' => {
+                    let attribute = if is(rest.first(), '!') { rest.get(1) } else { rest.first() };
+                    if let Some(TokenTree::Group(group)) = attribute
+                        && group.delimiter() == Delimiter::Bracket
+                    {
+                        let words = words(group.stream());
+                        for (rule, name, why) in ATTRIBUTES {
+                            if words.iter().any(|word| word == name) {
+                                say(rule, format!("`#[{name}]`"), why);
+                            }
+                        }
+                        // `#[cfg(feature = "…")]` is another word.
+                        if has_arguments(group.stream(), "feature") {
+                            say(
+                                "linkage",
+                                "`#![feature(…)]`".into(),
+                                "exercises are built with a stable compiler",
+                            );
+                        }
+                        let allows =
+                            words.iter().any(|word| ["allow", "expect", "warn"].contains(&word.as_str()));
+                        for (name, why) in LINTS.iter().filter(|_| allows) {
+                            if words.iter().any(|word| word == name) {
+                                say("linkage", format!("`#[allow({name})]`"), why);
+                            }
                         }
                     }
                 }
+                _ => {}
             }
-            _ => {}
-        }
-        if let TokenTree::Group(group) = token {
-            look(group.stream(), findings);
+            if let TokenTree::Group(group) = token {
+                self.look(group.stream(), in_use);
+            }
         }
     }
 }
 
+/// Returns whether `std`, `core` or `alloc` names the crate. After the tokens `before`, or beside `own` modules and types of
+/// this name, it may name something else.
+fn is_crate(root: &str, before: &[TokenTree], own: &BTreeSet<String>) -> bool {
+    match before {
+        [.., parent, first, second] if is(Some(first), ':') && is(Some(second), ':') => {
+            // `crate::core` is a module of the submission, `::core` is the crate.
+            !matches!(parent, TokenTree::Ident(word) if ["crate", "self", "super"].contains(&plain(word).as_str()))
+        }
+        [first, second] if is(Some(first), ':') && is(Some(second), ':') => true,
+        _ => !own.contains(root),
+    }
+}
+
+/// Returns whether `name` is followed by `(…)`, at any depth.
+fn has_arguments(tokens: TokenStream, name: &str) -> bool {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    tokens.iter().enumerate().any(|(index, token)| match (token, tokens.get(index + 1)) {
+        (TokenTree::Ident(word), Some(TokenTree::Group(_))) if word == name => true,
+        (TokenTree::Group(group), _) => has_arguments(group.stream(), name),
+        _ => false,
+    })
+}
+
 /// Returns the findings about the tokens after `std`, `core` or `alloc`, each as rule, construct and reason.
 fn of_root(root: &str, rest: &[TokenTree]) -> Vec<(&'static str, String, &'static str)> {
-    if let Some(TokenTree::Ident(word)) = rest.first()
-        && word == "as"
-    {
-        return vec![("system", format!("`{root} as …`"), "a renamed import hides what is used")];
-    }
     if !(is(rest.first(), ':') && is(rest.get(1), ':')) {
         return Vec::new();
     }
@@ -251,6 +365,15 @@ mod tests {
             ("use core::include_str as text;", "include", 1),
             ("fn f() { std::thread::spawn(|| ()); }", "threads", 1),
             ("fn f() { std::panic::set_hook(todo!()) }", "panics", 1),
+            ("use {std as other};", "system", 1),
+            ("use ::std as other;", "system", 1),
+            ("#![feature(portable_simd)]", "linkage", 1),
+            ("#![cfg_attr(all(), feature(asm))]", "linkage", 1),
+            ("#[expect(unsafe_code)] fn f() {}", "linkage", 1),
+            ("mod core { } fn f() { ::core::arch::x(); }", "intrinsics", 1),
+            ("m! { #[cfg(test)] mod a { use std::fs; } }", "files", 1),
+            ("fn f() { match x { #[cfg(test)] 1 => std::process::exit(0), _ => {} } }", "process", 1),
+            ("#[cfg(not(test))] use std::fs;", "files", 1),
         ];
         for (text, rule, line) in cases {
             assert!(rules(text).contains(&(rule.into(), line)), "{text}: {:?}", rules(text));
@@ -264,6 +387,7 @@ mod tests {
             "fn f() { static mut N: u32 = 0; }",
             "std::thread_local! { pub static X: u8 = 1 }",
             "macro_rules! m { () => { static A: u8 = 1; } }",
+            "m! { #[cfg(test)] static A: u8 = 1; }",
             "fn f<'a>(x: &'a u8) { { static A: u8 = 1; } }",
             "fn broken( {",
         ] {
@@ -273,6 +397,7 @@ mod tests {
             "const NAMES: &'static str = \"static\"; // static",
             "fn f<T: 'static>(x: &'static T) {}",
             "fn f() { let r#statics = 1; }",
+            "#[cfg(test)] mod tests { static A: u8 = 1; }",
         ] {
             assert!(!read(forgets).may_remember, "{forgets}");
         }
@@ -288,6 +413,13 @@ mod tests {
             "#[derive(Clone)] #[inline] #[allow(dead_code)] struct S; fn f() { println!(\"{:?}\", 1) }",
             "fn f() { let used = 1; let link = used; todo!(\"path\") }",
             "fn broken( {",
+            "#![forbid(unsafe_code)] #![deny(long_running_const_eval)]",
+            "fn f() -> f64 { let std = 2.0f32; let core = std as f64; core }",
+            "#[cfg(feature = \"fast\")] fn f() {}",
+            "#[cfg(test)]\nmod tests { use std::{fs, thread}; #[test] fn f() { std::env::args(); } }",
+            "#[cfg(test)] use std::time::Instant; #[cfg(test)] #[allow(unused)] use std::fs;",
+            "mod core { pub fn env() {} } fn f() { core::env(); self::core::env(); crate::core::env() }",
+            "use crate::core::thread; use super::std::process;",
         ];
         for text in honest {
             assert_eq!(rules(text), [], "{text}");
