@@ -37,7 +37,11 @@ pub(super) fn temporal_table_has_each_time_once(trial: &Trial<'_>) -> CheckResul
     // Judge the first block alone, because code without the repetition panics outside of it.
     all_hold(judge(&block((0, 0))))?;
     let others = [(4, 8), (1, 3), (1022, 765), (4_294_967_288, 4_294_967_288)];
-    all_hold(others.into_iter().flat_map(|corner| judge(&block(corner))).collect())
+    all_hold(others.into_iter().flat_map(|corner| judge(&block(corner))).collect())?;
+    let corners = (0..u32::MAX - 3, 0..u32::MAX - 3);
+    trial.forall(50, corners, |corners| {
+        corners.iter().map(|corner| all_hold(judge(&block(*corner)))).collect()
+    })
 }
 
 const REPEAT: &str = "blocks repeat: take x and y modulo 4";

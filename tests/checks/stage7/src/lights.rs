@@ -5,10 +5,12 @@ use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare_formulas;
 use glam::{Vec3, vec3};
+use proptest::prelude::*;
 use raykata::effects::LightEffects;
 use raykata::kit::LightQuery;
 use raykata::material::{AreaShape, Emitter, Falloff, Light};
 use raykata::scene::Quality;
+use raykata::shape::Sphere;
 
 /// A light, and what it needs.
 #[derive(Clone)]
@@ -143,5 +145,51 @@ pub(super) fn lights_take_what_they_are(trial: &Trial<'_>) -> CheckResult {
         Err(Broken::new(input, yours, case.expected, "the definition"))
     };
     let answers = trial.kit.light_effects(&queries);
-    all_hold(compare_formulas(&cases, answers, judge, light_mistakes))
+    all_hold(compare_formulas(&cases, answers, judge, light_mistakes))?;
+    trial.forall(200, drawn_lights(), |queries| {
+        let answers = queries.iter().zip(trial.kit.light_effects(queries));
+        let judge = |(query, yours): (&LightQuery, LightEffects)| {
+            let expected = needs(query);
+            match yours == expected {
+                true => Ok(()),
+                false => {
+                    let input = format!("light_effects of {query:?}");
+                    Err(Broken::new(input, yours, expected, "the definition").explained_by([]))
+                }
+            }
+        };
+        answers.map(judge).collect()
+    })
+}
+
+/// Lights of all kinds, one in five of them dark, with up to 64 samples.
+fn drawn_lights() -> impl Strategy<Value = LightQuery> + 'static {
+    let channel = || prop_oneof![Just(0.0), 0.01f32..5.0];
+    let color = (channel(), channel(), channel()).prop_map(Vec3::from);
+    let intensity = prop_oneof![1 => Just(0.0), 8 => 0.01f32..9.0];
+    let position = (-9f32..9.0, -9f32..9.0, -9f32..9.0).prop_map(Vec3::from);
+    (0..4, position, color, intensity, any::<bool>(), 0..=64u32).prop_map(
+        |(kind, position, color, intensity, shadows, light_samples)| {
+            let falloff = Falloff::None;
+            let sphere = AreaShape::Sphere(Sphere { center: position, radius: 0.5 });
+            let rectangle = AreaShape::Rectangle { corner: position, edges: (Vec3::X, Vec3::Z) };
+            let emitter = match kind {
+                0 => Emitter::Point { position, falloff },
+                1 => Emitter::Directional { direction: Vec3::NEG_Y },
+                2 => Emitter::Area { shape: sphere, falloff },
+                _ => Emitter::Area { shape: rectangle, falloff },
+            };
+            let light = Light { emitter, color, intensity, shadows };
+            LightQuery { light, quality: Quality { light_samples, ..Quality::default() } }
+        },
+    )
+}
+
+/// The definition of `light_effects`.
+fn needs(LightQuery { light, quality }: &LightQuery) -> LightEffects {
+    if light.color == Vec3::ZERO || light.intensity == 0.0 {
+        return LightEffects::default();
+    }
+    let area = matches!(light.emitter, Emitter::Area { .. }) && quality.light_samples > 0;
+    LightEffects { samples: if area { quality.light_samples } else { 1 }, area, shadows: light.shadows }
 }

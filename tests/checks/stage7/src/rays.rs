@@ -4,6 +4,7 @@ use super::scenes::{light, one_sphere};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use glam::Vec3;
+use proptest::prelude::*;
 use raykata::effects::{Effects, LightEffects, MaterialEffects};
 use raykata::kit::{BoundQuery, KitError, RayCounts, kit_error};
 use raykata::material::{Fresnel, Material};
@@ -106,7 +107,7 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
     sampled.effects.lights[0].samples = 16;
     sampled.effects.lights[0].area = true;
     sampled.effects.lights[1].shadows = false;
-    let m = 1_000_000;
+    let (m, drawn) = (1_000_000, small.clone());
     let overflow = "a product overflows u32: convert each factor to u64 before you multiply";
     judge_all(
         trial,
@@ -152,7 +153,28 @@ pub(super) fn shadow_arithmetic_of_the_lecture(trial: &Trial<'_>) -> CheckResult
                 ],
             },
         ],
-    )
+    )?;
+    // Other sizes, samples and lights.
+    let light = (any::<bool>(), 1..=64u32);
+    let inputs = (1..=9999u32, 1..=9999u32, 1..=64u32, prop::collection::vec(light, 10));
+    trial.forall(50, inputs, |inputs| {
+        let judge_one = |(width, height, samples, lights): &(u32, u32, u32, Vec<(bool, u32)>)| {
+            let mut query = drawn.clone();
+            query.scene.film = film(*width, *height);
+            query.scene.quality.samples_per_pixel = *samples;
+            for (light, (shadows, samples)) in query.effects.lights.iter_mut().zip(lights) {
+                *light = LightEffects { samples: *samples, area: *samples > 1, shadows: *shadows };
+            }
+            let per_hit: u32 = lights.iter().filter(|light| light.0).map(|light| light.1).sum();
+            let primary = u64::from(*width) * u64::from(*height) * u64::from(*samples);
+            let what = format!(
+                "{width} × {height} pixels with {samples} samples each, and {per_hit} shadow rays per hit"
+            );
+            let expected = counts(primary, primary * u64::from(per_hit), 0, 0);
+            judge(trial, Case { what: &what, query, expected, wrong: &[] })
+        };
+        inputs.iter().map(judge_one).collect()
+    })
 }
 
 // The mistakes of the loop over the bounces. Their counts below were computed once with a loop that makes the mistake.

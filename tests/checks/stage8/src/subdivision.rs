@@ -4,6 +4,7 @@ use super::quarters::triangles_are_quarters;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use glam::{DVec3, Vec3, vec2, vec3};
+use proptest::prelude::*;
 use raykata::mesh::Mesh;
 
 fn tetrahedron() -> Mesh {
@@ -138,6 +139,42 @@ pub(super) fn unlike(got: impl Into<String>, expected: impl Into<String>, mistak
 /// Judges some laws for every mesh.
 fn judge(trial: &Trial<'_>, laws: impl Fn(&Mesh, &Mesh) -> Vec<Result<(), Unlike>>) -> CheckResult {
     let meshes = meshes();
+    judge_meshes(trial, &meshes, &laws)?;
+    // The same meshes with other numbers of their vertices.
+    let orders: Vec<_> = meshes.iter().map(|(_, mesh)| (0..mesh.positions.len()).collect()).collect();
+    let orders = orders.into_iter().map(|order: Vec<usize>| Just(order).prop_shuffle());
+    trial.forall(1, orders.collect::<Vec<_>>(), |drawn| {
+        let judge_orders = |orders: &Vec<Vec<usize>>| {
+            let meshes = meshes.iter().zip(orders);
+            let renumbered = meshes.map(|((name, mesh), order)| (*name, renumbered(mesh, order)));
+            judge_meshes(trial, &renumbered.collect::<Vec<_>>(), &laws)
+        };
+        drawn.iter().map(judge_orders).collect()
+    })
+}
+
+/// The same mesh, in which vertex `i` has the number `order[i]`.
+fn renumbered(mesh: &Mesh, order: &[usize]) -> Mesh {
+    fn placed<T: Copy + Default>(values: &[T], order: &[usize]) -> Vec<T> {
+        let mut placed = vec![T::default(); values.len()];
+        values.iter().zip(order).for_each(|(value, place)| placed[*place] = *value);
+        placed
+    }
+    let triangle = |triangle: &[u32; 3]| triangle.map(|vertex| order[vertex as usize] as u32);
+    Mesh {
+        positions: placed(&mesh.positions, order),
+        normals: placed(&mesh.normals, order),
+        uvs: placed(&mesh.uvs, order),
+        triangles: mesh.triangles.iter().map(triangle).collect(),
+        ..mesh.clone()
+    }
+}
+
+fn judge_meshes(
+    trial: &Trial<'_>,
+    meshes: &[(&'static str, Mesh)],
+    laws: &impl Fn(&Mesh, &Mesh) -> Vec<Result<(), Unlike>>,
+) -> CheckResult {
     let queries: Vec<Mesh> = meshes.iter().map(|(_, mesh)| mesh.clone()).collect();
     let pairs = meshes.iter().zip(trial.kit.loop_subdivide(&queries));
     let judge_mesh = |((name, mesh), yours): (&(&str, Mesh), Mesh)| -> Vec<CheckResult> {
