@@ -1,7 +1,9 @@
 //! Modules that a student has added: files beside the exercises that `lib.rs` declares, and files in a folder with the name of
 //! an exercise.
 
+use proc_macro2::{TokenStream, TokenTree};
 use std::collections::BTreeMap;
+use std::str::FromStr;
 
 /// Most modules that are taken. A submission has a few.
 const MOST: usize = 64;
@@ -20,7 +22,7 @@ pub fn modules(
         let top = path.split('/').next().unwrap_or(path);
         let stem = top.strip_suffix(".rs").unwrap_or(top);
         let of_exercise = wanted.iter().any(|wanted| wanted.strip_suffix(".rs") == Some(top));
-        of_exercise || declared.contains(&stem)
+        of_exercise || declared.iter().any(|name| name == stem)
     };
     let taken = inside.into_iter().filter(|(path, _)| is_module(path) && is_plain(path)).take(MOST);
     taken.map(|(path, text)| (path.to_owned(), text.clone())).collect()
@@ -34,15 +36,19 @@ pub fn inside<'a>(path: &'a str, folder: &str) -> Option<&'a str> {
     }
 }
 
-/// Returns the modules that a file declares by `mod name;`.
-fn declarations(text: &str) -> Vec<&str> {
-    text.lines().filter_map(declaration).collect()
-}
-
-fn declaration(line: &str) -> Option<&str> {
-    let line = line.trim();
-    let line = line.strip_prefix("pub(crate) ").or_else(|| line.strip_prefix("pub ")).unwrap_or(line);
-    line.strip_prefix("mod ")?.strip_suffix(';').map(str::trim)
+/// Returns the modules that a file declares by `mod name;` at its top level.
+fn declarations(text: &str) -> Vec<String> {
+    // The compiler never sees `lib.rs` of a submission, so one that is not valid Rust declares nothing.
+    let tokens: Vec<TokenTree> = TokenStream::from_str(text).into_iter().flatten().collect();
+    let declared = tokens.windows(3).filter_map(|three| match three {
+        [TokenTree::Ident(word), TokenTree::Ident(name), TokenTree::Punct(end)]
+            if word == "mod" && end.as_char() == ';' =>
+        {
+            Some(name.to_string())
+        }
+        _ => None,
+    });
+    declared.collect()
 }
 
 /// Returns the lines that declare the modules in `lib.rs`. Those in the folder of an exercise are declared there.
