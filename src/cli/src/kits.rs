@@ -5,7 +5,7 @@ use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result, bail};
 use raykata::kit::{Door, Kit};
-use std::io::{BufRead, BufReader, IsTerminal};
+use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
@@ -179,12 +179,25 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
     if let Some(target) = folder.parent() {
         cargo.arg("--target-dir").arg(target);
     }
+    run_cargo(cargo, what)?;
+    programs.iter().map(|program| placed(folder, program)).collect()
+}
+
+/// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for
+/// another one, it prints a line that names `what`, followed by the messages of cargo.
+pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
     if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none() {
         cargo.env("CARGO_TERM_COLOR", "always");
     }
-    // Show its output as soon as something is compiled.
-    let started = cargo.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
-    let mut running = started.context("cargo, which builds the exercises, cannot be started")?;
+    let started = cargo.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
+    let mut running = started.context("cargo, which builds the kit, cannot be started")?;
+    // Read both outputs at the same time, because a full pipe would stop cargo.
+    let stdout = running.stdout.take();
+    let reader = std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        stdout.map_or(Ok(0), |mut stdout| stdout.read_to_end(&mut bytes)).map(|_| bytes)
+    });
+    // Show its messages as soon as something is compiled.
     let mut shown = Shown { what, held_back: Vec::new(), building: false };
     if let Some(stderr) = running.stderr.take() {
         for line in BufReader::new(stderr).split(b'\n') {
@@ -195,7 +208,7 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
         shown.begin();
         bail!("{what} cannot be built: see the errors of the compiler above");
     }
-    programs.iter().map(|program| placed(folder, program)).collect()
+    Ok(reader.join().unwrap_or_else(|_| Ok(Vec::new()))?)
 }
 
 /// The path of a program that cargo has built. A program that was built with a feature is copied to a name of

@@ -28,9 +28,19 @@ pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
 /// takes long.
 const FRAME_PATIENCE: Duration = Duration::from_secs(120);
 
-/// The longest reply of an untrusted worker: ten times the size of the largest frame of a check. It bounds
-/// the memory of the judge; decoded values can take several times as much memory as their message.
-const LONGEST_UNTRUSTED_REPLY: usize = 64 << 20;
+/// The longest reply of an untrusted worker to a request of `length` bytes. It bounds the memory of the judge; decoded values
+/// can take several times as much memory as their message.
+fn longest_reply(request: &Request, length: usize) -> usize {
+    match request {
+        // A pixel has 12 bytes.
+        Request::Render(job) => {
+            let pixels = u64::from(job.scene.film.width) * u64::from(job.scene.film.height);
+            (1 << 20) + usize::try_from(16 * pixels).unwrap_or(LONGEST_MESSAGE).min(LONGEST_MESSAGE >> 1)
+        }
+        // The longest answers are structures: 16 references of 4 bytes and nodes of 50 bytes, for a box of 24 bytes.
+        _ => (1 << 20) + length.saturating_mul(32).min(16 << 20),
+    }
+}
 
 /// Starts the process of a worker and interprets its end. The grader implements it with a sandbox for untrusted code.
 pub trait Launcher: Send + Sync {
@@ -216,10 +226,10 @@ impl Process {
         patience: Duration,
     ) -> io::Result<Option<Reply>> {
         let trusted = self.launcher.is_none();
-        let longest = if trusted { LONGEST_MESSAGE } else { LONGEST_UNTRUSTED_REPLY };
         // Start the watchdog before writing, because a worker that does not read would block the write forever.
         self.watchdog.bark_after(patience);
-        worker::send(&mut self.to_worker, request)?;
+        let length = worker::send(&mut self.to_worker, request)?;
+        let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request, length) };
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
                 Reply::Progress { .. } | Reply::Building { .. } if !matches!(request, Request::Render(_)) => {
@@ -242,7 +252,7 @@ impl Process {
                     }
                 }
                 Reply::Question(question) => match &mut tables {
-                    Some(tables) => worker::send(&mut self.to_worker, &tables.answer(&question))?,
+                    Some(tables) => drop(worker::send(&mut self.to_worker, &tables.answer(&question))?),
                     None => {
                         return Err(io::Error::other("it asks a question, but its request has all tables"));
                     }

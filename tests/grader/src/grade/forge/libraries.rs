@@ -1,25 +1,21 @@
 //! Builds the libraries against which submissions are compiled.
 
 use super::hex;
-use anyhow::{Context, Result, ensure};
+use crate::kits;
+use anyhow::{Context, Result};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// Builds the scaffold with the crates that it needs, and copies the compiled libraries into a separate folder.
 pub fn build(root: &Path) -> Result<PathBuf> {
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .current_dir(root)
-        .args(["build", "--quiet", "--package", "raykata", "--lib", "--message-format=json"])
-        .stdin(Stdio::null())
-        .stderr(Stdio::inherit())
-        .output()
-        .context("cargo, which builds the scaffold, cannot be started")?;
-    ensure!(output.status.success(), "the scaffold does not compile: see the compiler's messages above");
-    let artifacts: Vec<Value> = String::from_utf8_lossy(&output.stdout)
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root).args(["build", "--package", "raykata", "--lib", "--message-format=json"]);
+    let messages = kits::run_cargo(cargo, "the libraries for submissions")?;
+    let artifacts: Vec<Value> = String::from_utf8_lossy(&messages)
         .lines()
         .filter_map(|line| serde_json::from_str::<Value>(line).ok())
         .filter(|message| message["reason"] == "compiler-artifact")

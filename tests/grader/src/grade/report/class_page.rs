@@ -194,7 +194,10 @@ fn all(students: &[(&Graded, &str)], tallies: &[Tally]) -> Markup {
                         @for (student, name) in students {
                             tr {
                                 td.student { (link(student, name)) @if !student.trouble.is_empty() { " " span.badge.crashed { "not gradable" } } }
-                                td.number { b { (student.points().0) } }
+                                td.number {
+                                    b { (student.points().0) }
+                                    div.note { (tally::percent(student.points().0, tally::of(tallies))) " %" }
+                                }
                                 @for &stage in &stages {
                                     td.number { (sum(student.of_stage(stage)).0) }
                                 }

@@ -15,12 +15,13 @@ pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
     let body = html! {
         header {
             h1.student { (graded.student) }
-            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points" } }
+            @if !graded.checks.is_empty() { p.points { b { (earned) } " of " (of) " points (" (tally::percent(earned, of)) " %)" } }
             (session_line(session))
         }
         @if !graded.trouble.is_empty() {
             section.alarm { h2 { "This submission could not be graded" } p { (graded.trouble) } }
         }
+        (blocked(graded))
         (overview(graded))
         (remarks(graded))
         @if !graded.compiler.is_empty() {
@@ -29,6 +30,28 @@ pub(super) fn student_page(graded: &Graded, session: &Session) -> String {
         @for stage in graded.stages() { (stage_section(graded, stage)) }
     };
     page(&format!("{} · Raykata", graded.student), &body)
+}
+
+/// Names the files of which no check could be judged, with the reason.
+fn blocked(graded: &Graded) -> Markup {
+    let is_blocked =
+        |check: &&CheckResult| matches!(check.outcome, Outcome::Refused | Outcome::DoesNotCompile);
+    let mut reasons: Vec<(Outcome, String, u32)> = Vec::new();
+    for check in graded.checks.iter().filter(is_blocked) {
+        let reason = messages::message_without_header(check);
+        match reasons.iter_mut().find(|(outcome, other, _)| *outcome == check.outcome && *other == reason) {
+            Some((.., points)) => *points += check.points,
+            None => reasons.push((check.outcome, reason, check.points)),
+        }
+    }
+    html! {
+        @for (outcome, reason, points) in reasons {
+            section.alarm {
+                h2 { (outcome.words()) ": " (points) " points could not be graded" }
+                pre { (reason) }
+            }
+        }
+    }
 }
 
 fn overview(graded: &Graded) -> Markup {

@@ -7,12 +7,13 @@ use anyhow::{Result, anyhow};
 /// Writes one row per student: points in total and per stage.
 pub(super) fn grades(class: &Class, tallies: &[Tally], pages: &[String]) -> Result<Vec<u8>> {
     let stages = tally::stages(tallies);
-    let header = ["name", "points", "of"].map(str::to_owned).into_iter();
+    let header = ["name", "points", "of", "percent"].map(str::to_owned).into_iter();
     let header = header.chain(stages.iter().map(|stage| format!("stage{stage}")));
     let mut rows = vec![header.chain(["remarks", "trouble", "page"].map(str::to_owned)).collect()];
     for (student, page) in class.students.iter().zip(pages) {
-        let mut row =
-            vec![student.student.clone(), student.points().0.to_string(), tally::of(tallies).to_string()];
+        let (points, of) = (student.points().0, tally::of(tallies));
+        let percent = tally::percent(points, of);
+        let mut row = vec![student.student.clone(), points.to_string(), of.to_string(), percent];
         row.extend(stages.iter().map(|&stage| sum(student.of_stage(stage)).0.to_string()));
         row.extend([student.remarks.len().to_string(), student.trouble.clone(), page.clone()]);
         rows.push(row);

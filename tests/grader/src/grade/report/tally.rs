@@ -76,6 +76,12 @@ pub(super) fn of(tallies: &[Tally]) -> u32 {
     tallies.iter().map(|tally| tally.points).sum()
 }
 
+/// Returns the percentage of the points, rounded to the nearest integer; 0 of 0 points are 0 %.
+pub(super) fn percent(earned: u32, of: u32) -> String {
+    let share = if of == 0 { 0.0 } else { f64::from(earned) / f64::from(of) };
+    format!("{:.0}", 100.0 * share)
+}
+
 /// Returns the heading of a stage.
 pub(super) fn stage_title(stage: u8) -> String {
     match RUBRIC.get(&format!("stage{stage}")) {

@@ -182,7 +182,7 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         let page = &row[row.len() - 1];
         assert_eq!(row[1], earned.to_string());
         assert_eq!(&row[2], "17");
-        let stages: u32 = row[3].parse::<u32>()? + row[4].parse::<u32>()?;
+        let stages: u32 = row[4].parse::<u32>()? + row[5].parse::<u32>()?;
         assert_eq!(stages, earned);
 
         let of_student = cells.iter().filter(|cells| cells[0] == row[0]);
@@ -231,7 +231,7 @@ fn cleaning_a_submission_twice_is_cleaning_it_once() {
 fn an_empty_class_has_reports_too() -> Result<()> {
     let class = Class { students: Vec::new(), ..class() };
     let files = files_of(&class)?;
-    assert_eq!(files["grades.csv"], "\"name\",\"points\",\"of\",\"remarks\",\"trouble\",\"page\"\n");
+    assert_eq!(files["grades.csv"], "\"name\",\"points\",\"of\",\"percent\",\"remarks\",\"trouble\",\"page\"\n");
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())
 }
