@@ -200,7 +200,7 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         assert_eq!(sum(&format!("classroom/{page}.json"), "score")?, u64::from(earned));
 
         let html = &files[&format!("students/{page}.html")];
-        let shown = format!("<p class=\"points\"><b>{earned}</b> of {of} points</p>");
+        let shown = format!("<p class=\"points\"><b>{earned}</b> of {of} points (");
         assert_eq!(html.contains(&shown), !graded.checks.is_empty());
         assert!(files["junit.xml"].contains(&format!("<property name=\"points\" value=\"{earned}\"/>")));
     }
@@ -231,7 +231,10 @@ fn cleaning_a_submission_twice_is_cleaning_it_once() {
 fn an_empty_class_has_reports_too() -> Result<()> {
     let class = Class { students: Vec::new(), ..class() };
     let files = files_of(&class)?;
-    assert_eq!(files["grades.csv"], "\"name\",\"points\",\"of\",\"percent\",\"remarks\",\"trouble\",\"page\"\n");
+    assert_eq!(
+        files["grades.csv"],
+        "\"name\",\"points\",\"of\",\"percent\",\"remarks\",\"trouble\",\"page\"\n"
+    );
     assert!(files["index.html"].contains("No submission tried a check and failed."));
     Ok(())
 }
