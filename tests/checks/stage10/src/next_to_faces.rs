@@ -1,7 +1,9 @@
 //! Rays that start so near to a face of a closed mesh that rounding errors decide on which side of the face they start.
 
+use super::triangles::judge_hit_point;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
 use glam::Vec3;
 use oracle::exact::{Body, verdict};
 use oracle::splitmix::Random;
@@ -25,6 +27,11 @@ fn cross(v: Whole, w: Whole) -> Whole {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         v[next] * w[last] - v[last] * w[next]
     })
+}
+
+/// The vector in single precision, scaled by a power of two to an ordinary size.
+fn place(v: Whole) -> Vec3 {
+    Vec3::from_array(v.map(|x| x as f32)) * (-21f32).exp2()
 }
 
 /// `(g, x, y)` with `p x + q y = g`, the greatest common divisor of `p` and `q` up to its sign.
@@ -79,8 +86,6 @@ fn tetrahedron(random: &mut Random) -> ([Vec3; 4], Ray) {
         if height == 0 || apex.iter().chain(&away).any(|x| x.abs() >= 1 << 24) {
             continue;
         }
-        // Scale by a power of two to an ordinary size.
-        let place = |v: Whole| Vec3::from_array(v.map(|x| x as f32)) * (-21f32).exp2();
         return ([a, b, c, apex].map(place), Ray::new(place(start), place(away)));
     }
 }
@@ -117,4 +122,28 @@ pub(super) fn starts_next_to_a_face(trial: &Trial<'_>) -> CheckResult {
         )]))
     };
     all_hold(cases.iter().zip(answers.chunks(4)).map(judge).collect())
+}
+
+/// Rays that are so nearly parallel to a triangle that rounding errors decide all signs, and that cross its plane one size of
+/// the triangle beside it. A hit must not have barycentric coordinates outside of the triangle.
+pub(super) fn passes_beside_a_triangle_seen_edge_on(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 31);
+    let mut query = |index: usize| loop {
+        let mut corner = || [(); 3].map(|()| random.below(1 << 22) as i128 - (1 << 21));
+        let (a, b, c) = (corner(), corner(), corner());
+        let (e, f) = (plus(-1, a, b), plus(-1, a, c));
+        // The ray crosses the plane at a + e - f, at t = 1: α = 1, β = 1 and γ = -1.
+        let Some(direction) = next_to(e, f) else { continue };
+        let start = plus(-1, direction, plus(-1, f, plus(1, e, a)));
+        if start.iter().chain(&direction).any(|x| x.abs() >= 1 << 24) {
+            continue;
+        }
+        let [a, b, c] = [[a, b, c], [b, c, a], [c, a, b]][index % 3].map(place);
+        return TriangleQuery {
+            ray: Ray::new(place(start), place(direction)),
+            triangle: Triangle { a, b, c },
+        };
+    };
+    let queries: Vec<TriangleQuery> = (0..300).map(&mut query).collect();
+    all_hold(compare(&queries, trial.kit.watertight(&queries), judge_hit_point))
 }

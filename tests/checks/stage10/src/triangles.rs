@@ -2,7 +2,7 @@
 
 use super::Odd;
 use super::doubles::{judge_ends, judge_weights};
-use super::next_to_faces::starts_next_to_a_face;
+use super::next_to_faces::{passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -153,7 +153,7 @@ fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, mesh: &Closed) -> [(bool, &'sta
 
 /// A hit is a point of the triangle: none of its barycentric coordinates is negative, up to rounding. A thousandth accepts
 /// every formula in single precision.
-fn judge_hit_point(query: &TriangleQuery, yours: Option<TriangleHit>) -> CheckResult {
+pub(super) fn judge_hit_point(query: &TriangleQuery, yours: Option<TriangleHit>) -> CheckResult {
     let is_inside = |hit: &TriangleHit| hit.beta.min(hit.gamma).min(1.0 - hit.beta - hit.gamma) >= -1e-3;
     if yours.as_ref().is_none_or(is_inside) {
         return Ok(());
@@ -234,7 +234,8 @@ pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn watertight_walls_seen_edge_on_do_not_leak(trial: &Trial<'_>) -> CheckResult {
     let seen_edge_on = ["star prism", "star prism, tilted", "urchin", "cave", "scan"];
     let meshes = families().into_iter().filter(|mesh| seen_edge_on.contains(&mesh.name));
-    meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))
+    meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))?;
+    passes_beside_a_triangle_seen_edge_on(trial)
 }
 
 /// The `t` of the paper in single precision: the depths of the corners, weighted with the edge functions, and divided by
