@@ -40,7 +40,7 @@ pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
 /// Pitfall: each triangle has its own rounding errors, so a ray at a shared edge may miss both. Decide on which side of
 /// an edge the ray passes by a computation that uses only the two ends of the edge: the neighbour repeats it exactly.
 ///
-/// Pitfall: where the triangle is seen edge-on, `t` is a quotient of two rounding errors and may have the wrong sign.
+/// Pitfall: where the triangle is seen edge-on, or the ray starts next to it, rounding errors may give `t` the wrong sign.
 /// Where rounding errors may decide, compute the determinants with [`exact_sum`], which loses no digit.
 ///
 /// Your pictures use this function for triangles as soon as it is written; before, they use `triangle_choice` of stage 2.

@@ -43,7 +43,8 @@ pub fn build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> Bsp {
 ///
 /// Pitfall: `if (t < min_t) || (t < max_t)) return no_intersection` is wrong if the plane is behind the ray or beyond
 /// its end. There the ray is on one side along its whole length, and that side must be searched. A ray in the plane is
-/// on both sides, and so is a ray that starts on it; a primitive in the plane may be listed on one side only.
+/// on both sides, and so is a ray that starts on it; a primitive in the plane may be listed on one side only. The computed
+/// height of such a ray may be a rounding error in place of 0.
 ///
 /// Slide: "Binary Space Partition (BSP) Tree".
 pub fn closest_hit(bsp: &Bsp, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {

@@ -25,7 +25,8 @@ use raykata::ray::Ray;
 /// - `few_straddlers` minimises the number of primitives on both sides. With both heuristics the sum of the two numbers
 ///   is minimal; with neither the cut is in the middle of the cell.
 /// - `cut_off_empty_space` first cuts off an empty margin of more than a tenth of the cell.
-/// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides.
+/// - `stop_at_overlap` makes a leaf if at least 60 % of the primitives of one side would be on both sides. If no primitive
+///   would be on both sides, it makes no leaf.
 ///
 /// Pitfall: boxes that all lie at one place are on both sides of every plane through them. The recursion must end
 /// there. Without heuristics, long thin boxes are on both sides of most planes, and each level of the tree doubles the

@@ -27,15 +27,15 @@ use crate::stage9_cells::{Exit, first_exit};
 /// Slide: "Uniform Grid" (How choose suitable grid resolution?).
 pub fn resolution(bounds: &Aabb, n_primitives: usize, density: f32) -> UVec3 {
     // <solution>
-    // Return one cell for an empty box, or if one cell is enough.
+    // Return one cell for an empty or an infinite box.
     let n_cells = f64::from(density) * n_primitives as f64;
     let size = bounds.max.as_dvec3() - bounds.min.as_dvec3();
-    if bounds.is_empty() || !size.is_finite() || !(n_cells > 1.0) {
+    if bounds.is_empty() || !size.is_finite() {
         return UVec3::ONE;
     }
 
     // Compute the side of a cube of which `n_cells` fill the box: over k axes, sideᵏ = product of their sizes /
-    // n_cells. Drop the axes that are thinner than the side, and repeat.
+    // n_cells. Drop the axes that are thinner than the side, and repeat. Without primitives the side is infinite.
     let mut thick: Vec<usize> = (0..3).filter(|&axis| size[axis] > 0.0).collect();
     let side = loop {
         let volume: f64 = thick.iter().map(|&axis| size[axis]).product();
@@ -135,6 +135,7 @@ fn index(grid: &Grid, axis: usize, at: f64) -> u32 {
 /// sequence of cells that share a face.
 ///
 /// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
+/// The index of the first cell is a rounded quotient, as in [`build`].
 /// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
 /// the cell, in double precision.
 ///

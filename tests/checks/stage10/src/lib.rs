@@ -1,13 +1,14 @@
 //! The checks of stage 10: stability.
 //!
 //! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles in double precision)
-//! · `rims` (spheres in double precision)
+//! · `rims` (spheres in double precision) · `next_to_faces` (rays that start next to a triangle)
 //!
 //! [`oracle::exact`] gives the exact answers. An answer may differ from the exact one only if at most
 //! [`oracle::STABLE`] roundings decide, and a closed mesh must not leak at all.
 
 mod boxes;
 mod doubles;
+mod next_to_faces;
 mod points;
 mod rims;
 mod roots;

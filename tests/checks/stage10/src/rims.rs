@@ -135,7 +135,37 @@ pub(super) fn double_sphere_is_right_at_rims(trial: &Trial<'_>) -> CheckResult {
         ]))
     };
     all_hold(wrong.iter().map(broken).collect())?;
-    touching_rays_hit(trial)
+    touching_rays_hit(trial)?;
+    rays_from_the_surface_hit_the_far_side(trial)
+}
+
+/// Rays along an axis that start exactly on a sphere with small integer coordinates and go through its inside. The near root
+/// is 0, which is not in the range.
+fn rays_from_the_surface_hit_the_far_side(trial: &Trial<'_>) -> CheckResult {
+    let mut random = Random::new(trial.seed, 23);
+    let mut from_surface = |index: usize| {
+        let center = Vec3::from_array([(); 3].map(|()| random.below(9) as f32 - 4.0));
+        // A point of the sphere around 0 with radius 7, whose coordinates are 2, 3 and 6 in any order.
+        let numbers = [[2.0, 3.0, 6.0], [3.0, 6.0, 2.0], [6.0, 2.0, 3.0]][index / 3 % 3];
+        let point = Vec3::from_array(numbers) * if index % 4 < 2 { 1.0 } else { -1.0 };
+        let mut direction = Vec3::ZERO;
+        direction[index % 3] = if point.x < 0.0 { 1.0 } else { -1.0 };
+        let query =
+            SphereQuery { ray: Ray::new(center + point, direction), sphere: Sphere { center, radius: 7.0 } };
+        (query, 2.0 * point[index % 3].abs())
+    };
+    let cases: Vec<(SphereQuery, f32)> = (0..96).map(&mut from_surface).collect();
+    let queries: Vec<SphereQuery> = cases.iter().map(|(query, _)| *query).collect();
+    all_hold(compare(&cases, trial.kit.sphere_in_double(&queries), |(query, exact), yours| {
+        // Allow a rounding of t.
+        if yours.is_some_and(|t| (t - exact).abs() <= 1e-6 * exact) {
+            return Ok(());
+        }
+        Err(Broken::new(query.call("sphere_in_double"), yours, Some(*exact), "integers, exactly").explained_by([(
+            yours.is_none(),
+            "you return None for a ray that starts on the sphere and goes through it: it hits the far side",
+        )]))
+    }))
 }
 
 /// Rays along an axis that touch a sphere with small integer coordinates: no product is rounded.

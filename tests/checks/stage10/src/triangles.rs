@@ -2,6 +2,7 @@
 
 use super::Odd;
 use super::doubles::{judge_ends, judge_weights};
+use super::next_to_faces::{passes_beside_a_triangle_seen_edge_on, starts_next_to_a_face};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
@@ -150,6 +151,22 @@ fn reasons_of_leak(trial: &Trial<'_>, ray: &Ray, mesh: &Closed) -> [(bool, &'sta
     ]
 }
 
+/// A hit is a point of the triangle: none of its barycentric coordinates is negative, up to rounding. A thousandth accepts
+/// every formula in single precision.
+pub(super) fn judge_hit_point(query: &TriangleQuery, yours: Option<TriangleHit>) -> CheckResult {
+    let is_inside = |hit: &TriangleHit| hit.beta.min(hit.gamma).min(1.0 - hit.beta - hit.gamma) >= -1e-3;
+    if yours.as_ref().is_none_or(is_inside) {
+        return Ok(());
+    }
+    Err(Broken::with_texts(
+        query.call("watertight"),
+        format!("{yours:?}"),
+        "None, or β >= 0, γ >= 0 and β + γ <= 1",
+        "the definition",
+    )
+    .explained_by([(true, "you return a hit outside of the triangle: β, γ or 1 - β - γ is negative")]))
+}
+
 fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
     let mut random = Random::new(trial.seed, 3);
     let rays: Vec<(Aim, Ray, u32)> = (0..600)
@@ -165,7 +182,9 @@ fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
         .iter()
         .flat_map(|&(_, ray, vertex)| fan(vertex).map(move |triangle| TriangleQuery { ray, triangle }))
         .collect();
-    let mut answers = trial.kit.watertight(&near).into_iter();
+    let answers = trial.kit.watertight(&near);
+    all_hold(compare(&near, answers.clone(), judge_hit_point))?;
+    let mut answers = answers.into_iter();
     let judge = |(aim, ray, vertex): &(Aim, Ray, u32)| {
         let count = mesh.fans[*vertex as usize].len();
         if answers.by_ref().take(count).filter(Option::is_some).count() > 0 {
@@ -208,13 +227,15 @@ fn mesh_does_not_leak(trial: &Trial<'_>, mesh: &Closed) -> CheckResult {
 }
 
 pub(super) fn watertight_meshes_do_not_leak(trial: &Trial<'_>) -> CheckResult {
-    closed().iter().try_for_each(|mesh| mesh_does_not_leak(trial, mesh))
+    closed().iter().try_for_each(|mesh| mesh_does_not_leak(trial, mesh))?;
+    starts_next_to_a_face(trial)
 }
 
 pub(super) fn watertight_walls_seen_edge_on_do_not_leak(trial: &Trial<'_>) -> CheckResult {
     let seen_edge_on = ["star prism", "star prism, tilted", "urchin", "cave", "scan"];
     let meshes = families().into_iter().filter(|mesh| seen_edge_on.contains(&mesh.name));
-    meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))
+    meshes.into_iter().try_for_each(|mesh| mesh_does_not_leak(trial, &mesh))?;
+    passes_beside_a_triangle_seen_edge_on(trial)
 }
 
 /// The `t` of the paper in single precision: the depths of the corners, weighted with the edge functions, and divided by
@@ -275,6 +296,9 @@ pub(super) fn watertight_has_a_good_t(trial: &Trial<'_>) -> CheckResult {
     let queries = draw(trial, "interior", 400);
     // A thousandth accepts every formula in single precision.
     all_hold(judge_weights("watertight", &queries, trial.kit.watertight(&queries), 1e-3))?;
+    // The same for points exactly on an edge. The coordinates are small whole numbers, so few roundings occur.
+    let ties = draw(trial, "ties", 400);
+    all_hold(judge_weights("watertight", &ties, trial.kit.watertight(&ties), 1e-3))?;
     all_hold(judge_ends("watertight", &queries, |queries| trial.kit.watertight(queries)))
 }
 

@@ -1,7 +1,7 @@
 //! Checks of `bounding_sphere` and `enter_bounding_sphere`.
 
 use checks::Trial;
-use checks::broken::{Broken, CheckResult};
+use checks::broken::{Broken, CheckResult, all_hold};
 use checks::double::U;
 use checks::generate::{direction, point, sphere};
 use checks::judge::compare;
@@ -306,7 +306,28 @@ fn along_x(from: f32) -> Entry {
 pub(super) fn enter_bounding_sphere_finds_what_is_met(trial: &Trial<'_>) -> CheckResult {
     // S3: the ray starts inside, and the centre lies behind it.
     let facing_away = along_x(0.5);
-    trial.forall_and(&[facing_away], 3000, entries(true), |queries| judge_entries(trial, queries))
+    trial.forall_and(&[facing_away], 3000, entries(true), |queries| judge_entries(trial, queries))?;
+    ranges_that_begin_at_the_exit(trial)
+}
+
+/// Rays whose range begins exactly where they leave the sphere: this point belongs to the sphere and to the range.
+fn ranges_that_begin_at_the_exit(trial: &Trial<'_>) -> CheckResult {
+    let query = |from: f32| {
+        let BoundingSphereQuery { ray, sphere } = along_x(from).plain;
+        BoundingSphereQuery { ray: ray.with_range(1.0 - from, f32::INFINITY), sphere }
+    };
+    let queries: Vec<BoundingSphereQuery> = [-7.0, -3.0, -2.0, -1.0, 0.0, 0.5].map(query).into();
+    all_hold(compare(&queries, trial.kit.enter_bounding_sphere(&queries), |query, yours| {
+        let BoundingSphereQuery { ray, sphere } = query;
+        if yours == Some(ray.t_min) {
+            return Ok(());
+        }
+        let input = call("enter_bounding_sphere", &[ray, sphere]);
+        Err(Broken::new(input, yours, Some(ray.t_min), "closed form").explained_by([(
+            yours.is_none(),
+            "you return None for a ray whose range begins where it leaves the sphere: the surface belongs to the sphere",
+        )]))
+    }))
 }
 
 pub(super) fn enter_bounding_sphere_passes_what_is_missed(trial: &Trial<'_>) -> CheckResult {

@@ -60,9 +60,10 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
             (None, None) => true,
             _ => false,
         };
-        // No other check tests the normal of these hits, so test its length here.
+        // No other check tests the normal of these hits, so test here that it has unit length and points outwards.
         let sound = yours.is_none_or(|hit| is_sound(&hit));
-        if right && sound {
+        let outward = yours.is_none_or(|hit| is_outward(query, &hit));
+        if right && sound && outward {
             return Ok(());
         }
         let yours = match right {
@@ -70,11 +71,20 @@ fn judged_cases<S: Solid>(trial: &Trial<'_>, cases: &[Case<S>]) -> Vec<CheckResu
             false => format!("{t:?}"),
         };
         Err(Broken::with_texts(input(query), yours, format!("{expected:?}"), "closed form").explained_by([
-            (right, "the normal of your hit does not have unit length"),
+            (right && !sound, "the normal of your hit does not have unit length"),
+            (right && !outward, "the normal of your hit does not point out of the solid"),
             (!right && !text.is_empty(), *text),
         ]))
     };
     compare_formulas(&cases, answers, judge, formulas)
+}
+
+/// Whether no point of the solid lies in front of the plane through the hit that has the hit's normal.
+fn is_outward<S: Solid>(query: &SolidQuery<S>, hit: &SolidHit) -> bool {
+    let (normal, origin) = (hit.normal.as_dvec3(), query.ray.origin.as_dvec3());
+    let at = origin + f64::from(hit.t) * query.ray.direction.as_dvec3();
+    // The hit point has an error of 1e-5 of the numbers from which it is computed; allow ten times that.
+    query.solid.reach(normal) - normal.dot(at) <= 1e-4 * (origin.length() + at.length())
 }
 
 pub(super) fn of<S: Clone>(solid: &S) -> impl Fn(Vec3, Vec3) -> SolidQuery<S> {
@@ -233,6 +243,8 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
             (ask(vec3(1.5, -3.0, 0.0), Vec3::Y), None, BESIDE_CYLINDER),
             (ask(vec3(0.0, 3.0, -1.25), vec3(0.0, -1.0, -0.0)), None, BESIDE_CYLINDER),
             (ask(vec3(0.5, 1.0, 0.0), Vec3::Y), Some(1.0), along),
+            (ask(vec3(1.0, -3.0, 0.0), Vec3::Y), Some(3.0), IN_THE_SIDE),
+            (ask(vec3(0.0, 4.0, -1.0), vec3(0.0, -2.0, 0.0)), Some(1.0), IN_THE_SIDE),
             (of(&leaning)(vec3(-1.0, -1.0, 0.5), vec3(1.0, 1.0, 0.0)), Some(1.0), along),
             (ask(vec3(-3.0, 1.0, 0.0), Vec3::X), Some(2.0), ""),
             (ask(vec3(-3.0, 1.0, 0.25), vec3(2.0, 0.25, 0.0)), Some((3.0 - 0.9375f32.sqrt()) / 2.0), ""),
@@ -242,6 +254,9 @@ pub(super) fn cylinder_seen_along_its_axis(trial: &Trial<'_>) -> CheckResult {
         ],
     )
 }
+
+const IN_THE_SIDE: &str =
+    "you lose rays that run along the side, in the surface: the side belongs to the solid";
 
 const BESIDE_CYLINDER: &str =
     "you hit the cylinder with rays that are parallel to its axis and pass beside the cylinder";
@@ -304,6 +319,9 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
             (ask(vec3(-1.0, 1.5, 0.0), vec3(1.0, -1.0, 0.0)), Some(0.75), linear),
             (ask(vec3(0.0, 1.5, -1.0), vec3(0.0, -0.5, 0.5)), Some(1.5), linear),
             (ask(vec3(-0.5, 0.25, 0.0), vec3(1.0, 1.0, 0.0)), Some(0.625), linear),
+            (ask(vec3(2.0, -1.0, 0.0), vec3(-1.0, 1.0, 0.0)), Some(1.0), IN_THE_SIDE),
+            (ask(vec3(0.0, 2.0, -1.0), vec3(0.0, -2.0, 2.0)), Some(0.5), IN_THE_SIDE),
+            (ask(vec3(2.0, -1.0, 0.5), vec3(-1.0, 1.0, 0.0)), None, linear),
             (ask(vec3(0.5, 3.0, 0.0), Vec3::NEG_Y), Some(2.5), steep),
             (ask(vec3(0.5, -1.0, 0.0), Vec3::Y), Some(1.0), steep),
             (ask(vec3(0.25, 0.25, 0.0), Vec3::Y), Some(0.5), steep),
@@ -319,11 +337,14 @@ pub(super) fn cone_seen_along_its_side(trial: &Trial<'_>) -> CheckResult {
 pub(super) fn cone_at_its_tip_and_rim(trial: &Trial<'_>) -> CheckResult {
     let lost = "you lose a ray at the apex: a rounded point lies above the apex; intersect intervals instead \
         of testing points";
+    let touches = "you lose a ray that touches the cone only in its apex: the apex belongs to the cone";
     let mut judged = judged_cases(
         trial,
         &[
             (of(&HAT)(vec3(0.0, 3.0, 0.0), Vec3::NEG_Y), Some(2.0), lost),
             (of(&HAT)(vec3(0.0, 0.25, 0.0), Vec3::Y), Some(0.75), lost),
+            (of(&HAT)(vec3(-5.0, 1.0, 0.0), Vec3::X), Some(5.0), touches),
+            (of(&HAT)(vec3(1.0, 1.5, 4.0), vec3(-0.5, -0.25, -2.0)), Some(2.0), touches),
             (of(&HAT)(vec3(-5.0, 0.5, 0.0), Vec3::X), Some(4.5), ""),
         ],
     );

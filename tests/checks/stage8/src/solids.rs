@@ -406,7 +406,11 @@ fn invalid_numbers<S: Solid>(trial: &Trial<'_>) -> CheckResult {
             Ray { direction: Vec3::INFINITY, ..ray },
             Ray { origin: ray.origin.with_y(f32::NAN), ..ray },
             Ray { direction: ray.direction.with_z(f32::NAN), ..ray },
+            Ray { direction: ray.direction.with_z(f32::INFINITY), ..ray },
         ];
+        // An infinite direction may give t = 0, which only a range on both sides of 0 contains.
+        let line = |ray: Ray| ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
+        let broken = broken.into_iter().flat_map(|ray| [ray, line(ray)]);
         queries.extend(broken.map(|ray| SolidQuery { ray, solid: solid.clone() }));
         queries.push(SolidQuery { ray, solid: solid.grown(f32::NAN) });
     }

@@ -126,6 +126,28 @@ pub(super) fn bsp_takes_rays_on_and_along_planes(trial: &Trial<'_>) -> CheckResu
             );
         }
     }
+    // Planes that do not pass through the origin of the world: the height of a ray in such a plane is a rounding error.
+    for size in [2f32.powi(-10), 1.0, 2f32.powi(17)] {
+        for (axis, i) in (0..3).flat_map(|axis| (1..12).map(move |i| (axis, i))) {
+            let turn = |x: f32, y: f32| {
+                let mut turned = Vec3::ZERO;
+                (turned[axis], turned[(axis + 1) % 3]) = (size * x, size * y);
+                turned
+            };
+            // The two coordinates of each point add up to 1.75, and have few bits.
+            let x = i as f32 / 8.0;
+            let (origin, direction) = (turn(x, 1.75 - x), turn(1.0, -1.0));
+            let normal = turn(1.0, 1.0).as_dvec3().normalize();
+            let plane = CutPlane { normal, offset: normal.dot(turn(1.75, 0.0).as_dvec3()) };
+            let center = origin + 3.0 * direction;
+            let scene = Scene::new(vec![Thing::Sphere(Sphere { center, radius: 0.25 * size })]);
+            for (behind, before) in [(&[0u32][..], &[][..]), (&[][..], &[0u32][..])] {
+                let tree = two_leaves(plane, behind, before);
+                let what = "BSP tree of one plane far from the origin, and a ray in it";
+                asked.ask(what, &tree, &scene, Ray::new(origin, direction));
+            }
+        }
+    }
     // A room whose walls lie in the planes of the tree.
     let walls = (0..3).flat_map(|axis| [wall(axis, -1.0, 1.0), wall(axis, 1.0, 1.0)]).flatten();
     let room = Scene::new(walls.collect());

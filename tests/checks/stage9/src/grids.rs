@@ -350,5 +350,38 @@ pub(super) fn grid_takes_rays_through_corners_and_faces(trial: &Trial<'_>) -> Ch
         }
         asked.judge(|queries| trial.kit.grid_search(queries))?;
     }
-    Ok(())
+    beside_faces(trial)
+}
+
+/// Rays along a face between two cells, at a distance from it that is lost when the index of the cell is computed by a
+/// division; and rays whose range begins one float before a face.
+fn beside_faces(trial: &Trial<'_>) -> CheckResult {
+    let mut asked = Asked::new();
+    for axis in 0..3 {
+        let turn = |v: Vec3| {
+            let mut turned = Vec3::ZERO;
+            (0..3).for_each(|k| turned[(axis + k) % 3] = v[k]);
+            turned
+        };
+        // Each cell has the side 1, and the face between the first two cells is at 0. Only the cell of the ray lists the
+        // primitive. The quotient for cell 1 is rounded to 1 of 3 cells, and below 1 of 49 cells.
+        for (n, at) in [(3, -1e-20), (3, 1e-20), (49, -1e-20), (49, 1e-20)] {
+            let bounds = Aabb::new(turn(Vec3::NEG_ONE), turn(vec3(n as f32 - 1.0, 1.0, 1.0)));
+            let mut lists = vec![vec![]; n];
+            lists[usize::from(at > 0.0)] = vec![0];
+            let cells = filled(bounds, turn(vec3(n as f32, 1.0, 1.0)).as_uvec3(), &lists);
+            let ray = Ray::new(turn(vec3(at, -3.0, 0.0)), turn(Vec3::Y));
+            let what = format!("grid of {n} cells in a row, and a ray beside the face between two of them");
+            asked.add(what, CellsQuery { cells, ray, hits: vec![3.0] });
+        }
+        let bounds = Aabb::new(turn(Vec3::NEG_ONE), turn(vec3(3.0, 1.0, 1.0)));
+        let cells = filled(bounds, turn(vec3(2.0, 1.0, 1.0)).as_uvec3(), &[vec![0], vec![]]);
+        let hit = 3f32.next_down();
+        let ray =
+            Ray::new(turn(vec3(-2.0, 0.0, 0.0)), turn(Vec3::X)).with_range(hit.next_down(), f32::INFINITY);
+        let what =
+            "grid of 2 cells in a row, and a ray whose range begins one float before a hit in the first cell";
+        asked.add(what, CellsQuery { cells, ray, hits: vec![hit] });
+    }
+    asked.judge(|queries| trial.kit.grid_search(queries))
 }

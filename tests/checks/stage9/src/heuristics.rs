@@ -1,5 +1,6 @@
 //! The laws of the five heuristics of the kd-tree: each is tested alone, switched on and switched off.
 
+use super::kd_trees::below;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use glam::{Vec3, vec3};
@@ -17,19 +18,7 @@ fn build(trial: &Trial<'_>, bounds: &[Aabb], heuristics: KdHeuristics) -> KdTree
 /// sides.
 fn first_cut(tree: &KdTree) -> Option<(usize, f32, [usize; 3])> {
     let Some(KdNode::Inner { axis, at, left, right }) = tree.nodes.first().copied() else { return None };
-    let below = |side: u32| {
-        let (mut found, mut waiting): (Vec<u32>, Vec<u32>) = (Vec::new(), vec![side]);
-        while let Some(node) = waiting.pop() {
-            match tree.nodes[node as usize] {
-                KdNode::Inner { left, right, .. } => waiting.extend([left, right]),
-                KdNode::Leaf { first, count } => found.extend(tree.primitives(first, count)),
-            }
-        }
-        found.sort_unstable();
-        found.dedup();
-        found
-    };
-    let (left, right) = (below(left), below(right));
+    let [left, right] = [left, right].map(|side| below(tree, side));
     let both = left.iter().filter(|id| right.contains(id)).count();
     Some((usize::from(axis), at, [left.len(), right.len(), both]))
 }
@@ -281,6 +270,15 @@ pub(super) fn kd_stops_at_overlap(trial: &Trial<'_>) -> CheckResult {
             "a cut in the middle: half of each side is on the other, which is below 60 %",
             (divided.nodes.len() == 1, "you make a leaf although less than 60 % of each side are on both"),
         );
+    }
+    // 8 small boxes near x = 0 and one at 100: the second cut has all of its primitives on one side.
+    let row: Vec<Aabb> = cubes((0..8).map(|i| vec3(i as f32, 0.0, 0.0)).chain([vec3(100.0, 0.0, 0.0)]));
+    let divided = build(trial, &row, KdHeuristics { longest_axis: true, ..stop });
+    let is_full = |node: &KdNode| matches!(node, KdNode::Leaf { count, .. } if *count >= 8);
+    if divided.nodes.iter().any(is_full) {
+        let what = "8 boxes from x = 0 to 8 and one at 100, longest_axis and stop_at_overlap";
+        let says = "you make a leaf where one side has no primitives: then no primitive is on both sides";
+        return refuse(what, &first_cut(&divided), "the 8 boxes in several leaves", (true, says));
     }
     Ok(())
 }

@@ -15,6 +15,7 @@ use raykata::kit::{CellsQuery, KdQuery};
 use raykata::partition::{Grid, KdHeuristics, KdNode, KdTree, MOST_REFERENCES};
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
+use std::collections::BTreeSet;
 
 fn describe(query: &KdQuery) -> String {
     let boxes = checks::paste::list(&query.bounds);
@@ -54,7 +55,27 @@ fn fault(query: &KdQuery, yours: &KdTree) -> Option<Fault> {
     if let Some((yours, expected)) = outside {
         return Some(fact(yours, expected, "you cut at a plane outside the cell"));
     }
+    if let Some(node) = (0..yours.nodes.len() as u32).find(|&node| divides_nothing(yours, node)) {
+        let described = format!("node {node} is divided, and all its primitives are on both sides");
+        let mistake = "you divide primitives that are all on both sides: make a leaf of them";
+        return Some(fact(described, "a leaf".into(), mistake));
+    }
     listing_fault("leaf", &yours.bounds, &query.bounds, &leaves)
+}
+
+/// Whether all primitives of an inner node are on both sides of its plane.
+fn divides_nothing(tree: &KdTree, node: u32) -> bool {
+    let KdNode::Inner { left, right, .. } = tree.nodes[node as usize] else { return false };
+    let [left, right] = [left, right].map(|side| below(tree, side));
+    !left.is_empty() && left == right
+}
+
+/// The primitives that the leaves below a node list.
+pub(super) fn below(tree: &KdTree, node: u32) -> BTreeSet<u32> {
+    match tree.nodes[node as usize] {
+        KdNode::Leaf { first, count } => tree.primitives(first, count).iter().copied().collect(),
+        KdNode::Inner { left, right, .. } => &below(tree, left) | &below(tree, right),
+    }
 }
 
 /// Any of the 32 sets of heuristics.

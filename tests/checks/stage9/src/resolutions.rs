@@ -196,6 +196,9 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Chec
         density,
     };
     let empty = ResolutionQuery { bounds: Aabb::EMPTY, n_primitives: 0, density: 2.0 };
+    // A box with a corner `min` above `max` is empty, too.
+    let inverted =
+        ResolutionQuery { bounds: Aabb::new(Vec3::X, vec3(0.0, 8.0, 8.0)), n_primitives: 64, density: 1.0 };
     let cases = [
         (query(vec3(8.0, 8.0, 0.0), 64, 1.0), uvec3(8, 8, 1)),
         (query(vec3(0.0, 16.0, 4.0), 64, 1.0), uvec3(1, 16, 4)),
@@ -204,6 +207,7 @@ pub(super) fn grid_resolution_of_flat_and_empty_boxes(trial: &Trial<'_>) -> Chec
         (query(vec3(100.0, 1e-3, 100.0), 100, 1.0), uvec3(10, 1, 10)),
         (query(Vec3::ONE, 0, 2.0), UVec3::ONE),
         (empty, UVec3::ONE),
+        (inverted, UVec3::ONE),
         (query(Vec3::splat(1e30), 8, 1.0), UVec3::splat(2)),
         (query(vec3(1e6, 1.0, 1.0), 1000, 1.0), uvec3(256, 1, 1)),
     ];
