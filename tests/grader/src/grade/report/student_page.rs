@@ -47,7 +47,8 @@ fn blocked(graded: &Graded) -> Markup {
     html! {
         @for (outcome, reason, points) in reasons {
             section.alarm {
-                h2 { (outcome.words()) ": " (points) " points could not be graded" }
+                @let kind = if outcome == Outcome::Refused { "Refused" } else { "Does not compile" };
+                h2 { (kind) ": " (points) " points could not be graded" }
                 pre { (reason) }
             }
         }
