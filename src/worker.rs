@@ -47,19 +47,18 @@ pub enum Reply {
 }
 
 /// Writes one message to the pipe: four bytes of length, little-endian, then the message itself. Flushes the
-/// pipe. Returns the length.
+/// pipe.
 ///
 /// # Errors
 ///
 /// If the message cannot be serialised, if it is longer than `u32::MAX` bytes, or if the pipe cannot be
 /// written.
-pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<usize> {
+pub fn send<T: Serialize>(pipe: &mut impl Write, message: &T) -> io::Result<()> {
     let bytes = postcard::to_stdvec(message).map_err(io::Error::other)?;
     let length = u32::try_from(bytes.len()).map_err(io::Error::other)?;
     pipe.write_all(&length.to_le_bytes())?;
     pipe.write_all(&bytes)?;
-    pipe.flush()?;
-    Ok(bytes.len())
+    pipe.flush()
 }
 
 /// Reads one message of at most [`LONGEST_MESSAGE`] bytes, and waits for it if necessary.
@@ -140,7 +139,7 @@ fn answer_all(
     let say = {
         let writer = writer.clone();
         move |reply: &Reply| match writer.lock() {
-            Ok(mut writer) => send(&mut *writer, reply).map(drop),
+            Ok(mut writer) => send(&mut *writer, reply),
             Err(_) => Err(io::Error::other("a thread ended while it was writing")),
         }
     };

@@ -5,6 +5,7 @@
 //! call takes a batch of queries, so that a check with thousands of cases needs one message to the worker.
 
 mod adapters;
+mod costs;
 mod distribution;
 pub mod door;
 mod effects_analysis;
@@ -26,6 +27,7 @@ mod triangles;
 pub mod types;
 
 pub use adapters::{Linked, StudentKit};
+pub use costs::Costs;
 pub use distribution::{
     FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery, WeightedColor,
 };

@@ -40,7 +40,7 @@ impl Judge {
     /// Sends a message to the judge.
     pub fn send<T: Serialize>(&mut self, message: &T) -> Result<()> {
         let pipe = self.0.stdin.as_mut().context("the judge has no standard input")?;
-        send(pipe, message).map(drop).context("the judge accepts no message")
+        send(pipe, message).context("the judge accepts no message")
     }
 
     /// The next message of the judge.

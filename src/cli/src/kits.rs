@@ -3,7 +3,7 @@
 
 use crate::args::{Given, Misuse, Opt, names};
 use crate::worker::{CALL_PATIENCE, Worker};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use raykata::kit::{Door, Kit};
 use std::io::{BufRead, BufReader, IsTerminal, Read};
 use std::path::{Path, PathBuf};
@@ -208,7 +208,11 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
         shown.begin();
         bail!("{what} cannot be built: see the errors of the compiler above");
     }
-    Ok(reader.join().unwrap_or_else(|_| Ok(Vec::new()))?)
+    // Reading cannot panic.
+    reader
+        .join()
+        .map_err(|_| anyhow!("the output of cargo is lost"))?
+        .context("the output of cargo cannot be read")
 }
 
 /// The path of a program that cargo has built. A program that was built with a feature is copied to a name of

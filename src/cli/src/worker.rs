@@ -28,17 +28,22 @@ pub const CALL_PATIENCE: Duration = Duration::from_secs(10);
 /// takes long.
 const FRAME_PATIENCE: Duration = Duration::from_secs(120);
 
-/// The longest reply of an untrusted worker to a request of `length` bytes. It bounds the memory of the judge; decoded values
-/// can take several times as much memory as their message.
-fn longest_reply(request: &Request, length: usize) -> usize {
+/// The longest reply of an untrusted worker, in bytes, to a request that asks for no picture. It bounds the memory of the
+/// judge: a decoded list of empty lists takes 24 times as much. The longest answer of the reference to a check has 0.4 MB.
+const LONGEST_UNTRUSTED: usize = 4 << 20;
+
+/// The longest reply of an untrusted worker to `request`, in bytes.
+fn longest_reply(request: &Request) -> usize {
     match request {
         // A pixel has 12 bytes.
         Request::Render(job) => {
             let pixels = u64::from(job.scene.film.width) * u64::from(job.scene.film.height);
-            (1 << 20) + usize::try_from(16 * pixels).unwrap_or(LONGEST_MESSAGE).min(LONGEST_MESSAGE >> 1)
+            usize::try_from(12 * pixels)
+                .unwrap_or(LONGEST_MESSAGE)
+                .saturating_add(LONGEST_UNTRUSTED)
+                .min(LONGEST_MESSAGE)
         }
-        // The longest answers are structures: 16 references of 4 bytes and nodes of 50 bytes, for a box of 24 bytes.
-        _ => (1 << 20) + length.saturating_mul(32).min(16 << 20),
+        _ => LONGEST_UNTRUSTED,
     }
 }
 
@@ -228,8 +233,8 @@ impl Process {
         let trusted = self.launcher.is_none();
         // Start the watchdog before writing, because a worker that does not read would block the write forever.
         self.watchdog.bark_after(patience);
-        let length = worker::send(&mut self.to_worker, request)?;
-        let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request, length) };
+        worker::send(&mut self.to_worker, request)?;
+        let longest = if trusted { LONGEST_MESSAGE } else { longest_reply(request) };
         loop {
             match worker::receive_up_to(&mut self.from_worker, longest)? {
                 Reply::Progress { .. } | Reply::Building { .. } if !matches!(request, Request::Render(_)) => {
@@ -252,7 +257,7 @@ impl Process {
                     }
                 }
                 Reply::Question(question) => match &mut tables {
-                    Some(tables) => drop(worker::send(&mut self.to_worker, &tables.answer(&question))?),
+                    Some(tables) => worker::send(&mut self.to_worker, &tables.answer(&question))?,
                     None => {
                         return Err(io::Error::other("it asks a question, but its request has all tables"));
                     }

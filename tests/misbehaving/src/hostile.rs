@@ -1,6 +1,6 @@
 //! A hostile worker that speaks the protocol of the judge by itself, for the tests of the grader. The name of the program
-//! says what it does. It knows the reference and all public inputs, and needs no safe Rust: it is the worst that a
-//! submission could become if it took over its process.
+//! says what it does. It knows the reference and the public inputs of the checks that it is tried with. The syntax check and
+//! the kit do not bind it: it is the worst that a submission could become if it took over its process.
 
 use checks::Trial;
 use raykata::bvh::PrimitiveHit;
@@ -24,20 +24,20 @@ fn main() {
     let name = std::env::args().next().unwrap_or_default();
     let name = name.rsplit('/').next().unwrap_or_default().to_owned();
     let socket = std::io::stdin().as_fd().try_clone_to_owned().expect("a socket");
-    let mut worker = Hostile { pipe: UnixStream::from(socket), name, known: None, n_requests: 0 };
+    let mut worker = Hostile { pipe: UnixStream::from(socket), name, known: None, has_replied: false };
     // The judge closes the socket at the end.
     while let Ok(request) = receive::<Request>(&mut worker.pipe) {
-        worker.n_requests += 1;
         worker.reply(&request);
+        worker.has_replied = true;
     }
 }
 
 struct Hostile {
     pipe: UnixStream,
     name: String,
-    /// The public requests of stage 1, as bytes.
+    /// The public requests of the checks of stage 1 with which it is tried, as bytes.
     known: Option<HashSet<Vec<u8>>>,
-    n_requests: usize,
+    has_replied: bool,
 }
 
 impl Hostile {
@@ -70,7 +70,6 @@ impl Hostile {
     /// Answers a request that contains its tables.
     fn reply_plain(&mut self, request: &Request) {
         let right = || Reply::Answer(Box::new(request.answer(&*solutions::Kit.door(), &Unwatched)));
-        let error = |error: KitError| Reply::KitError(error);
         let words = || format!("SECRET {request:?}").chars().take(2000).collect::<String>();
         // These names are right for public inputs.
         if self.name.starts_with("public") && self.is_public(request) {
@@ -78,14 +77,14 @@ impl Hostile {
         }
         match self.name.as_str() {
             "public-then-tells" => {
-                self.say(&error(KitError::NotWritten { task: words(), place: words() }));
+                self.say(&Reply::KitError(KitError::NotWritten { task: words(), place: words() }));
             }
             "public-then-panics" => {
-                self.say(&error(KitError::Panicked { message: words(), place: words() }));
+                self.say(&Reply::KitError(KitError::Panicked { message: words(), place: words() }));
             }
-            "public-then-malformed" => self.say(&error(KitError::Malformed { what: words() })),
-            "public-then-crashed" => self.say(&error(KitError::Crashed { how: words() })),
-            "public-then-late" => self.say(&error(KitError::TimedOut { seconds: 123_456 })),
+            "public-then-malformed" => self.say(&Reply::KitError(KitError::Malformed { what: words() })),
+            "public-then-crashed" => self.say(&Reply::KitError(KitError::Crashed { how: words() })),
+            "public-then-late" => self.say(&Reply::KitError(KitError::TimedOut { seconds: 123_456 })),
             "public-then-another-kind" => self.say(&Reply::Answer(Box::new(Answer::EncodeGamma(vec![1])))),
             "public-then-ends" => std::process::exit(7),
             "public-then-writes" => {
@@ -95,14 +94,14 @@ impl Hostile {
             }
             // The next names break the rules of the protocol.
             "asks-without-need" => {
-                drop(self.ask(0, &[], Call::Hit(0, Ray::new(glam::Vec3::ZERO, glam::Vec3::X))))
+                self.ask(0, &[], Call::Hit(0, some_ray()));
             }
             "answers-in-advance" => {
                 for _ in 0..8 {
                     self.say(&right());
                 }
             }
-            "answers-before-the-question" if self.n_requests == 1 => {
+            "answers-before-the-question" if !self.has_replied => {
                 for _ in 0..2 {
                     self.say(&right());
                 }
@@ -136,21 +135,21 @@ impl Hostile {
     fn reply_withheld(&mut self, request: &Request) {
         match (self.name.as_str(), request) {
             ("asks-of-another-query", _) => {
-                let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
+                let ray = some_ray();
                 for query in [1 << 20, u32::MAX as usize] {
                     self.ask(query, &[], Call::Hit(0, ray));
                 }
                 self.reply_plain(request);
             }
             ("asks-of-nodes-that-do-not-exist", _) => {
-                let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
+                let ray = some_ray();
                 for call in [Call::Open(u32::MAX), Call::Enter(u32::MAX, ray), Call::Hit(u32::MAX, ray)] {
                     self.ask(0, &[u32::MAX], call);
                 }
                 self.reply_plain(request);
             }
             ("asks-the-wrong-kind", _) => {
-                let ray = Ray::new(glam::Vec3::ZERO, glam::Vec3::X);
+                let ray = some_ray();
                 for call in [Call::Search(ray), Call::Visible(0, ray), Call::End, Call::Open(0)] {
                     self.ask(0, &[], call);
                 }
@@ -170,13 +169,6 @@ impl Hostile {
             // The answer of the reference to tables of NaN is `None`, and its counts are small.
             ("never-asks", _) => self.reply_plain(request),
             // Learn all tables by as many questions as that takes, and let the reference answer as if it had asked little.
-            (
-                "learns-all-and-forges-counts" | "learns-primitives-and-forges-counts",
-                Request::ClosestHitBoth(queries),
-            ) => {
-                let full = self.learn(queries);
-                self.reply_plain(&Request::ClosestHitBoth(full));
-            }
             ("learns-all-and-forges-counts", Request::ClosestHit(queries)) => {
                 let full = self.learn(queries);
                 self.reply_plain(&Request::ClosestHit(full));
@@ -200,15 +192,19 @@ impl Hostile {
                 self.say(&Reply::Answer(Box::new(Answer::AnyHit(answers))));
             }
             ("learns-all-and-forges-counts" | "learns-primitives-and-forges-counts", request) => {
-                self.reply_to_cells(request);
+                self.learn_primitives(request);
             }
             _ => self.reply_honestly(request),
         }
     }
 
-    /// Learns the tables of all cells by a test of each primitive, and reports the visits of the reference afterwards.
-    fn reply_to_cells(&mut self, request: &Request) {
+    /// Learns the tables of other searches by a test of each primitive, and reports the visits of the reference afterwards.
+    fn learn_primitives(&mut self, request: &Request) {
         match request {
+            Request::ClosestHitBoth(queries) => {
+                let full = self.learn(queries);
+                self.reply_plain(&Request::ClosestHitBoth(full));
+            }
             Request::GridSearch(queries) => {
                 let full = self.learn_cells(queries);
                 self.forge_visits(&Request::GridSearch(full));
@@ -327,16 +323,23 @@ impl Hostile {
     }
 }
 
-/// The requests of the checks of stage 1 with the public inputs, as bytes. Those of all stages take too long.
+/// The requests of the first checks of stage 1 with the public inputs, as bytes. Those of all checks take too long.
 fn public_requests() -> HashSet<Vec<u8>> {
     let recorder = Door(Recorder::default());
-    for check in
-        all_checks::STAGES.iter().filter(|(stage, _)| *stage == 1).flat_map(|(_, checks)| checks.iter())
-    {
+    let of_stage_1 = all_checks::STAGES.iter().filter(|(stage, _)| *stage == 1);
+    for check in of_stage_1.flat_map(|(_, checks)| checks.iter()).take(KNOWN_CHECKS) {
         // The reference passes all checks. A check that cannot run here has no request that matters.
         let _ = kit_error::catch(|| (check.law)(&Trial::new(&recorder, check.name, 0)));
     }
     recorder.0.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The number of checks of stage 1 whose public inputs the worker knows. It is tried with these.
+const KNOWN_CHECKS: usize = 4;
+
+/// A ray for questions whose answer does not matter.
+fn some_ray() -> Ray {
+    Ray::new(glam::Vec3::ZERO, glam::Vec3::X)
 }
 
 /// The reference, with a record of its requests.

@@ -3,8 +3,8 @@
 use raykata::bvh::Probe;
 use raykata::kit::questions::{Call, Question, Response};
 use raykata::kit::{
-    Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, KitError, PacketProbe, PacketQuery, Request,
-    SearchAnswer, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, kit_error,
+    Answer, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, Costs, KitError, PacketProbe, PacketQuery,
+    Request, SearchQuery, ShadeQuery, ShadowProbe, TableProbe, kit_error,
 };
 use raykata::partition::Cells;
 
@@ -139,50 +139,24 @@ impl<'a> Withheld<'a> {
 
     /// Replaces the counts in an answer by those of the judge.
     pub(super) fn correct(self, answer: &mut Answer) {
-        let probes = self.0.into_iter().map(|asked| asked.probe);
-        match answer {
-            Answer::BruteForce(answers) | Answer::ClosestHitBoth(answers) | Answer::ClosestHit(answers) => {
-                answers.iter_mut().zip(probes).for_each(|(answer, probe)| probe.correct_search(answer));
-            }
-            Answer::AnyHit(answers) => {
-                answers.iter_mut().zip(probes).for_each(|((_, answer), probe)| probe.correct_search(answer));
-            }
-            Answer::GraphHit(answers) => {
-                for (answer, probe) in answers.iter_mut().zip(probes) {
-                    if let Kept::Table(probe) = &probe {
-                        answer.asked.clone_from(&probe.asked);
-                    }
-                    probe.correct_search(&mut answer.search);
+        for (costs, asked) in answer.costs().into_iter().zip(self.0) {
+            match (costs, asked.probe) {
+                (Costs::Search(answer), Kept::Table(probe)) => *answer = probe.answer(answer.hit),
+                (Costs::Graph(answer), Kept::Table(probe)) => {
+                    answer.search = probe.answer(answer.search.hit);
+                    answer.asked = probe.asked;
                 }
-            }
-            Answer::GridSearch(answers)
-            | Answer::OctreeByCells(answers)
-            | Answer::OctreeSearch(answers)
-            | Answer::KdSearch(answers)
-            | Answer::BspSearch(answers)
-            | Answer::CachedSearch(answers) => {
-                for (answer, probe) in answers.iter_mut().zip(probes) {
-                    if let Kept::Cells(probe) | Kept::Cached(probe, _) = probe {
-                        *answer = CellsAnswer { hit: answer.hit, ..probe.answer };
-                    }
+                (Costs::Cells(answer), Kept::Cells(probe) | Kept::Cached(probe, _)) => {
+                    *answer = CellsAnswer { hit: answer.hit, ..probe.answer };
                 }
-            }
-            Answer::PacketSearch(answers) => {
-                for (answer, probe) in answers.iter_mut().zip(probes) {
-                    if let Kept::Packet(probe) = probe {
-                        answer.opened = probe.answer.opened;
-                        answer.counts = probe.answer.counts;
-                    }
+                (Costs::Packet(answer), Kept::Packet(probe)) => {
+                    answer.opened = probe.answer.opened;
+                    answer.counts = probe.answer.counts;
                 }
+                (Costs::Shade(answer), Kept::Shadows(probe)) => *answer = probe.finish(answer.color),
+                // An answer of another kind than its request is refused elsewhere.
+                _ => {}
             }
-            Answer::Shade(answers) => {
-                for (answer, probe) in answers.iter_mut().zip(probes) {
-                    if let Kept::Shadows(probe) = probe {
-                        *answer = probe.finish(answer.color);
-                    }
-                }
-            }
-            _ => {}
         }
     }
 }
@@ -204,12 +178,6 @@ impl Kept<'_> {
                 Response::Visible(probe.visible(light as usize, &ray))
             }
             _ => other_kind(),
-        }
-    }
-
-    fn correct_search(self, answer: &mut SearchAnswer) {
-        if let Kept::Table(probe) = self {
-            *answer = probe.answer(answer.hit);
         }
     }
 }

@@ -2,9 +2,10 @@
 //! because a worker could invent its counts.
 
 use crate::worker::Worker;
+use glam::Vec3;
 use raykata::count::Counts;
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Request, SearchAnswer, Transport};
+use raykata::kit::{Answer, Costs, Request, SearchAnswer, Transport};
 use raykata::ray::Ray;
 use std::sync::Arc;
 
@@ -27,44 +28,28 @@ impl Transport for Costly {
 }
 
 fn raise_costs(answer: &mut Answer, lights: &[usize]) {
-    match answer {
-        Answer::BruteForce(answers) | Answer::ClosestHitBoth(answers) | Answer::ClosestHit(answers) => {
-            answers.iter_mut().for_each(raise_search);
-        }
-        Answer::AnyHit(answers) => answers.iter_mut().for_each(|(_, search)| raise_search(search)),
-        Answer::GraphHit(answers) => {
-            for answer in answers {
+    for (index, costs) in answer.costs().into_iter().enumerate() {
+        match costs {
+            Costs::Search(answer) => raise_search(answer),
+            Costs::Graph(answer) => {
                 raise_search(&mut answer.search);
                 raise_list(&mut answer.asked);
             }
-        }
-        Answer::GridSearch(answers)
-        | Answer::OctreeByCells(answers)
-        | Answer::OctreeSearch(answers)
-        | Answer::KdSearch(answers)
-        | Answer::BspSearch(answers)
-        | Answer::CachedSearch(answers) => {
-            for answer in answers {
+            Costs::Cells(answer) => {
                 raise_list(&mut answer.visits);
                 raise_list(&mut answer.tests);
             }
-        }
-        Answer::PacketSearch(answers) => {
-            for answer in answers {
+            Costs::Packet(answer) => {
                 raise_list(&mut answer.opened);
                 raise_counts(&mut answer.counts);
             }
-        }
-        Answer::Shade(answers) => {
-            for (answer, n_lights) in answers.iter_mut().zip(lights) {
+            Costs::Shade(answer) => {
                 // Trace a shadow ray to every light, also where it cannot matter.
-                answer.traced.extend(0..*n_lights);
-                let ray = answer.rays.first().copied();
-                let ray = ray.unwrap_or_else(|| Ray::new(glam::Vec3::ZERO, glam::Vec3::X));
+                answer.traced.extend(0..lights.get(index).copied().unwrap_or(0));
+                let ray = answer.rays.first().copied().unwrap_or_else(|| Ray::new(Vec3::ZERO, Vec3::X));
                 answer.rays.resize(answer.traced.len(), ray);
             }
         }
-        _ => {}
     }
 }
 

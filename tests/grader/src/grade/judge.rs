@@ -364,3 +364,5 @@ impl Transport for StoppableWorker {
 
 #[cfg(test)]
 mod hostile;
+#[cfg(test)]
+mod varied;

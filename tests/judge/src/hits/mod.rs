@@ -36,7 +36,7 @@ pub fn serve(mut asked: impl Read, mut answers: impl Write) -> Result<()> {
     let Some(jury) = jury else { return Ok(()) };
     loop {
         match receive(&mut asked) {
-            Ok(hits) => drop(send(&mut answers, &jury.verdicts(hits)?)?),
+            Ok(hits) => send(&mut answers, &jury.verdicts(hits)?)?,
             Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(()),
             Err(error) => return Err(error.into()),
         }

@@ -12,6 +12,8 @@ use std::sync::OnceLock;
 struct Row {
     name: &'static str,
     what: &'static str,
+    /// Whether it keeps the judge waiting at every call. Such a worker gets two checks, and runs with `CI_LONG=1` only.
+    is_slow: bool,
     allowed: Allowed,
 }
 
@@ -28,102 +30,159 @@ enum Allowed {
 }
 
 const ROWS: &[Row] = &[
-    Row { name: "honest", what: "control: the reference, by its own protocol code", allowed: Allowed::All },
+    Row {
+        name: "honest",
+        what: "control: the reference, by its own protocol code",
+        is_slow: false,
+        allowed: Allowed::All,
+    },
     Row {
         name: "learns-all-and-forges-counts",
         what: "learns all tables by questions, then answers as the reference with the reference's costs",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
     Row {
         name: "learns-primitives-and-forges-counts",
         what: "tests all primitives, and reports one visit, or the visits of the reference",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
-    Row { name: "never-asks", what: "answers searches without a question", allowed: Allowed::AllButCosts },
+    Row {
+        name: "never-asks",
+        what: "answers searches without a question",
+        is_slow: false,
+        allowed: Allowed::AllButCosts,
+    },
     Row {
         name: "asks-of-another-query",
         what: "asks about queries that do not exist",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
     Row {
         name: "asks-of-nodes-that-do-not-exist",
         what: "asks about nodes, primitives and cells that do not exist",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
     Row {
         name: "asks-the-wrong-kind",
         what: "asks questions of other searches",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
-    Row { name: "asks-forever", what: "asks the same question without end", allowed: Allowed::AllButCosts },
+    Row {
+        name: "asks-forever",
+        what: "asks the same question without end",
+        is_slow: true,
+        allowed: Allowed::AllButCosts,
+    },
     Row {
         name: "asks-with-a-million-visits",
         what: "reports two million visits",
+        is_slow: false,
         allowed: Allowed::AllButCosts,
     },
     Row {
         name: "asks-without-need",
         what: "asks although its request has all tables",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-tells",
         what: "right for public inputs, quotes hidden ones as \"not written yet\"",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-panics",
         what: "right for public inputs, quotes hidden ones as a panic",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-malformed",
         what: "right for public inputs, quotes hidden ones as a malformed answer",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-crashed",
         what: "right for public inputs, says that it crashed on hidden ones",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-late",
         what: "right for public inputs, says that it was late on hidden ones",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-another-kind",
         what: "right for public inputs, then answers of another function",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-ends",
         what: "right for public inputs, ends at hidden ones",
+        is_slow: false,
         allowed: Allowed::None,
     },
     Row {
         name: "public-then-writes",
         what: "right for public inputs, prints hidden ones and aborts",
+        is_slow: false,
         allowed: Allowed::None,
     },
-    Row { name: "answers-in-advance", what: "eight answers per request", allowed: Allowed::Some },
+    Row {
+        name: "answers-in-advance",
+        what: "eight answers per request",
+        is_slow: false,
+        allowed: Allowed::Some,
+    },
     Row {
         name: "answers-before-the-question",
         what: "one answer too many, at the start",
+        is_slow: false,
         allowed: Allowed::Some,
     },
-    Row { name: "no-message", what: "bytes that are no message", allowed: Allowed::None },
-    Row { name: "endless-message", what: "a message without end", allowed: Allowed::None },
+    Row { name: "no-message", what: "bytes that are no message", is_slow: false, allowed: Allowed::None },
+    Row { name: "endless-message", what: "a message without end", is_slow: true, allowed: Allowed::None },
     Row {
         name: "promises-a-gigabyte",
         what: "the length of a message that never comes",
+        is_slow: true,
         allowed: Allowed::None,
     },
-    Row { name: "sends-60-megabytes", what: "60 MB of words per answer", allowed: Allowed::None },
-    Row { name: "byte-by-byte", what: "20 bytes per second", allowed: Allowed::None },
-    Row { name: "answers-nothing", what: "reads requests and answers nothing", allowed: Allowed::None },
-    Row { name: "progress-forever", what: "reports progress without end", allowed: Allowed::None },
-    Row { name: "fewer-answers", what: "no answers to a request with many queries", allowed: Allowed::None },
+    Row {
+        name: "sends-60-megabytes",
+        what: "60 MB of words per answer",
+        is_slow: true,
+        allowed: Allowed::None,
+    },
+    Row { name: "byte-by-byte", what: "20 bytes per second", is_slow: true, allowed: Allowed::None },
+    Row {
+        name: "answers-nothing",
+        what: "reads requests and answers nothing",
+        is_slow: true,
+        allowed: Allowed::None,
+    },
+    Row {
+        name: "progress-forever",
+        what: "reports progress without end",
+        is_slow: true,
+        allowed: Allowed::None,
+    },
+    Row {
+        name: "fewer-answers",
+        what: "no answers to a request with many queries",
+        is_slow: false,
+        allowed: Allowed::None,
+    },
 ];
 
 fn hostile() -> &'static PathBuf {
@@ -145,80 +204,35 @@ fn judged(judge: &Judge, name: &str) -> Vec<CheckResult> {
     judge.judge(&worker, &BTreeMap::new(), false).0
 }
 
-/// Rows whose worker keeps the judge waiting at every call. They get two checks, and run with `CI_LONG=1` only.
-const SLOW: [&str; 7] = [
-    "answers-nothing",
-    "sends-60-megabytes",
-    "asks-forever",
-    "endless-message",
-    "promises-a-gigabyte",
-    "byte-by-byte",
-    "progress-forever",
-];
-
 #[test]
 fn hostile_workers_that_speak_the_protocol_forge_no_point() {
     let root = kits::root().expect("a kit");
     let judge = |stages: &[u8]| Judge::of(&root, stages, SEED, Confinement::Full).expect("a judge");
-    // Stage 1 has no tables; its first checks are enough. Of stages 3 and 9, use the checks that judge a cost.
+    // Stage 1 has no tables; use the checks whose public inputs the workers know. Of stages 3 and 9, use the checks that
+    // judge a cost.
     let mut of_stage_1 = judge(&[1]);
     of_stage_1.checks.truncate(4);
-    let mut both = judge(&[1, 3, 9]);
-    both.checks.retain(|put| put.counts || put.check.stage == 1);
-    let mut few = judge(&[1, 3]);
-    few.checks.retain(|put| put.counts || put.check.stage == 1);
-    few.checks.drain(1..few.checks.len() - 1);
-    let judge_for = |row: &Row| match row.allowed {
-        _ if SLOW.contains(&row.name) => &few,
-        // The worker generates the public inputs of stage 1 to compare requests with them.
-        Allowed::None => &of_stage_1,
-        _ => &both,
+    let mut with_costs = judge(&[1, 3, 9]);
+    with_costs.checks.retain(|put| put.counts || put.check.stage == 1);
+    let mut two_checks = judge(&[1, 3]);
+    two_checks.checks.retain(|put| put.counts || put.check.stage == 1);
+    two_checks.checks.drain(1..two_checks.checks.len() - 1);
+    let try_one = |row: &Row| match row.allowed {
+        _ if row.is_slow => try_row(row, &two_checks),
+        Allowed::None => try_row(row, &of_stage_1),
+        _ => try_row(row, &with_costs),
     };
-    // Most slow rows only wait, so judge them at the same time.
-    let lines = std::thread::scope(|scope| {
-        let rows = ROWS.iter().map(|row| (row, judge_for(row)));
-        let (slow, fast): (Vec<_>, Vec<_>) = rows.partition(|(row, _)| SLOW.contains(&row.name));
-        let is_long = std::env::var_os("CI_LONG").is_some();
-        let slow = slow.into_iter().filter(|_| is_long);
-        let waiting: Vec<_> =
-            slow.into_iter().map(|(row, judge)| scope.spawn(|| try_row(row, judge))).collect();
-        let mut lines: Vec<String> = fast.into_iter().map(|(row, judge)| try_row(row, judge)).collect();
-        lines.extend(waiting.into_iter().map(|thread| thread.join().expect("a row")));
-        lines
+    let is_long = std::env::var_os("CI_LONG").is_some();
+    let rows: Vec<&Row> = ROWS.iter().filter(|row| is_long || !row.is_slow).collect();
+    // Most slow workers only wait, so judge all at the same time.
+    let lines: Vec<String> = std::thread::scope(|scope| {
+        let tried: Vec<_> = rows.into_iter().map(|row| scope.spawn(|| try_one(row))).collect();
+        tried.into_iter().map(|row| row.join().expect("a row")).collect()
     });
     println!("| worker | what it does | points |\n|---|---|---|\n{}", lines.join("\n"));
 }
 
 const SEED: u64 = 0x5eed_0f7e_57ab_1e00;
-
-#[test]
-fn every_function_has_a_check_with_hidden_inputs() {
-    let root = kits::root().expect("a kit");
-    let stages: Vec<u8> = STAGES.iter().map(|(stage, _)| *stage).collect();
-    let judge = Judge::of(&root, &stages, SEED, Confinement::Full).expect("a judge");
-    let varied: HashSet<_> =
-        judge.checks.iter().filter(|put| put.varies).flat_map(|put| put.asks.iter().copied()).collect();
-    for put in &judge.checks {
-        let open: Vec<_> = put.asks.difference(&varied).collect();
-        assert!(open.is_empty(), "{}: no check with hidden inputs asks {open:?}", put.check.name);
-    }
-    let fixed: Vec<&Put> = judge.checks.iter().filter(|put| !put.varies).collect();
-    let points = |puts: &[&Put]| -> u32 {
-        puts.iter().map(|put| rubric::entry(put.check.stage, put.check.name).points).sum()
-    };
-    let all: Vec<&Put> = judge.checks.iter().collect();
-    println!(
-        "{} of {} checks have fixed inputs: {} of {} points",
-        fixed.len(),
-        all.len(),
-        points(&fixed),
-        points(&all)
-    );
-    for stage in &stages {
-        let of_stage: Vec<&Put> = fixed.iter().copied().filter(|put| put.check.stage == *stage).collect();
-        println!("stage {stage}: {} checks, {} points", of_stage.len(), points(&of_stage));
-    }
-}
 
 /// Judges a hostile worker and tests that it passes no check that it must not pass, and that nothing that it says about hidden
 /// inputs gets into a message. Returns its line of the table.

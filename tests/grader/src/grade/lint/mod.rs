@@ -4,7 +4,12 @@
 //! check reads tokens instead of syntax trees, so that it also sees the contents of macros. It leaves out top-level items
 //! under `#[cfg(test)]`, which are not compiled. The compiler reports files that are not valid Rust.
 
+mod compiled;
+mod rules;
+
+use compiled::compiled;
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
+use rules::{ATTRIBUTES, LINTS, MACROS, MODULES};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::str::FromStr;
@@ -30,59 +35,6 @@ pub struct Reading {
     pub may_remember: bool,
 }
 
-/// Modules of the standard library that no exercise needs, by rule.
-const MODULES: [(&str, &str, &str); 12] = [
-    ("process", "process", "an exercise must not start or end processes"),
-    ("files", "fs", "an exercise must not read or write files: the scaffold loads scenes"),
-    ("network", "net", "an exercise must not use the network"),
-    ("environment", "env", "an exercise may depend only on its arguments"),
-    ("threads", "thread", "the scaffold renders on all cores; exercises need no threads of their own"),
-    ("system", "os", "an exercise must not call the operating system"),
-    ("system", "ffi", "an exercise must not call foreign code"),
-    ("system", "alloc", "an exercise needs no allocator of its own"),
-    ("panics", "panic", "an exercise may panic, and the kit reports it; it must not catch or hide a panic"),
-    ("intrinsics", "arch", "an exercise must not use assembly or intrinsics"),
-    ("intrinsics", "intrinsics", "an exercise must not use assembly or intrinsics"),
-    ("input", "stdin", "no input is typed while exercises are graded"),
-];
-
-/// Macros that read data from outside of the file, by rule.
-const MACROS: [(&str, &str, &str); 8] = [
-    ("include", "include", "an exercise must be complete in its own file"),
-    ("include", "include_str", "an exercise must be complete in its own file"),
-    ("include", "include_bytes", "an exercise must be complete in its own file"),
-    ("environment", "env", "an exercise may depend only on its arguments"),
-    ("environment", "option_env", "an exercise may depend only on its arguments"),
-    ("intrinsics", "asm", "an exercise must not use assembly or intrinsics"),
-    ("intrinsics", "global_asm", "an exercise must not use assembly or intrinsics"),
-    ("intrinsics", "naked_asm", "an exercise must not use assembly or intrinsics"),
-];
-
-/// Attributes that change the build, by rule.
-const ATTRIBUTES: [(&str, &str, &str); 11] = [
-    ("include", "path", "an exercise must be complete in its own file"),
-    ("linkage", "link", "an exercise must not link libraries"),
-    ("linkage", "link_section", "an exercise must not change how programs are linked"),
-    ("linkage", "link_name", "an exercise must not change how programs are linked"),
-    ("linkage", "no_mangle", "an exercise must not change how programs are linked"),
-    ("linkage", "export_name", "an exercise must not change how programs are linked"),
-    ("linkage", "used", "an exercise must not change how programs are linked"),
-    ("linkage", "global_allocator", "an exercise needs no allocator of its own"),
-    (
-        "linkage",
-        "panic_handler",
-        "an exercise may panic, and the kit reports it; it must not catch or hide a panic",
-    ),
-    ("linkage", "no_std", "an exercise must not change how it is built"),
-    ("linkage", "no_main", "an exercise must not change how it is built"),
-];
-
-/// Lints that a file must not switch off, each with the reason. Forbidding them is allowed.
-const LINTS: [(&str, &str); 2] = [
-    ("unsafe_code", "unsafe code is not part of any exercise"),
-    ("long_running_const_eval", "this lint stops constants whose evaluation never ends"),
-];
-
 /// Checks the text of a file. The findings are sorted by line.
 pub fn read(text: &str) -> Reading {
     // The compiler explains unbalanced tokens better.
@@ -96,48 +48,6 @@ pub fn read(text: &str) -> Reading {
     findings.sort_by_key(|finding| finding.line);
     findings.dedup();
     Reading { findings, may_remember: keeps(tokens) }
-}
-
-/// Returns the tokens of a file without its items under `#[cfg(test)]`. Only items at the top level are left out: a macro may
-/// give other tokens another meaning.
-fn compiled(tokens: TokenStream) -> TokenStream {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let mut kept = Vec::new();
-    let mut index = 0;
-    while index < tokens.len() {
-        let rest = &tokens[index..];
-        match is_test_attribute(rest).then(|| item_length(&rest[2..])).flatten() {
-            Some(length) => index += 2 + length,
-            None => {
-                kept.push(tokens[index].clone());
-                index += 1;
-            }
-        }
-    }
-    kept.into_iter().collect()
-}
-
-fn is_test_attribute(tokens: &[TokenTree]) -> bool {
-    match tokens {
-        [hash, TokenTree::Group(group), ..] if is(Some(hash), '#') => {
-            group.delimiter() == Delimiter::Bracket && group.to_string().replace(' ', "") == "[cfg(test)]"
-        }
-        _ => false,
-    }
-}
-
-/// Returns the number of tokens of the item at the beginning, up to its `;` or its `{…}`; `None` if it is no item.
-fn item_length(tokens: &[TokenTree]) -> Option<usize> {
-    const ITEMS: [&str; 10] =
-        ["mod", "fn", "use", "impl", "struct", "enum", "const", "static", "trait", "type"];
-    let is_end = |token: &TokenTree| match token {
-        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
-        token => is(Some(token), ';'),
-    };
-    let end = tokens.iter().position(is_end)?;
-    let names_an_item =
-        |token: &TokenTree| matches!(token, TokenTree::Ident(word) if ITEMS.contains(&plain(word).as_str()));
-    tokens[..end].iter().any(names_an_item).then_some(end + 1)
 }
 
 /// Returns the names of the modules and types that the tokens declare.
