@@ -46,8 +46,10 @@ pub fn build(bounds: &[Aabb], resolution: UVec3) -> Grid {
 /// sequence of cells that share a face.
 ///
 /// Pitfall: a primitive of a cell may be hit outside the cell, and a later cell may hold a nearer hit (trap A8).
-/// The index of the first cell is a rounded quotient, as in [`build`].
-/// `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
+///
+/// Pitfall: the quotient that gives the index of the first cell is rounded, as in [`build`].
+///
+/// Pitfall: `tMax += tDelta` accumulates rounding errors and visits wrong cells in a fine grid: compute `t` from the index of
 /// the cell, in double precision.
 ///
 /// Slide: "Uniform Grid" (trace rays through grid cells).

@@ -32,7 +32,8 @@ pub trait Cells {
     fn visit(&mut self, node: u32);
 
     /// The `t` at which `ray` hits `primitive`, or `None` if there is no hit with
-    /// `ray.t_min < t < ray.t_max`. Counts a primitive test.
+    /// `ray.t_min < t < ray.t_max`. A search tests only primitives that a visited node lists. Counts a primitive
+    /// test.
     ///
     /// # Panics
     ///

@@ -10,6 +10,7 @@ mod forge;
 mod grader;
 mod judge;
 mod lint;
+mod naive;
 mod one;
 mod options;
 mod rehearsal;

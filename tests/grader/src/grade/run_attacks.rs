@@ -4,12 +4,14 @@ use super::attacks::{self, Tried};
 use super::forge::Forge;
 use super::grader::Grader;
 use super::judge::Judge;
+use super::naive::Naive;
 use super::result::Outcome;
+use crate::queue;
 use crate::report::bar_of_steps;
 use crate::sandbox::{self, Confinement};
 use anyhow::Result;
 use raykata_cli::args::{Argument, Given, Opt, Spec};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -19,22 +21,22 @@ pub static SPEC: Spec = Spec {
     about: "Test the grader with submissions that try to get points without earning them (for authors).",
     arguments: &[Argument::optional("NAME", "The names of attacks [default: all].").many()],
     options: &[&[Opt::flag(
-        "--table",
-        "Print the result of `cargo test` and of this grader for each attack that was tried on both.",
+        "--against-cargo",
+        "Also run `cargo test` on each attack that is a folder, in a namespace, and print both results as a table.",
     )]],
 };
 
 /// The options of `grader attacks`.
 pub struct Options {
     names: Vec<String>,
-    table: bool,
+    against_cargo: bool,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Options {
         let names = given.arguments(0).iter().map(|name| name.to_string_lossy().into_owned());
-        Options { names: names.collect(), table: given.has("--table") }
+        Options { names: names.collect(), against_cargo: given.has("--against-cargo") }
     }
 }
 
@@ -70,18 +72,37 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
         bar.inc(1);
     })?;
     bar.finish_and_clear();
-    if options.table {
-        println!("| attack | `cargo test` | this grader |\n|---|---|---|");
-        tried.iter().filter_map(row).for_each(|row| println!("{row}"));
+    if options.against_cargo {
+        compare(root, &tried)?;
     }
     let repelled = tried.iter().filter(|tried| tried.complaints.is_empty()).count();
     println!("{repelled} of {} attacks got the expected result", tried.len());
     Ok(repelled == tried.len())
 }
 
-fn row(tried: &Tried) -> Option<String> {
-    let naive = tried.attack.naive.as_ref()?;
-    let ours = match &tried.graded {
+/// Prints the results of `cargo test` and of this grader as a table.
+fn compare(root: &Path, tried: &[Tried]) -> Result<()> {
+    let stages: BTreeSet<u8> = tried.iter().flat_map(|tried| tried.attack.stages.iter().copied()).collect();
+    let naive = Naive::prepare(root, &stages.into_iter().collect::<Vec<u8>>())?;
+    let bar = bar_of_steps(tried.len());
+    let results = queue::run(&queue::one_a_core(), tried, |(), tried| {
+        let result = naive.grade(&tried.attack);
+        bar.inc(1);
+        result
+    })?;
+    bar.finish_and_clear();
+    println!("| attack | `cargo test` | this grader |\n|---|---|---|");
+    for (tried, result) in tried.iter().zip(results) {
+        if let Some(result) = result {
+            println!("| {} | {result} | {} |", tried.attack.title, ours(tried));
+        }
+    }
+    Ok(())
+}
+
+/// Returns the result of this grader in words.
+fn ours(tried: &Tried) -> String {
+    let words = match &tried.graded {
         Err(error) => format!("the grader failed: {error:#}"),
         Ok(graded) if !graded.trouble.is_empty() => format!("not graded: {}", graded.trouble),
         Ok(graded) => {
@@ -95,5 +116,5 @@ fn row(tried: &Tried) -> Option<String> {
             format!("{earned} of {of} points{}", others.concat())
         }
     };
-    Some(format!("| {} | {naive} | {} |", tried.attack.title, ours.replace(['\n', '|'], " ")))
+    words.replace(['\n', '|'], " ")
 }

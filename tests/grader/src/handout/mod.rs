@@ -76,12 +76,7 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
     crate::report::make_folder(parent)?;
     // Write all files into a draft folder.
     let draft = tempfile::tempdir_in(parent)?;
-    let files = files(root)?;
-    for (path, bytes) in &files {
-        let file = draft.path().join(path);
-        fs::create_dir_all(file.parent().unwrap_or(parent))?;
-        fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
-    }
+    let n_files = write(root, draft.path())?;
     // Stop if the draft contains an answer.
     let found = leaks(root, draft.path())?;
     ensure!(
@@ -89,7 +84,6 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         "the hand-out would contain answers, so it was not written:\n  {}",
         found.join("\n  ")
     );
-    settle_versions(draft.path());
     make_readable(draft.path())?;
     // A rename replaces an empty folder.
     let draft = draft.keep();
@@ -97,12 +91,20 @@ pub fn run(root: &Path, options: &Options) -> Result<()> {
         let _ = fs::remove_dir_all(&draft);
         return Err(error).with_context(|| format!("cannot make {}", options.folder.display()));
     }
-    println!(
-        "{}: {} files; run `cargo run` in it to see the first task",
-        options.folder.display(),
-        files.len()
-    );
+    println!("{}: {} files; run `cargo run` in it to see the first task", options.folder.display(), n_files);
     Ok(())
+}
+
+/// Writes the files of a hand-out into a folder, with Cargo.lock if cargo can make it. Returns the number of the others.
+pub fn write(root: &Path, folder: &Path) -> Result<usize> {
+    let files = files(root)?;
+    for (path, bytes) in &files {
+        let file = folder.join(path);
+        fs::create_dir_all(file.parent().unwrap_or(folder))?;
+        fs::write(&file, bytes).with_context(|| format!("cannot write {path}"))?;
+    }
+    settle_versions(folder);
+    Ok(files.len())
 }
 
 /// Returns all files of a hand-out except Cargo.lock, by their paths.

@@ -90,10 +90,6 @@ pub struct Attack {
     pub what: String,
     /// Its target.
     pub family: Family,
-    /// Its number in the first catalogue of attacks, if it is from there.
-    pub catalogue: Option<u8>,
-    /// The result of `cargo test` on the submission as it was handed in.
-    pub naive: Option<String>,
     /// Its files before the first step.
     #[serde(default)]
     pub base: Base,

@@ -200,7 +200,8 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         assert_eq!(sum(&format!("classroom/{page}.json"), "score")?, u64::from(earned));
 
         let html = &files[&format!("students/{page}.html")];
-        let shown = format!("<p class=\"points\"><b>{earned}</b> of {of} points (");
+        let percent = if of == 0 { 0.0 } else { (100.0 * f64::from(earned) / f64::from(of)).round() };
+        let shown = format!("<p class=\"points\"><b>{earned}</b> of {of} points ({percent} %)");
         assert_eq!(html.contains(&shown), !graded.checks.is_empty());
         assert!(files["junit.xml"].contains(&format!("<property name=\"points\" value=\"{earned}\"/>")));
     }
