@@ -61,6 +61,9 @@ pub trait Launcher: Send + Sync {
 
     /// The processor time that the process has used so far.
     fn cpu_time(&self, process: u32) -> Duration;
+
+    /// The time for which the process could not compute because others used the processors.
+    fn waited(&self, process: u32) -> Duration;
 }
 
 /// The reason why the process of a worker ended.
@@ -104,7 +107,7 @@ impl Worker {
 
     /// The same for untrusted code, in the sandbox of `launcher`. A frame has the time `patience` as well,
     /// even if it reports progress. Only processor time counts, within three times `patience` of elapsed
-    /// time, so that a busy machine does not change a verdict.
+    /// time without the time that it waits for a processor, so that a busy machine does not change a verdict.
     pub fn sandboxed(program: PathBuf, patience: Duration, launcher: impl Launcher + 'static) -> Self {
         let launcher: Arc<dyn Launcher> = Arc::new(launcher);
         Worker { launcher: Some(launcher), frame_patience: patience, ..Worker::new(program, patience) }

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The limit of elapsed time in units of the patience, for a process that other processes keep from
-/// computing. With a larger limit a process that sleeps would delay the grading of a class.
+/// The limit of elapsed time in units of the patience, for a process that sleeps or reads. The time that it waits for a
+/// processor does not count. With a larger limit a process that sleeps would delay the grading of a class.
 const MOST_TIMES: u32 = 3;
 
 /// The fraction of its patience after which the processor time of a call is measured. Most calls end earlier
@@ -19,7 +19,7 @@ pub(super) struct Watchdog {
     deadline: Mutex<Deadline>,
     changed: Condvar,
     barked: AtomicBool,
-    /// Measures the processor time of the process. If it is set, time counts only while the process computes.
+    /// Measures the times of the process. If it is set, time counts only while the process computes.
     launcher: Option<Arc<dyn Launcher>>,
 }
 
@@ -34,8 +34,15 @@ enum Deadline {
 struct Call {
     asked: Instant,
     patience: Duration,
-    /// The processor time of the process when measuring began.
-    used_before: Option<Duration>,
+    /// The times of the process when measuring began.
+    before: Option<Times>,
+}
+
+/// The times of a process so far.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Times {
+    computed: Duration,
+    waited: Duration,
 }
 
 impl Watchdog {
@@ -55,7 +62,12 @@ impl Watchdog {
     fn watch(&self, child: &Mutex<Child>) {
         let process = lock(child).id();
         let fair = self.launcher.is_some();
-        let used = || self.launcher.as_ref().map_or(Duration::MAX, |launcher| launcher.cpu_time(process));
+        let times = || match &self.launcher {
+            Some(launcher) => {
+                Times { computed: launcher.cpu_time(process), waited: launcher.waited(process) }
+            }
+            None => Times { computed: Duration::MAX, waited: Duration::ZERO },
+        };
         let mut deadline = lock(&self.deadline);
         loop {
             deadline = match *deadline {
@@ -64,7 +76,7 @@ impl Watchdog {
                 Deadline::At(call, end) => match end.checked_duration_since(Instant::now()) {
                     Some(left) => {
                         let early = call.patience / COUNTED_AFTER;
-                        let left = match call.used_before {
+                        let left = match call.before {
                             None if fair => early.saturating_sub(call.asked.elapsed()).min(left),
                             _ => left,
                         };
@@ -73,14 +85,14 @@ impl Watchdog {
                         if let Deadline::At(call, _) = &mut *deadline
                             && timed_out.timed_out()
                             && fair
-                            && call.used_before.is_none()
+                            && call.before.is_none()
                             && call.asked.elapsed() >= early
                         {
-                            call.used_before = Some(used());
+                            call.before = Some(times());
                         }
                         deadline
                     }
-                    None => match call.more_time(used()) {
+                    None => match call.more_time(times()) {
                         Some(later) => {
                             *deadline = Deadline::At(call, later);
                             deadline
@@ -102,7 +114,7 @@ impl Watchdog {
 
     pub(super) fn bark_after(&self, patience: Duration) {
         let asked = Instant::now();
-        self.set(Deadline::At(Call { asked, patience, used_before: None }, asked + patience));
+        self.set(Deadline::At(Call { asked, patience, before: None }, asked + patience));
     }
 
     pub(super) fn rest(&self) {
@@ -120,11 +132,12 @@ impl Watchdog {
 }
 
 impl Call {
-    /// The time of the next test if the process may continue; `used` is its processor time so far.
-    fn more_time(&self, used: Duration) -> Option<Instant> {
-        let used = used.saturating_sub(self.used_before.unwrap_or_default());
-        let last = self.asked + self.patience * MOST_TIMES;
-        let wanting = self.patience.checked_sub(used).filter(|wanting| !wanting.is_zero())?;
+    /// The time of the next test if the process may continue.
+    fn more_time(&self, times: Times) -> Option<Instant> {
+        let before = self.before.unwrap_or_default();
+        let computed = times.computed.saturating_sub(before.computed);
+        let last = self.asked + self.patience * MOST_TIMES + times.waited.saturating_sub(before.waited);
+        let wanting = self.patience.checked_sub(computed).filter(|wanting| !wanting.is_zero())?;
         let now = Instant::now();
         (now < last).then(|| (now + wanting).min(last))
     }

@@ -6,13 +6,15 @@ use crate::grade::result::{CheckResult, Class, Graded, Outcome};
 use anyhow::Result;
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-/// Returns the whole file. It contains no times, because they differ from run to run.
+/// Returns the whole file, which is valid in the schema of Jenkins (`junit-10.xsd` of its xUnit plugin). It contains no times,
+/// because they differ from run to run.
 pub(super) fn junit(class: &Class) -> Result<Vec<u8>> {
     let mut report = Report::new("raykata grade");
     report.add_test_suites(class.students.iter().map(suite));
     let mut bytes = Vec::new();
     report.serialize(&mut bytes)?;
-    Ok(bytes)
+    // The schema allows this count only in a test suite. No check is skipped.
+    Ok(String::from_utf8(bytes)?.replacen(" skipped=\"0\"", "", 1).into_bytes())
 }
 
 fn suite(graded: &Graded) -> TestSuite {

@@ -1,7 +1,9 @@
 use super::*;
 use crate::grade::result::Outcome;
+use anyhow::Context;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use quick_xml::events::Event;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -205,6 +207,44 @@ fn points_are_the_same_in_every_format() -> Result<()> {
         assert_eq!(html.contains(&shown), !graded.checks.is_empty());
         assert!(files["junit.xml"].contains(&format!("<property name=\"points\" value=\"{earned}\"/>")));
     }
+    Ok(())
+}
+
+/// The elements and attributes of the schema `junit-10.xsd` of Jenkins' xUnit plugin, as far as they are used.
+const JUNIT: [(&str, &[&str]); 9] = [
+    ("testsuites", &["name", "time", "tests", "failures", "errors"]),
+    ("testsuite", &["name", "tests", "failures", "errors", "time", "skipped", "timestamp", "hostname", "id"]),
+    ("properties", &[]),
+    ("property", &["name", "value"]),
+    ("testcase", &["name", "time", "classname", "group"]),
+    ("failure", &["type", "message"]),
+    ("error", &["type", "message"]),
+    ("system-out", &[]),
+    ("system-err", &[]),
+];
+
+#[test]
+fn junit_holds_only_what_the_schema_of_jenkins_allows() -> Result<()> {
+    let files = files_of(&class())?;
+    let mut reader = quick_xml::Reader::from_str(&files["junit.xml"]);
+    let mut n_elements = 0;
+    loop {
+        match reader.read_event()? {
+            Event::Start(element) | Event::Empty(element) => {
+                let name = String::from_utf8(element.name().as_ref().to_vec())?;
+                let allowed = JUNIT.iter().find(|(allowed, _)| *allowed == name);
+                let (_, attributes) = allowed.with_context(|| format!("<{name}>"))?;
+                for attribute in element.attributes() {
+                    let key = String::from_utf8(attribute?.key.as_ref().to_vec())?;
+                    assert!(attributes.contains(&key.as_str()), "<{name} {key}=…>");
+                }
+                n_elements += 1;
+            }
+            Event::Eof => break,
+            _ => {}
+        }
+    }
+    assert!(n_elements > 20, "{n_elements} elements");
     Ok(())
 }
 
