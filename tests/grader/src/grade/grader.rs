@@ -94,11 +94,17 @@ impl Grader {
         }
         // Compile in a temporary folder outside of the kit and of the submission.
         let scratch = scratch::folder()?;
+        scratch::has_room(scratch.path())?;
         // Leave out the files that the syntax check refuses, and build the others.
         let Read { refused, may_remember } = self.read(&files, &mut remarks)?;
         let kept: BTreeMap<String, String> =
             files.into_iter().filter(|(name, _)| !refused.contains_key(name)).collect();
-        let forged = self.forge.build(scratch.path(), &kept)?;
+        let forged = self.forge.build(scratch.path(), &kept);
+        // Blame no file for a disk that has become full.
+        if forged.as_ref().map_or(true, |forged| !forged.replaced.is_empty()) {
+            scratch::has_room(scratch.path())?;
+        }
+        let forged = forged?;
         graded.cpu_ms = forged.cpu.as_millis() as u64;
         // Report the files that do not compile.
         for (name, (_, messages)) in &forged.replaced {

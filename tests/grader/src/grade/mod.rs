@@ -222,7 +222,11 @@ fn finish(store: &Store, out: &Path) -> Result<bool> {
     for one in &troubled {
         eprintln!("{}: {}", one.student, one.trouble);
     }
-    println!("{} submissions graded; open {}", class.students.len(), out.join("index.html").display());
+    let not_graded = match troubled.len() {
+        0 => String::new(),
+        n => format!(", {n} of them could not be graded"),
+    };
+    println!("{} submissions{not_graded}; open {}", class.students.len(), out.join("index.html").display());
     Ok(troubled.is_empty())
 }
 

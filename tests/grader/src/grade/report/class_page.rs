@@ -1,4 +1,4 @@
-//! `index.html`: the overview of the class for the instructor.
+//! `index.html`: the overview of the class for the instructor. Printed, it is one sheet that the class may see, without names.
 
 use super::chart;
 use super::page::{page, session_line, with_code};
@@ -107,7 +107,7 @@ fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
         (words, such)
     });
     html! {
-        section #look {
+        section #look.screen {
             h2 { "Problems" }
             @if troubled.is_empty() && kinds.iter().all(|(_, such)| such.is_empty()) {
                 p { "None: every submission compiles and answers." }
@@ -126,7 +126,7 @@ fn to_look_at(students: &[(&Graded, &str)]) -> Markup {
 
 fn stages(tallies: &[Tally]) -> Markup {
     html! {
-        section #stages {
+        section #stages.screen {
             h2 { "Checks" }
             (chart::legend())
             @for stage in tally::stages(tallies) {
@@ -153,7 +153,7 @@ fn slowest(students: &[(&Graded, &str)]) -> Markup {
     let mut slowest = students.to_vec();
     slowest.sort_by_key(|(student, _)| std::cmp::Reverse(student.cpu_ms));
     html! {
-        section #slowest {
+        section #slowest.screen {
             h2 { "Slowest" }
             p.note { "Time of the build and the checks. Only this part of the page differs from run to run." }
             table.plain {
@@ -176,7 +176,7 @@ fn all(students: &[(&Graded, &str)], tallies: &[Tally]) -> Markup {
     let of_stage =
         |stage| tallies.iter().filter(|tally| tally.stage == stage).map(|tally| tally.points).sum::<u32>();
     html! {
-        section #students {
+        section #students.screen {
             h2 { "Students" }
             div.scroll {
                 table.plain {
