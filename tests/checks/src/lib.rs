@@ -17,6 +17,7 @@ pub mod paste;
 pub mod picture;
 pub mod rubric;
 pub mod statistics;
+pub mod symmetry;
 pub mod tree;
 pub mod trial;
 
@@ -33,15 +34,24 @@ pub fn linked(functions: impl StudentKit) -> Arc<dyn Kit + Send + Sync> {
 }
 
 /// Lists the checks of a stage in the crate of that stage, and makes the macro that turns them into tests of a kit:
-/// `stage1_checks::tests!(kit)`.
+/// `stage1_checks::tests!(kit)`. The requests of a check with `: turned` or `: mirrored` are
+/// [turned](crate::symmetry) for hidden seeds.
 ///
 /// The leading `($ crate)` passes a dollar sign and the crate of the stage to the inner macro.
 #[macro_export]
 macro_rules! stage {
-    (($d:tt $crate_of_stage:tt) $number:literal [$($name:ident)*]) => {
+    (@symmetries) => { $crate::symmetry::Symmetries::None };
+    (@symmetries turned) => { $crate::symmetry::Symmetries::Turned };
+    (@symmetries mirrored) => { $crate::symmetry::Symmetries::Mirrored };
+    (($d:tt $crate_of_stage:tt) $number:literal [$($name:ident $(: $symmetries:ident)?)*]) => {
         /// The checks of this stage, in the order of the lecture.
         pub const CHECKS: &[$crate::Check] =
-            &[$($crate::Check { stage: $number, name: stringify!($name), law: $name }),*];
+            &[$($crate::Check {
+                stage: $number,
+                name: stringify!($name),
+                law: $name,
+                symmetries: $crate::stage!(@symmetries $($symmetries)?),
+            }),*];
 
         /// The functions that the tests of this stage call.
         pub use $crate::{grade, linked};

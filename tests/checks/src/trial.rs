@@ -3,9 +3,10 @@
 use crate::broken::{self, Broken, CheckResult};
 use crate::drawn::{Drawn, Values};
 use crate::rubric;
+use crate::symmetry::{Symmetries, Symmetry, TurnedKit};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
-use raykata::kit::{Kit, KitError, kit_error};
+use raykata::kit::{Door, Kit, KitError, kit_error};
 use std::any::Any;
 use std::cell::Cell;
 use std::panic::Location;
@@ -27,7 +28,12 @@ pub struct Check {
     pub name: &'static str,
     /// The function that tests whether a kit obeys the law.
     pub law: fn(&Trial<'_>) -> CheckResult,
+    /// How its requests are [turned](crate::symmetry) for a hidden seed.
+    pub symmetries: Symmetries,
 }
+
+/// The seed of the inputs that students have. Other seeds are hidden.
+const PUBLIC_SEED: u64 = 0;
 
 /// A run of a check on a kit, with its random inputs.
 pub struct Trial<'a> {
@@ -65,6 +71,16 @@ impl<'a> Trial<'a> {
     /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
         Trial { kit, name, seed, draws: Cell::new(0), drawn: None, shrinks: true }
+    }
+
+    /// `public` for the seed that students have, and a value drawn from `hidden` for any other seed.
+    ///
+    /// Each call draws anew from the same random numbers. Draw values that must be independent as a tuple.
+    pub fn varied<S: Strategy>(&self, public: S::Value, hidden: S) -> S::Value {
+        if self.seed == PUBLIC_SEED {
+            return public;
+        }
+        hidden.new_tree(&mut self.runner()).map_or(public, |tree| tree.current())
     }
 
     /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
@@ -315,6 +331,10 @@ fn on_a_thread(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let trial = Trial { drawn, shrinks, ..Trial::new(&*kit, check.name, seed) };
+            let symmetry = trial.varied(Symmetry::IDENTITY, check.symmetries.strategy());
+            let turned = Door(TurnedKit { kit: &*kit, symmetry });
+            let is_turned = symmetry != Symmetry::IDENTITY;
+            let trial = if is_turned { Trial { kit: &turned, ..trial } } else { trial };
             let _ = send.send(kit_error::catch(|| (check.law)(&trial)));
         });
     if let Err(error) = spawned {
@@ -344,7 +364,7 @@ pub fn grade(checks: &[Check], name: &str, kit: Arc<dyn Kit + Send + Sync>) {
     let Some(check) = checks.iter().find(|check| check.name == name) else {
         panic!("there is no check `{name}` in this stage");
     };
-    match run(check, &kit, 0) {
+    match run(check, &kit, PUBLIC_SEED) {
         Verdict::Passed => return,
         Verdict::NotWritten { task, place } => println!("not written yet: {place}\n  {task}"),
         Verdict::Failed(message) => println!("{message}"),

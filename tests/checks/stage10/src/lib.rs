@@ -90,7 +90,7 @@ checks::stage! { ($ crate) 10 [
     offsets_leave_the_surface_at_any_scale
     offsets_are_as_small_as_they_can_be
     directions_have_length_one_at_every_length
-    zero_has_no_direction
+    zero_has_no_direction: turned
     double_triangle_is_right_at_edges
     double_triangle_has_the_nearest_t
     double_sphere_is_right_at_rims

@@ -39,29 +39,29 @@ use vertex_normals::{vertex_normals_average_their_faces, vertex_normals_that_can
 
 checks::stage! { ($ crate) 2 [
     triangle_cramer_agrees_with_double_precision
-    triangle_cramer_knows_inside_from_outside
+    triangle_cramer_knows_inside_from_outside: turned
     triangle_cramer_is_hit_from_either_side
     triangle_cramer_respects_the_range
-    triangle_cramer_owns_its_edges
+    triangle_cramer_owns_its_edges: turned
     triangle_cramer_has_no_smallest_size
     triangle_cramer_far_from_the_origin
-    triangle_cramer_misses_degenerate_triangles
+    triangle_cramer_misses_degenerate_triangles: turned
     triangle_gram_agrees_with_double_precision
-    triangle_gram_knows_inside_from_outside
+    triangle_gram_knows_inside_from_outside: turned
     triangle_gram_is_hit_from_either_side
     triangle_gram_respects_the_range
-    triangle_gram_owns_its_edges
+    triangle_gram_owns_its_edges: turned
     triangle_gram_has_no_smallest_size
     triangle_gram_far_from_the_origin
-    triangle_gram_misses_degenerate_triangles
+    triangle_gram_misses_degenerate_triangles: turned
     triangle_choice_agrees_with_double_precision
-    triangle_choice_knows_inside_from_outside
+    triangle_choice_knows_inside_from_outside: turned
     triangle_choice_is_hit_from_either_side
     triangle_choice_respects_the_range
-    triangle_choice_owns_its_edges
+    triangle_choice_owns_its_edges: turned
     triangle_choice_has_no_smallest_size
     triangle_choice_far_from_the_origin
-    triangle_choice_misses_degenerate_triangles
+    triangle_choice_misses_degenerate_triangles: turned
     gram_scalars_of_thin_triangles_keep_their_sign
     inside_by_planes_agrees_with_double_precision
     inside_by_direction_agrees_with_double_precision
@@ -69,7 +69,7 @@ checks::stage! { ($ crate) 2 [
     interpolation_weighs_the_corners
     face_normal_has_unit_length_at_any_size
     vertex_normals_average_their_faces
-    vertex_normals_that_cancel_are_still_normals
+    vertex_normals_that_cancel_are_still_normals: turned
     brute_force_finds_the_closest_of_all
     hit_table_of_a_fan
     picture_of_an_octahedron
