@@ -49,9 +49,10 @@ macro_rules! turn_requests {
 impl Transport for TurnedKit<'_> {
     fn call(&self, request: Request, _: &dyn Watch) -> Answer {
         turn_requests! { request, self;
-            NearestRoot SphereAlgebraic SphereGeometric Plane
+            SphereAlgebraic SphereGeometric Plane
             TriangleCramer TriangleGram TriangleChoice VertexNormals
             Slab SplitObjectMedian SplitSpatialMedian SplitSurfaceArea Build ClosestHitBoth ClosestHit AnyHit
+            Shade
             Reflect Scatter
             Cylinder Cone
             GridResolution OctreeBuild KdBuild BspBuild CachedSearch PacketSearch
@@ -147,9 +148,6 @@ turn! {
         Cone { base, apex, radius: symmetry.length(cone.radius) }
     };
 
-    |query: RootQuery, symmetry| {
-        RootQuery { roots: query.roots.map(|root| symmetry.length(root)), ray: query.ray.turn(symmetry) }
-    };
     |query: SphereQuery, symmetry| {
         SphereQuery { ray: query.ray.turn(symmetry), sphere: query.sphere.turn(symmetry) }
     };
@@ -169,6 +167,24 @@ turn! {
     |hit: SolidHit, symmetry| {
         SolidHit { t: symmetry.length(hit.t), normal: symmetry.direction(hit.normal) }
     };
+    |surface: Surface, symmetry| Surface {
+        point: symmetry.point(surface.point),
+        error: symmetry.point(surface.error).abs(),
+        geometric_normal: symmetry.direction(surface.geometric_normal),
+        shading_normal: symmetry.direction(surface.shading_normal),
+    };
+    |light: LightSample, symmetry| LightSample {
+        direction: symmetry.direction(light.direction),
+        distance: symmetry.length(light.distance),
+        ..*light
+    };
+    |query: ShadeQuery, symmetry| ShadeQuery {
+        surface: query.surface.turn(symmetry),
+        to_viewer: symmetry.direction(query.to_viewer),
+        lights: query.lights.turn(symmetry),
+        ..query.clone()
+    };
+    |answer: ShadeAnswer, symmetry| ShadeAnswer { rays: answer.rays.turn(symmetry), ..answer.clone() };
     |query: ScatterQuery, symmetry| {
         let [direction, normal] = [query.direction, query.normal].map(|v| symmetry.direction(v));
         ScatterQuery { direction, normal, ..query.clone() }

@@ -28,7 +28,7 @@ use spheres::{
 
 checks::stage! { ($ crate) 1 [
     nearest_root_is_the_smaller_one_that_counts
-    nearest_root_of_nan_is_the_other_one: turned
+    nearest_root_of_nan_is_the_other_one
     sphere_algebraic_agrees_with_double_precision
     sphere_algebraic_starts_inside
     sphere_algebraic_counts_lengths_of_the_direction
@@ -50,5 +50,5 @@ checks::stage! { ($ crate) 1 [
     plane_is_missed_by_rays_along_it: turned
     plane_far_from_the_origin
     face_forward_turns_the_normal_to_the_ray
-    picture_of_a_sphere_on_a_plane
+    picture_of_a_sphere_on_a_plane: turned
 ] }

@@ -77,5 +77,5 @@ checks::stage! { ($ crate) 3 [
     any_hit_agrees_with_brute_force
     any_hit_stops_at_the_first
     each_split_strategy_is_worth_its_cost: turned
-    picture_of_depth
+    picture_of_depth: turned
 ] }

@@ -130,18 +130,20 @@ fn judge(trial: &Trial<'_>, rooms: &[Room], allows: impl Fn(&Room, usize) -> boo
 
 pub(super) fn tree_ends_at_its_depth(trial: &Trial<'_>) -> CheckResult {
     let deep = |max_depth: u32| (0.5, 0.5, Limits { max_depth, ..FAR });
+    let (low, high) = trial.varied((5, 10), (3..=6u32, 7..=10u32));
     // R8: surfaces that neither reflect nor transmit, depth 10: 1 ray instead of 2047.
     let dull = (0.0, 0.0, Limits { max_depth: 10, ..FAR });
     // Here the weight ends the tree before the depth does.
     let dim = (0.5, 0.5, Limits { max_depth: 4, min_contribution: 0.2 });
-    judge(trial, &[deep(0), deep(1), deep(2), deep(5), deep(10), dull, dim], |_, _| false)
+    judge(trial, &[deep(0), deep(1), deep(2), deep(low), deep(high), dull, dim], |_, _| false)
 }
 
 pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult {
     // R9: weights halve down to 0.01: 1/64 is traced and 1/128 is not. Testing the incoming ray gives 255 rays. No weight is
     // equal to the limit, because another check asks about that.
+    let min_contribution = trial.varied(0.01, 0.008f32..0.0155);
     let halving = |mirror: f32, transmission: f32, max_depth: u32| {
-        (mirror, transmission, Limits { max_depth, min_contribution: 0.01 })
+        (mirror, transmission, Limits { max_depth, min_contribution })
     };
     judge(
         trial,
@@ -159,8 +161,10 @@ pub(super) fn tree_ends_below_min_contribution(trial: &Trial<'_>) -> CheckResult
 
 pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> CheckResult {
     // A perfect mirror keeps the whole weight, so only the depth ends the tree. Another check counts the depth exactly.
-    let mirrors = (1.0, 0.0, Limits { max_depth: 50, min_contribution: 0.001 });
-    judge(trial, &[mirrors], |room, rays| (50..=52).contains(&rays) && room.0 == 1.0)
+    let max_depth = trial.varied(50, 30..=80u32);
+    let mirrors = (1.0, 0.0, Limits { max_depth, min_contribution: 0.001 });
+    let most = max_depth as usize + 2;
+    judge(trial, &[mirrors], |room, rays| (most - 2..=most).contains(&rays) && room.0 == 1.0)
 }
 
 /// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution gives this tree.

@@ -2,6 +2,7 @@
 
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::generate::rough_point;
 use checks::judge::compare;
 use checks::paste::{Paste, call};
 use checks::statistics::{SAMPLES, covers_evenly, pairs, unused_number};
@@ -239,13 +240,10 @@ fn judge_pixel(samples: &[WeightedColor], yours: Vec3) -> CheckResult {
 
 pub(super) fn filter_pixel_of_no_samples_is_black(trial: &Trial<'_>) -> CheckResult {
     let sample = |color: Vec3, weight: f32| WeightedColor { color, weight };
+    let color = trial.varied(vec3(0.5, 0.25, 2.0), rough_point(2.0).prop_map(Vec3::abs));
     // The last two are not black: their weights sum to little, or to 1.
-    let queries = [
-        vec![],
-        vec![sample(Vec3::ONE, 0.0); 3],
-        vec![sample(vec3(0.5, 0.25, 2.0), 1e-6)],
-        vec![sample(Vec3::ONE, 0.5); 2],
-    ];
+    let queries =
+        [vec![], vec![sample(Vec3::ONE, 0.0); 3], vec![sample(color, 1e-6)], vec![sample(Vec3::ONE, 0.5); 2]];
     let judge = |(samples, yours): (&Vec<WeightedColor>, Vec3)| {
         let weight: f32 = samples.iter().map(|sample| sample.weight).sum();
         if weight > 0.0 {

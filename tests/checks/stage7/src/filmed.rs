@@ -1,7 +1,7 @@
 //! Checks of `effects` for scenes with a lens and a shutter.
 
 use super::scenes::one_sphere;
-use super::whole::{judge, plain};
+use super::whole::{hidden_lights, judge, plain, with_lights};
 use checks::Trial;
 use checks::broken::{CheckResult, all_hold};
 use checks::judge::compare_formulas;
@@ -144,10 +144,13 @@ impl Filmed {
 const ELSEWHERE: &str = "a shape that no root reaches does not count: use scene.shown()";
 
 pub(super) fn lens_and_time_matter_only_where_they_are_seen(trial: &Trial<'_>) -> CheckResult {
-    let scenes: Vec<Scene> = FILMED.iter().map(Filmed::scene).collect();
+    let lights = hidden_lights(trial);
+    let plain = with_lights(plain(), lights.len());
+    let mut scenes: Vec<Scene> = FILMED.iter().map(Filmed::scene).collect();
+    scenes.iter_mut().for_each(|scene| scene.lights.extend_from_slice(&lights));
     let law = |filmed: &Filmed, yours: Effects| {
         let [lens, motion] = filmed.expected;
-        judge(filmed.what, &yours, &Effects { lens, motion, ..plain() })
+        judge(filmed.what, &yours, &Effects { lens, motion, ..plain.clone() })
     };
     all_hold(compare_formulas(&FILMED, trial.kit.effects(&scenes), law, Filmed::mistakes))
 }

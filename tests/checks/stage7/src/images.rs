@@ -10,8 +10,13 @@ use raykata::material::{Texture, Wrap};
 use std::sync::Arc;
 
 fn texture(width: u32, height: u32, wrap: Wrap) -> Texture {
+    texture_from(0, width, height, wrap)
+}
+
+/// The same with the colours of the pixels from number `first` on.
+fn texture_from(first: u32, width: u32, height: u32, wrap: Wrap) -> Texture {
     let pixel = |i: u32| {
-        let mix = i.wrapping_mul(0x9e37_79b9);
+        let mix = first.wrapping_add(i).wrapping_mul(0x9e37_79b9);
         vec3((mix >> 28) as f32, (mix >> 24 & 15) as f32, (mix >> 20 & 15) as f32) / 15.0
     };
     Texture { width, height, pixels: Arc::new((0..width * height).map(pixel).collect()), wrap }
@@ -51,7 +56,7 @@ fn place(texture: &Texture, [column, row]: [i64; 2], [right, down]: [f64; 2]) ->
 }
 
 pub(super) fn middles_of_pixels_show_the_pixel(trial: &Trial<'_>) -> CheckResult {
-    let texture = texture(4, 3, Wrap::Clamp);
+    let texture = texture_from(trial.varied(0, any::<u32>()), 4, 3, Wrap::Clamp);
     let pixels: Vec<[i64; 2]> = (0..12).map(|i| [i % 4, i / 4]).collect();
     let queries: Vec<TextureQuery> = pixels.iter().map(|&pixel| place(&texture, pixel, [0.0, 0.0])).collect();
     let yours = trial.kit.texture_color(&queries);
@@ -267,9 +272,10 @@ pub(super) fn images_are_blended(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn images_survive_invalid_numbers(trial: &Trial<'_>) -> CheckResult {
     let strange = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 1e30, -0.0, 1e-40];
+    let first = trial.varied(0, any::<u32>());
     let mut outcomes = Vec::new();
     for wrap in WRAPS {
-        let image = texture(3, 2, wrap);
+        let image = texture_from(first, 3, 2, wrap);
         // Test ordinary coordinates and one strange coordinate at a time first, so that the message shows which one is
         // wrong.
         let ordinary = [(0.5, 0.75), (0.5, 0.25)];

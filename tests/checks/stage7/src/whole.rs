@@ -4,8 +4,9 @@ use super::scenes::{BUILT, everything, light, one_sphere, one_triangle};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use glam::Vec3;
+use proptest::prelude::*;
 use raykata::effects::{Effect, Effects, LightEffects, MaterialEffects};
-use raykata::material::Material;
+use raykata::material::{Light, Material};
 use raykata::mesh::Mesh;
 use raykata::scene::{Node, Scene, SceneMesh};
 use raykata::shape::Shape;
@@ -29,8 +30,31 @@ struct Case {
     mistakes: fn(&Effects, &Effects) -> Vec<(bool, &'static str)>,
 }
 
+/// Lights that scenes get for hidden seeds only.
+pub(super) fn hidden_lights(trial: &Trial<'_>) -> Vec<Light> {
+    let light = (0.1f32..4.0).prop_map(|intensity| light(Vec3::ONE, intensity));
+    trial.varied(Vec::new(), prop::collection::vec(light, 1..8))
+}
+
+/// The effects of the same scene with `n` more point lights, which light each material that is lit.
+pub(super) fn with_lights(mut effects: Effects, n: usize) -> Effects {
+    let numbers = effects.lights.len()..effects.lights.len() + n;
+    effects.lights.extend(numbers.clone().map(|_| LightEffects { samples: 1, area: false, shadows: true }));
+    for material in effects.materials.iter_mut().filter(|material| !material.lights.is_empty()) {
+        material.lights.extend(numbers.clone());
+    }
+    effects
+}
+
 /// Judges all scenes, and names a mistake that explains all wrong answers.
-fn judge_all(trial: &Trial<'_>, cases: &[Case]) -> CheckResult {
+fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
+    let lights = hidden_lights(trial);
+    let add_lights = |case: Case| {
+        let lights_of_scene = [case.scene.lights, lights.clone()].concat();
+        let scene = Scene { lights: lights_of_scene, ..case.scene };
+        Case { scene, expected: with_lights(case.expected, lights.len()), ..case }
+    };
+    let cases: Vec<Case> = cases.into_iter().map(add_lights).collect();
     let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
     let answers = cases.iter().zip(trial.kit.effects(&scenes));
     let outcomes = answers.map(|(case, yours)| {
@@ -107,7 +131,7 @@ pub(super) fn a_plain_scene_takes_nothing_special(trial: &Trial<'_>) -> CheckRes
     let case = |what, scene, expected| Case { what, scene, expected, mistakes: of_plain_scenes };
     judge_all(
         trial,
-        &[
+        vec![
             case("a diffuse sphere under a light", scene.clone(), plain()),
             case(
                 "the same with indirect light",
@@ -201,7 +225,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     expected.materials[2] = MaterialEffects { mirror: true, ..lit.clone() };
     expected.materials.extend([MaterialEffects { transmission: true, ..lit.clone() }, lit]);
     cases.push(case("a diffuse sphere, and a mesh of mirror, glass and paint", &scene, &expected));
-    judge_all(trial, &cases)
+    judge_all(trial, cases)
 }
 
 pub(super) fn every_subset_of_effects_is_recognised(trial: &Trial<'_>) -> CheckResult {

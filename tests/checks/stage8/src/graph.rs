@@ -6,6 +6,7 @@ use checks::judge::compare;
 use checks::tree::closest_of;
 use glam::Vec3;
 use oracle::splitmix::Random;
+use proptest::prelude::*;
 use raykata::bvh::PrimitiveHit;
 use raykata::graph::{Graph, GraphNode, Savings};
 use raykata::kit::{GraphAnswer, GraphQuery, Table};
@@ -249,26 +250,41 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
     all_hold(compare(&queries, trial.kit.closest_hit_in_graph(&queries), judge))
 }
 
-/// The numbers of the nodes one behind the other along the ray. They differ from the order along the ray, so that a search
-/// that sorts by number is noticed.
-const NUMBERS: [u32; 4] = [2, 4, 1, 3];
+/// Nodes one behind the other along the ray.
+struct Row {
+    /// The order of the numbers of the nodes. It differs from the order along the ray, so that a search that sorts by number
+    /// is noticed.
+    numbers: [u32; 4],
+    /// The distance from one node to the next one.
+    step: f32,
+}
 
-/// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
-/// lists them in the given order.
-fn row(order: &[u32], savings: Savings) -> GraphQuery {
-    let n = order.len() as u32;
-    // The places along the ray in the order of their nodes' numbers.
-    let mut places: Vec<u32> = (0..n).collect();
-    places.sort_by_key(|place| NUMBERS[*place as usize]);
-    let number = |place: u32| places.iter().position(|other| *other == place).unwrap_or(0) as u32 + 1;
-    let mut nodes =
-        vec![GraphNode { children: order.iter().map(|place| number(*place)).collect(), primitives: vec![] }];
-    nodes.extend(places.iter().map(|place| GraphNode { children: Vec::new(), primitives: vec![*place] }));
-    let mut boxes = vec![(1.0, n as f32 + 1.0)];
-    boxes.extend(places.iter().map(|place| (*place as f32 + 1.0, *place as f32 + 1.75)));
-    let primitives = (0..n).map(|place| place as f32 + 1.5).collect();
-    let ray = Ray::new(Vec3::ZERO, Vec3::X);
-    GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
+impl Row {
+    fn new(trial: &Trial<'_>) -> Self {
+        let public = [2, 4, 1, 3];
+        let hidden = (Just(public).prop_shuffle(), 0.25f32..8.0);
+        let (numbers, step) = trial.varied((public, 1.0), hidden);
+        Row { numbers, step }
+    }
+
+    /// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
+    /// lists them in the given order.
+    fn query(&self, order: &[u32], savings: Savings) -> GraphQuery {
+        let n = order.len() as u32;
+        // The places along the ray in the order of their nodes' numbers.
+        let mut places: Vec<u32> = (0..n).collect();
+        places.sort_by_key(|place| self.numbers[*place as usize]);
+        let number = |place: u32| places.iter().position(|other| *other == place).unwrap_or(0) as u32 + 1;
+        let children = order.iter().map(|place| number(*place)).collect();
+        let mut nodes = vec![GraphNode { children, primitives: vec![] }];
+        nodes.extend(places.iter().map(|place| GraphNode { children: Vec::new(), primitives: vec![*place] }));
+        let t = |steps: f32| self.step * steps;
+        let mut boxes = vec![(t(1.0), t(n as f32 + 1.0))];
+        boxes.extend(places.iter().map(|place| (t(*place as f32 + 1.0), t(*place as f32 + 1.75))));
+        let primitives = (0..n).map(|place| t(place as f32 + 1.5)).collect();
+        let ray = Ray::new(Vec3::ZERO, Vec3::X);
+        GraphQuery { graph: Graph { nodes }, ray, savings, table: Table { boxes, primitives } }
+    }
 }
 
 /// A query, the primitives to test in order, and the orders that mistakes give.
@@ -300,21 +316,22 @@ pub(super) fn graph_skips_what_begins_beyond_the_hit(trial: &Trial<'_>) -> Check
     let always = "you skip a volume although `skip` is off";
     let at_the_hit =
         "you skip a volume that begins exactly at the closest hit: it may contain a hit at the same t";
-    let mut meets_again = row(&[0, 1], SKIP);
+    let row = Row::new(trial);
+    let mut meets_again = row.query(&[0, 1], SKIP);
     // The second volume begins at the t of the first hit and has a hit at the same t, so it must be visited.
     for (node, bounds) in meets_again.graph.nodes.iter().zip(&mut meets_again.table.boxes) {
         if node.primitives == [1] {
-            *bounds = (1.5, 2.0);
+            *bounds = (1.5 * row.step, 2.0 * row.step);
         }
     }
-    meets_again.table.primitives[1] = 1.5;
+    meets_again.table.primitives[1] = 1.5 * row.step;
     judge_orders(
         trial,
         &[
-            (row(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
-            (row(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
-            (row(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
-            (row(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
+            (row.query(&[0, 1, 2, 3], SKIP), &[0], &[(&[0, 1, 2, 3], never)]),
+            (row.query(&[3, 2, 1, 0], SKIP), &[3, 2, 1, 0], &[(&[0], sorted), (&[0, 1, 2, 3], never)]),
+            (row.query(&[1, 3, 0, 2], SKIP), &[1, 0], &[(&[1, 3, 0, 2], never), (&[0], sorted)]),
+            (row.query(&[2, 0, 3, 1], VOLUMES), &[2, 0, 3, 1], &[(&[2, 0], always), (&[0, 1, 2, 3], sorted)]),
             (meets_again, &[0, 1], &[(&[0], at_the_hit)]),
         ],
     )
@@ -330,11 +347,12 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
     let nearest_only = "you bring only the nearest child to the front: with `sort` and without `skip`, visit all four \
         children, the nearest first";
     let always = "you skip a volume although `skip` is off";
+    let row = Row::new(trial);
     judge_orders(
         trial,
         &[
             (
-                row(&[3, 2, 1, 0], ALL),
+                row.query(&[3, 2, 1, 0], ALL),
                 &[0],
                 &[
                     (&[3, 2, 1, 0], listed),
@@ -345,7 +363,7 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
                 ],
             ),
             (
-                row(&[1, 3, 0, 2], ALL),
+                row.query(&[1, 3, 0, 2], ALL),
                 &[0],
                 &[
                     (&[1, 0], listed),
@@ -357,7 +375,7 @@ pub(super) fn graph_looks_into_the_nearest_first(trial: &Trial<'_>) -> CheckResu
                 ],
             ),
             (
-                row(&[3, 1, 0, 2], SORT),
+                row.query(&[3, 1, 0, 2], SORT),
                 &[0, 1, 2, 3],
                 &[
                     (&[3, 1, 0, 2], to_skip),
