@@ -99,3 +99,80 @@ impl Cells for Bsp {
         (Bsp { nodes, items: self.items.clone() }, numbers)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Symmetries;
+    use super::*;
+    use glam::Vec3;
+    use proptest::strategy::{Strategy, ValueTree};
+    use proptest::test_runner::TestRunner;
+    use raykata::aabb::Aabb;
+    use raykata::partition::Cell;
+
+    /// Whether each cell is turned, keeps its primitives, and gets its number back.
+    fn assert_turned<S: Cells + PartialEq + std::fmt::Debug>(
+        structure: &S,
+        cells: impl Fn(&S) -> Vec<(u32, Cell, Vec<u32>)>,
+    ) {
+        let mut runner = TestRunner::deterministic();
+        for _ in 0..100 {
+            let symmetry = Symmetries::Turned.strategy().new_tree(&mut runner).expect("a symmetry").current();
+            let (turned, numbers) = structure.turned(&symmetry);
+            let before = cells(structure);
+            for (number, cell, ids) in cells(&turned) {
+                let before = before.iter().find(|(other, ..)| *other == numbers[number as usize]);
+                let (_, cell_before, ids_before) = before.expect("a cell with this number");
+                assert_eq!((cell.to_box(), &ids), (symmetry.bounds(&cell_before.to_box()), ids_before));
+            }
+            assert_eq!(turned.turned(&symmetry.inverse()).0, *structure);
+        }
+    }
+
+    const BOUNDS: Aabb = Aabb::new(Vec3::NEG_ONE, Vec3::new(2.0, 7.0, 1.0));
+
+    #[test]
+    fn cells_of_grids_are_turned() {
+        let resolution = uvec3(3, 2, 4);
+        let grid = Grid { bounds: BOUNDS, resolution, starts: (0..=24).collect(), items: (0..24).collect() };
+        assert_turned(&grid, |grid| {
+            let n = grid.resolution;
+            let at = |i: u32| grid.cell(uvec3(i % n.x, i / n.x % n.y, i / (n.x * n.y)));
+            (0..24).map(|i| (i, at(i), grid.primitives(i).to_vec())).collect()
+        });
+    }
+
+    #[test]
+    fn octants_are_turned() {
+        let mut octree = Octree::new(BOUNDS);
+        let first = octree.divide(0, 1, 2);
+        let below = octree.divide(first + 3, 2, 2);
+        (first..first + 8).filter(|node| *node != first + 3).for_each(|node| octree.set_leaf(node, &[node]));
+        (below..below + 8).for_each(|node| octree.set_leaf(node, &[node]));
+        assert_turned(&octree, |octree| {
+            let mut cells = Vec::new();
+            octree.walk(usize::MAX, |node, cell, _| {
+                let ids = match octree.nodes[node as usize] {
+                    OctreeNode::Leaf { first, count } => octree.primitives(first, count).to_vec(),
+                    OctreeNode::Inner { .. } => Vec::new(),
+                };
+                cells.push((node, cell, ids));
+            });
+            cells
+        });
+    }
+
+    #[test]
+    fn sides_of_planes_are_turned() {
+        let mut tree = KdTree::new(BOUNDS);
+        let [root, left, right] = [0, 1, 1].map(|depth| tree.add_node(depth, 1));
+        tree.set_leaf(left, &[7]);
+        tree.set_leaf(right, &[8, 9]);
+        tree.set_children(root, 1, 0.5, left, right);
+        assert_turned(&tree, |tree| {
+            let mut cells = Vec::new();
+            tree.walk(usize::MAX, |node, cell, _| cells.push((node, cell, Vec::new())));
+            cells
+        });
+    }
+}

@@ -69,7 +69,7 @@ checks::stage! { ($ crate) 9 [
     grid_steps_do_not_add_up_roundings: turned
     grid_takes_rays_through_corners_and_faces: turned
     octree_lists_what_reaches_into_leaves
-    octree_divides_where_there_is_much: turned
+    octree_divides_where_there_is_much
     octree_build_ends: turned
     octree_by_cells_agrees_with_brute_force
     octree_by_cells_goes_along_edges: turned

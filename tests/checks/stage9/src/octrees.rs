@@ -8,8 +8,9 @@ use super::structures::octree;
 use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
 use checks::judge::compare;
+use checks::nasty;
 use glam::{Vec3, vec3};
-use proptest::prelude::Strategy;
+use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::{CellsAnswer, OctreeQuery, kit_error};
 use raykata::partition::{MOST_REFERENCES, Octree, OctreeNode};
@@ -73,7 +74,12 @@ pub(super) fn octree_divides_where_there_is_much(trial: &Trial<'_>) -> CheckResu
         (0..8).map(|i| Aabb::new(Vec3::splat(6.0) + 0.125 * at(i), Vec3::splat(6.02) + 0.125 * at(i)));
     // A second box in another cell, which then holds exactly leaf_size boxes.
     let pair = [Aabb::new(at(5) + 0.125, at(5) + 0.25)];
-    let bounds = even.chain(dense).chain(pair).collect();
+    let bounds: Vec<Aabb> = even.chain(dense).chain(pair).collect();
+    // Hidden inputs have another order and size. Reversed axes would move the cube of the root relative to the boxes.
+    let hidden = (Just(bounds.clone()).prop_shuffle(), nasty::scale(-16..=16)).prop_map(|(bounds, scale)| {
+        bounds.into_iter().map(|one| Aabb::new(scale * one.min, scale * one.max)).collect()
+    });
+    let bounds = trial.varied(bounds, hidden);
     let query = OctreeQuery { bounds, leaf_size: 2, max_depth: 8 };
     let yours = trial.kit.octree_build(std::slice::from_ref(&query)).remove(0);
     judge_octree(&query, &yours)?;
