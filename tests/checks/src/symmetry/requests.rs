@@ -10,7 +10,7 @@ use raykata::mesh::Mesh;
 use raykata::partition::{Bsp, KdTree, Octree};
 use raykata::shape::{Cone, Cylinder, Plane, Sphere, Triangle};
 
-/// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in [`turn_requests`]
+/// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in its `call`
 /// remain as they are.
 pub(crate) struct TurnedKit<'a> {
     pub(crate) kit: &'a dyn Kit,
