@@ -279,8 +279,8 @@ pub(super) fn slab_is_entered_before_what_it_holds(trial: &Trial<'_>) -> CheckRe
 pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResult {
     let mut odd = Odd::new(trial, 9);
     let around = Aabb::new(Vec3::NEG_ONE, Vec3::ONE);
-    let at = |bounds| SlabQuery { ray: Ray::new(Vec3::ZERO, Vec3::X), bounds };
-    let mut queries = vec![at(Aabb::EMPTY), at(around)];
+    let from_middle = Ray::new(Vec3::ZERO, Vec3::X);
+    let mut queries = [Aabb::EMPTY, around].map(|bounds| SlabQuery { ray: from_middle, bounds }).to_vec();
     queries.extend(
         (0..3000).map(|_| SlabQuery { ray: odd.ray(), bounds: Aabb::new(odd.vector(), odd.vector()) }),
     );
@@ -294,7 +294,8 @@ pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResul
                 broken("numbers, or None", "neither result is ever NaN")
             }
             Some(_) if query.bounds == Aabb::EMPTY => broken("None", "the box is empty"),
-            None if query.bounds == around => broken("Some", "the ray starts in the box"),
+            // Drawn rays may pass this box.
+            None if query.bounds == around && query.ray == from_middle => broken("Some", "the ray starts in the box"),
             _ => Ok(()),
         }
     };

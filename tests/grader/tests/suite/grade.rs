@@ -94,6 +94,61 @@ fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     found
 }
 
+/// Returns the outputs of a run without those that hold times: the database, `timings.csv`, and the list of slow submissions.
+fn reports(out: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let timeless = |(path, bytes): (PathBuf, Vec<u8>)| {
+        let path = path.strip_prefix(out).unwrap().to_owned();
+        let name = path.to_string_lossy().into_owned();
+        if name.starts_with("grades.sqlite") || name == "timings.csv" {
+            return None;
+        }
+        let mut text = String::from_utf8(bytes).unwrap();
+        if name == "index.html" {
+            let (before, rest) = text.split_once("id=\"slowest\"").unwrap_or((&text, ""));
+            text = format!("{before}{}", rest.split_once("</section>").map_or("", |(_, after)| after));
+        }
+        Some((path, text.into_bytes()))
+    };
+    files(out).into_iter().filter_map(timeless).collect()
+}
+
+/// Kills runs at moments that are spread over the time of a whole run. It takes minutes, so it runs only with `CI_LONG=1`.
+#[test]
+fn fifty_kills_change_no_byte_of_the_reports() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("killed only with CI_LONG=1");
+    }
+    const KILLS: u32 = 50;
+    let class = class();
+    for number in 0..30 {
+        hand_in(
+            class.path(),
+            &format!("student-{number:02}"),
+            &right().replace("0.5", &format!("0.{number:02}")),
+        );
+    }
+    let outs = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+    let [whole, killed] = [0, 1].map(|index| outs[index].path());
+    let begun = Instant::now();
+    grade(class.path(), whole, &[]).output().unwrap();
+    let longest = begun.elapsed() / 2;
+    let mut stored = vec![0];
+    for kill in 0..KILLS {
+        let mut run = grade(class.path(), killed, &["--resume"]);
+        let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(longest * kill / KILLS);
+        run.kill().unwrap();
+        run.wait().unwrap();
+        stored.push(graded(killed).len());
+    }
+    stored.dedup();
+    println!("stored grades between {KILLS} kills: {stored:?} of 35");
+    assert!(stored.len() > 2, "the kills came too early or too late");
+    grade(class.path(), killed, &["--resume"]).output().unwrap();
+    assert_eq!(graded(killed).len(), 35);
+    assert!(reports(killed) == reports(whole), "a report differs");
+}
+
 #[test]
 fn a_class_gets_the_same_grades_however_often_the_run_is_killed_and_however_it_is_shared_out() {
     let class = class();
