@@ -295,7 +295,9 @@ pub(super) fn slab_of_special_numbers_is_finite(trial: &Trial<'_>) -> CheckResul
             }
             Some(_) if query.bounds == Aabb::EMPTY => broken("None", "the box is empty"),
             // Drawn rays may pass this box.
-            None if query.bounds == around && query.ray == from_middle => broken("Some", "the ray starts in the box"),
+            None if query.bounds == around && query.ray == from_middle => {
+                broken("Some", "the ray starts in the box")
+            }
             _ => Ok(()),
         }
     };

@@ -67,6 +67,7 @@ impl Naive {
         command.args(["--map-root-user", "--mount", "--net", "--pid", "--ipc", "--mount-proc"]);
         command.args(["--fork", "--kill-child", "--", "sh", "-c", CONFINED, "sh"]);
         let beside = folder.path().join("beside");
+        let before = attacks::fingerprints(&beside)?;
         command.env("KIT", kit).env("COPY", &copy).env("BESIDE", &beside);
         command.env("TMPDIR", kit.join("target/tmp"));
         let cargo = cargo(&attack.stages);
@@ -78,9 +79,7 @@ impl Naive {
         if [&ended.stdout, &ended.stderr].iter().any(|text| String::from_utf8_lossy(text).contains(CANARY)) {
             words += ", and prints a secret";
         }
-        if fs::read(beside.join("secret.txt")).ok().as_deref() != Some(CANARY.as_bytes())
-            || fs::read_dir(&beside)?.count() != 1
-        {
+        if !attacks::changes(&before, &attacks::fingerprints(&beside)?).is_empty() {
             words += ", and changes a file of somebody else";
         }
         Ok(Some(words))

@@ -16,7 +16,7 @@ mod step;
 mod verdict;
 
 pub use make::{AttackFolders, CANARY, make};
-pub use run::{Tried, run_all};
+pub use run::{Tried, changes, fingerprints, run_all};
 pub use verdict::{Earned, Expectation, complaints};
 
 use anyhow::{Context, Result, ensure};

@@ -23,8 +23,6 @@ pub enum Earned {
     AtLeastAllBut(Vec<String>),
     /// These checks may pass or fail; all others fail.
     AtMost(Vec<String>),
-    /// Any points: the attack is not about them.
-    Any,
 }
 
 /// The expected result of an attack.
@@ -99,7 +97,6 @@ fn points(expected: &Expectation, graded: &Graded, complaints: &mut Vec<String>)
             Earned::AtLeastAllBut(names) | Earned::AtMost(names) if named(names) => None,
             Earned::AtLeastAllBut(_) => Some(true),
             Earned::AtMost(_) => Some(false),
-            Earned::Any => None,
         };
         match wanted {
             Some(true) if !passed => complaints.push(format!(
