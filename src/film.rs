@@ -51,6 +51,11 @@ impl Film {
         self.pixels.iter().filter(|pixel| pixel.is_nan()).count()
     }
 
+    /// The number of pixels that have an infinite component and no NaN.
+    pub fn infinite(&self) -> usize {
+        self.pixels.iter().filter(|pixel| !pixel.is_finite() && !pixel.is_nan()).count()
+    }
+
     /// The picture in bytes, each component of linear light passed through `encode`, for example
     /// [`encode_srgb`].
     ///

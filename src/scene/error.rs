@@ -48,18 +48,48 @@ impl LoadError {
     }
 }
 
+/// `text` with its control characters escaped, except line ends. A message may quote a file that the user did not write, and
+/// an escape sequence must not reach the terminal.
+pub fn printable(text: &str) -> String {
+    let mut printable = String::with_capacity(text.len());
+    for character in text.chars() {
+        // The characters that change the direction of text could make a message show other words than it has.
+        let reorders = matches!(character, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        match reorders || character.is_control() && character != '\n' {
+            true => printable.extend(character.escape_default()),
+            false => printable.push(character),
+        }
+    }
+    printable
+}
+
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        write!(f, "{}", printable(&self.file.display().to_string()))?;
         if let Some((line, column)) = self.place {
             write!(f, ":{line}:{column}")?;
         }
-        write!(f, ": {}", self.message)?;
+        write!(f, ": {}", printable(&self.message))?;
         match &self.help {
-            Some(help) => write!(f, "\nhelp: {help}"),
+            Some(help) => write!(f, "\nhelp: {}", printable(help)),
             None => Ok(()),
         }
     }
 }
 
 impl std::error::Error for LoadError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_of_a_file_are_escaped() {
+        let error = LoadError::new(Path::new("a\u{1b}[2J.toml"), "no \u{7}")
+            .help("did you mean `\u{9b}31m\u{202e}`?\n");
+        assert_eq!(
+            error.to_string(),
+            "a\\u{1b}[2J.toml: no \\u{7}\nhelp: did you mean `\\u{9b}31m\\u{202e}`?\n"
+        );
+    }
+}

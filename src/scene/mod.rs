@@ -9,6 +9,7 @@ pub mod obj;
 pub mod ply;
 mod quality;
 mod shown;
+mod triangulate;
 
 pub use quality::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
 pub use shown::Shown;
@@ -37,7 +38,8 @@ pub enum Encoding {
 pub struct FilmSettings {
     /// Pixels per row, at least 1; a scene file may ask for up to 65 536.
     pub width: u32,
-    /// Rows of pixels, at least 1; a scene file may ask for up to 65 536 rows and 2^28 pixels in all.
+    /// Rows of pixels, at least 1; a scene file may ask for up to 65 536 rows, and the memory of
+    /// [`load::Limits`] bounds the pixels.
     pub height: u32,
     /// Encoding of 8-bit image files; the film itself holds linear radiance.
     pub encoding: Encoding,
@@ -98,6 +100,7 @@ impl Scene {
             nodes: Vec::new(),
             roots: Vec::new(),
             quality: Quality::default(),
+            max_primitives: load::Limits::default().triangles(),
         }
     }
 }
@@ -158,4 +161,6 @@ pub struct Scene {
     pub roots: Vec<usize>,
     /// Sampling, accuracy and acceleration structure, as the scene file sets them.
     pub quality: Quality,
+    /// The most primitives of the flattened scene; meshes beyond it are left out, with a note.
+    pub max_primitives: u32,
 }

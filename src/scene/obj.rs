@@ -24,7 +24,7 @@ mod tests;
 
 use crate::mesh::Mesh;
 use crate::scene::error::LoadError;
-use crate::scene::ply::text::{LOOKS_LIKE_OBJ, guess, read_bytes, readable};
+use crate::scene::ply::text::{LOOKS_LIKE_OBJ, guess, quote, read_bytes, readable};
 use crate::scene::ply::unit_normals;
 use glam::{Vec2, Vec3};
 use std::path::{Path, PathBuf};
@@ -38,10 +38,15 @@ pub struct ObjFile {
     /// All materials of the libraries, used or not; of two with the same name only the last. A name in
     /// [`Mesh::material_names`] may be missing here.
     pub materials: Vec<ObjMaterial>,
+    /// The names in [`Mesh::material_names`] that no library defines, each with a warning at its first `usemtl` line. The
+    /// scene may still define them.
+    pub undefined: Vec<(String, LoadError)>,
+    /// What was ignored or replaced, with file, line and column.
+    pub warnings: Vec<LoadError>,
 }
 
 /// A material of a material library (MTL file), with its numbers as they are written there. Each number is
-/// finite but may be out of range; `None` stands for a line that is missing.
+/// finite and in the range of its meaning; `None` stands for a line that is missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ObjMaterial {
     /// The name after `newmtl`; it may contain blanks.
@@ -76,21 +81,38 @@ pub fn read(file: &Path) -> Result<ObjFile, LoadError> {
     parse(file, &read_bytes(file)?)
 }
 
-/// Reads the mesh and the materials from the bytes of an OBJ file; material libraries are searched for in the
-/// folder of `file`, which need not exist itself.
-///
-/// Positions and texture coordinates are finite. Normals are of unit length; if any corner has no normal, or
-/// a normal without direction, the mesh has none at all. Where only some materials of the file have texture
-/// coordinates, those of the others are `(0.5, 0.5)`.
+/// Reads the OBJ file `file` as [`read`] does, but without its material libraries, which need not exist.
 ///
 /// # Errors
 ///
-/// If a line of the file or of a library is malformed, if an index names no vertex, texture coordinate or
-/// normal above its face, if a position or a texture coordinate is not finite, if a library is missing or
-/// cannot be read, or if there are no faces. An error at a place in a file names its line and column.
+/// As [`read`].
+pub fn read_without_libraries(file: &Path) -> Result<ObjFile, LoadError> {
+    parse_with(file, &read_bytes(file)?, false)
+}
+
+/// Reads the mesh and the materials from the bytes of an OBJ file; material libraries are searched for in the
+/// folder of `file`, which need not exist itself.
+///
+/// Positions and texture coordinates are finite. Concave faces are cut into triangles that cover them; convex faces become
+/// fans around their first corner. Normals are of unit length; if any corner has no normal, or
+/// a normal without direction, the mesh has none at all. Where only some materials of the file have texture
+/// coordinates, those of the others are `(0.5, 0.5)`.
+///
+/// A warning is added if a library is missing or one of its lines cannot be used, if a face names texture coordinates or
+/// normals and the file has none above it, if `usemtl` or `mtllib` has no name, and if the outline of a face crosses itself.
+///
+/// # Errors
+///
+/// If a line of the file is malformed, if an index names no vertex, texture coordinate or normal above its face, if a
+/// position or a texture coordinate is not finite, or if there are no faces. An error at a place in a file names its line
+/// and column.
 pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
+    parse_with(file, bytes, true)
+}
+
+fn parse_with(file: &Path, bytes: &[u8], with_libraries: bool) -> Result<ObjFile, LoadError> {
     let text = readable(bytes);
-    let lines = lines::read(file, &text)?;
+    let mut lines = lines::read(file, &text)?;
     if lines.faces == 0 {
         return Err(match guess(bytes).filter(|help| *help != LOOKS_LIKE_OBJ) {
             Some(help) if lines.vertices == 0 => LoadError::new(file, "this is not an OBJ file").help(help),
@@ -100,10 +122,12 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
         });
     }
 
+    let mut warnings = std::mem::take(&mut lines.warnings);
     let mut materials: Vec<ObjMaterial> = Vec::new();
-    for library in &lines.libraries {
-        for path in library::find(file, &text, library)? {
-            for material in library::read(&path)? {
+    let names = if with_libraries { &lines.libraries[..] } else { &[] };
+    for library in names {
+        for path in library::find(file, &text, library, &mut warnings) {
+            for material in library::read(&path, &mut warnings) {
                 // Of materials with the same name the last one counts, as if all libraries were one file.
                 materials.retain(|earlier| earlier.name != material.name);
                 materials.push(material);
@@ -113,7 +137,14 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<ObjFile, LoadError> {
 
     let mesh = merge(load(file, &lines)?, &lines.material_names);
     mesh.validate().map_err(|message| LoadError::new(file, message).help("export the mesh again"))?;
-    Ok(ObjFile { mesh, materials })
+    let undefined = lines.material_names.iter().zip(&lines.material_spans).filter(|(name, _)| {
+        mesh.material_names.contains(name) && materials.iter().all(|material| material.name != **name)
+    });
+    let undefined = undefined.map(|(name, span)| {
+        let message = format!("material {} is not defined", quote(name));
+        (name.clone(), LoadError::at(file, &text, span.clone(), message))
+    });
+    Ok(ObjFile { undefined: undefined.collect(), mesh, materials, warnings })
 }
 
 /// Reads one mesh for each run of faces with the same material.

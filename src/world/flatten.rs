@@ -43,9 +43,6 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
     flattener.world
 }
 
-/// The largest number of primitives in a world, which take about a gigabyte.
-const MOST_PRIMITIVES: usize = 1 << 24;
-
 /// The transform of a node to the world at time 0, and at time 1 if it moves.
 struct Way {
     start: Affine3A,
@@ -238,7 +235,7 @@ impl Flattener<'_> {
             let geometry = Geometry::Instance(self.world.instances.len() as u32 - 1);
             return self.push(geometry, material);
         }
-        if self.world.primitives.len() + ready.mesh.triangles.len() > MOST_PRIMITIVES {
+        if self.world.primitives.len() + ready.mesh.triangles.len() > self.scene.max_primitives as usize {
             return self.leave_out_copies();
         }
         for face in 0..ready.mesh.triangles.len() {
@@ -247,11 +244,12 @@ impl Flattener<'_> {
             self.world.primitives.push(triangle);
         }
     }
-    /// Notes that a mesh is left out, because its copies would exceed [`MOST_PRIMITIVES`].
+    /// Notes that a mesh is left out, because its copies would exceed [`Scene::max_primitives`].
     fn leave_out_copies(&mut self) {
         let note = format!(
-            "meshes are left out: copied for each instance they have more than {MOST_PRIMITIVES} triangles, \
-             and only stage 8 shares one mesh"
+            "meshes are left out: copied for each instance they have more than {} triangles, \
+             and only stage 8 shares one mesh",
+            self.scene.max_primitives
         );
         if !self.world.notes.contains(&note) {
             self.world.notes.push(note);

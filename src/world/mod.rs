@@ -220,7 +220,7 @@ impl World {
     /// `effects` ask for them.
     ///
     /// A scene without motion in `effects` stands where it is when the shutter opens. Copies of meshes beyond
-    /// 2^24 primitives are left out, with a note.
+    /// [`Scene::max_primitives`] are left out, with a note.
     ///
     /// # Panics
     ///

@@ -1,6 +1,8 @@
 //! The quality parameters of a scene as options, the same for all commands that render.
 
 use crate::args::{Given, Misuse, Opt, names};
+use anyhow::{Result, anyhow};
+use raykata::scene::load::Limits;
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
 
 /// The number of threads that render, the same for all commands.
@@ -22,6 +24,29 @@ impl Threads {
     }
 }
 
+/// The memory that a scene may use, the same for all commands that read one.
+#[derive(Clone, Copy, Default)]
+pub struct Memory(Limits);
+
+impl Memory {
+    const OPTION: Opt =
+        Opt::value("--memory", "GB", "The most memory for film, textures and triangles [default: 4].");
+
+    /// The option.
+    pub const OPTIONS: &[Opt] = &[Memory::OPTION];
+
+    /// Reads the option.
+    pub fn read(given: &Given) -> Result<Memory, Misuse> {
+        let gigabytes: Option<u64> = given.number("--memory", 1..=1_000_000)?;
+        Ok(Memory(gigabytes.map_or(Limits::default(), |n| Limits { memory: n * 1_000_000_000 })))
+    }
+
+    /// The limits for a scene.
+    pub fn limits(self) -> Limits {
+        self.0
+    }
+}
+
 /// Parameters that trade accuracy for time. Those that are not given keep the value of the scene.
 #[derive(Default)]
 pub struct QualityOptions {
@@ -38,6 +63,7 @@ pub struct QualityOptions {
     triangles: Option<TriangleMethod>,
     precision: Option<Precision>,
     min_contribution: Option<f32>,
+    memory: Memory,
 }
 
 /// The samplers by the names of scene files, with `-` in place of `_`. The other lists use the same names.
@@ -102,6 +128,7 @@ impl QualityOptions {
         Opt::value("--triangles", "NAME", "Ray/triangle test.").choices(&names(&TRIANGLES)),
         Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
         Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
+        Memory::OPTION,
     ];
 
     /// Reads the options.
@@ -120,7 +147,13 @@ impl QualityOptions {
             triangles: given.choice("--triangles", &TRIANGLES)?,
             precision: given.choice("--precision", &PRECISIONS)?,
             min_contribution: given.parsed("--min-contribution", parse_share)?,
+            memory: Memory::read(given)?,
         })
+    }
+
+    /// The limits for a scene.
+    pub fn limits(&self) -> Limits {
+        self.memory.limits()
     }
 
     /// Whether a size was given.
@@ -128,9 +161,10 @@ impl QualityOptions {
         self.size.is_some()
     }
 
-    /// Sets the given parameters in the scene.
-    pub fn apply(&self, scene: &mut Scene) {
+    /// Sets the given parameters in the scene. Fails if a picture of the given size needs more memory than the limit.
+    pub fn apply(&self, scene: &mut Scene) -> Result<()> {
         if let Some((width, height)) = self.size {
+            self.limits().check_film(width, height).map_err(|message| anyhow!(message))?;
             (scene.film.width, scene.film.height) = (width, height);
         }
         let quality = &mut scene.quality;
@@ -146,6 +180,7 @@ impl QualityOptions {
         quality.triangle_method = self.triangles.unwrap_or(quality.triangle_method);
         quality.precision = self.precision.unwrap_or(quality.precision);
         quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
+        Ok(())
     }
 }
 
@@ -180,17 +215,19 @@ fn parse_share(text: &str) -> Result<f32, String> {
     share.ok_or_else(|| "a weight is a number from 0 to 1, such as 0.001".into())
 }
 
-/// The most pixels, as in scene files: 2²⁸, which take three gigabytes.
-const MOST_PIXELS: u64 = 1 << 28;
+/// The longest side of a picture, as in scene files.
+const MAX_SIDE: u32 = 65_536;
 
 pub(crate) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let parsed: Option<(u32, u32)> =
         text.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match parsed {
-        Some((width, height)) if (1..=MOST_PIXELS).contains(&(u64::from(width) * u64::from(height))) => {
+        Some((width, height)) if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) => {
             Ok((width, height))
         }
-        _ => Err("a size is two whole numbers with an x between them, such as 640x360, and at most 268,435,456 pixels".into()),
+        _ => {
+            Err("a size is two whole numbers from 1 to 65536 with an x between them, such as 640x360".into())
+        }
     }
 }
 
@@ -211,7 +248,9 @@ mod tests {
 
     #[test]
     fn arguments_turn_every_parameter() {
-        let mut scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let mut scene =
+            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Limits::default())
+                .unwrap();
         let own = scene.quality;
         let wanted = Quality {
             samples_per_pixel: 343,

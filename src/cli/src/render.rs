@@ -80,8 +80,8 @@ fn format_of(file: &Path) -> Result<Format> {
 
 /// Renders the picture and prints what it cost.
 pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene)?;
-    options.quality.apply(&mut scene);
+    let mut scene = load_scene(&options.scene, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
     let out = match &options.out {
         Some(out) => out.clone(),
         None => Path::new("out")
@@ -205,5 +205,12 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     match film.not_a_number() {
         0 => {}
         n => println!("  warning          {} pixels are NaN; they are magenta", Thousands(n as u64)),
+    }
+    match film.infinite() {
+        0 => {}
+        n => println!(
+            "  warning          {} pixels are infinite; they are as bright as the file format allows",
+            Thousands(n as u64)
+        ),
     }
 }

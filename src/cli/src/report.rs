@@ -4,8 +4,9 @@ use crate::progress::ProgressBar;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use anyhow::{Context, Result, anyhow};
 use raykata::frame::Watch;
-use raykata::scene::error::LoadError;
-use raykata::scene::{Scene, load};
+use raykata::scene::Scene;
+use raykata::scene::error::{LoadError, printable};
+use raykata::scene::load::{self, Limits, Loaded};
 use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::path::Path;
@@ -51,29 +52,46 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Reads a scene; an error shows the line that is wrong.
-pub fn load_scene(file: &Path) -> Result<Scene> {
-    load::load(file).map_err(|error| anyhow!(draw(&error)))
+/// Reads a scene within these limits; an error shows the line that is wrong. Warnings are printed to standard error.
+pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
+    /// The most warnings that are shown: a library of many materials may have the same fault in each.
+    const MOST: usize = 10;
+    let Loaded { scene, warnings } =
+        load::load_within(file, limits).map_err(|error| anyhow!(draw(&error)))?;
+    for warning in warnings.iter().take(MOST) {
+        eprintln!("warning: {}", draw_as(Level::WARNING, warning));
+    }
+    if warnings.len() > MOST {
+        eprintln!("warning: {} more warnings are not shown", warnings.len() - MOST);
+    }
+    Ok(scene)
 }
 
 /// The error with the line that is wrong, in the style of the compiler.
 pub fn draw(error: &LoadError) -> String {
+    draw_as(Level::ERROR, error)
+}
+
+/// The same with another level in place of `error`.
+fn draw_as(level: Level<'_>, error: &LoadError) -> String {
     let text = std::fs::read_to_string(&error.file).unwrap_or_default();
     if error.place.is_none() || error.span.end > text.len() || error.span.is_empty() {
         return error.to_string();
     }
-    let path = error.file.display().to_string();
+    let path = printable(&error.file.display().to_string());
+    let (message, help) = (printable(&error.message), error.help.as_deref().map(printable));
     let snippet =
         Snippet::source(&text).path(&path).annotation(AnnotationKind::Primary.span(error.span.clone()));
-    let mut group = Level::ERROR.primary_title(&error.message).element(snippet);
-    if let Some(help) = &error.help {
+    let mut group = level.primary_title(&message).element(snippet);
+    if let Some(help) = &help {
         group = group.element(Level::HELP.message(help));
     }
     let coloured = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
     let drawn = renderer.render(&[group]);
-    // The caller says "error: " itself.
-    drawn.strip_prefix("error: ").map_or_else(|| drawn.clone(), str::to_owned)
+    // The caller says "error: " or "warning: " itself.
+    let plain = drawn.strip_prefix("error: ").or_else(|| drawn.strip_prefix("warning: "));
+    plain.map_or_else(|| drawn.clone(), str::to_owned)
 }
 
 /// Creates a folder and its parent folders.

@@ -70,8 +70,8 @@ impl Options {
 
 /// Renders the strip and prints what each picture cost.
 pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene)?;
-    options.quality.apply(&mut scene);
+    let mut scene = load_scene(&options.scene, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     make_folder_of(&out)?;

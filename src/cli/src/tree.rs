@@ -2,6 +2,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names};
 use crate::kits::{Choice, Need, Source, root};
+use crate::quality_options::Memory;
 use crate::report::{load_scene, say};
 use anyhow::{Result, bail};
 use raykata::kit::{RayKind, RenderJob, TracedRay, View, kit_error};
@@ -27,6 +28,7 @@ pub static SPEC: Spec = Spec {
             .choices(&names(&FORMATS)),
         ],
         Choice::OPTIONS,
+        Memory::OPTIONS,
     ],
 };
 
@@ -36,6 +38,7 @@ pub struct Options {
     pixel: (u32, u32),
     kit: Choice,
     format: Format,
+    memory: Memory,
 }
 
 impl Options {
@@ -47,6 +50,7 @@ impl Options {
             pixel: pixel.ok_or_else(|| given.misuse("`--pixel X,Y` is missing"))?,
             kit: Choice::read(given)?,
             format: given.choice("--format", &FORMATS)?.unwrap_or(Format::Text),
+            memory: Memory::read(given)?,
         })
     }
 }
@@ -70,7 +74,7 @@ fn parse_pixel(text: &str) -> Result<(u32, u32), String> {
 
 /// Traces the first sample of the pixel and prints its tree.
 pub fn run(options: &Options) -> Result<()> {
-    let scene = load_scene(&options.scene)?;
+    let scene = load_scene(&options.scene, options.memory.limits())?;
     let ((x, y), film) = (options.pixel, scene.film);
     if x >= film.width || y >= film.height {
         bail!(

@@ -87,36 +87,18 @@ fn material(value: Value, textures: &Names) -> Result<Material, LoadError> {
     Ok(material)
 }
 
-/// The material that an MTL file describes, without its texture. Fails with a sentence if a colour is below 0
-/// or not finite, or if another value is out of range.
-pub(super) fn from_obj(obj: &ObjMaterial) -> Result<Material, String> {
+/// The material that an MTL file describes, without its texture.
+pub(super) fn from_obj(obj: &ObjMaterial) -> Material {
     let default = Material::default();
-    let color = |name: &str, color: Option<Vec3>, otherwise: Vec3| match color.unwrap_or(otherwise) {
-        color if color.is_finite() && color.min_element() >= 0.0 => Ok(color),
-        color => Err(format!("its {name} colour is {color}, and must be at least 0")),
-    };
-    let number = |name: &str, number: Option<f32>, otherwise: f32, least: f32, most: f32| match number {
-        Some(number) if !(least <= number && number <= most) => {
-            Err(format!("its {name} is {number}, and must be from {least} to {most}"))
-        }
-        _ => Ok(number.unwrap_or(otherwise)),
-    };
-    let diffuse = color("diffuse", obj.diffuse, default.diffuse)?;
-    Ok(Material {
-        ambient: color("ambient", obj.ambient, diffuse)?,
+    let diffuse = obj.diffuse.unwrap_or(default.diffuse);
+    Material {
+        ambient: obj.ambient.unwrap_or(diffuse),
         diffuse,
-        specular: color("specular", obj.specular, default.specular)?,
-        exponent: number("shininess", obj.shininess, default.exponent, 0.0, f32::MAX)?,
-        transmission: Vec3::splat(1.0 - number("dissolve", obj.dissolve, 1.0, 0.0, 1.0)?),
-        // No real material has such an index: the bounds only exclude values that cannot be an index of refraction.
-        index_of_refraction: number(
-            "index of refraction",
-            obj.index_of_refraction,
-            default.index_of_refraction,
-            0.001,
-            1000.0,
-        )?,
-        emission: color("emission", obj.emission, default.emission)?,
+        specular: obj.specular.unwrap_or(default.specular),
+        exponent: obj.shininess.unwrap_or(default.exponent),
+        transmission: Vec3::splat(1.0 - obj.dissolve.unwrap_or(1.0)),
+        index_of_refraction: obj.index_of_refraction.unwrap_or(default.index_of_refraction),
+        emission: obj.emission.unwrap_or(default.emission),
         ..default
-    })
+    }
 }

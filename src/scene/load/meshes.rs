@@ -8,15 +8,16 @@ use super::textures;
 use super::words::quoted;
 use crate::material::{Texture, Wrap};
 use crate::mesh::Mesh;
+use crate::scene::SceneMesh;
 use crate::scene::error::LoadError;
 use crate::scene::obj::{self, ObjFile, ObjMaterial};
-use crate::scene::{SceneMesh, ply};
+use crate::scene::ply::{self, PlyFile};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// All `[meshes.NAME]` in the order of the file, with their names. Materials and textures that come with them
-/// are added to those of the scene. Fails if a file or a material is missing or malformed, or if subdivision
-/// would make more than 2^24 triangles.
+/// are added to those of the scene. Fails if a file is missing or malformed, or if the triangles need more memory than the
+/// limit.
 pub(super) fn meshes<'a>(
     value: Option<Value<'a>>,
     materials: &mut Materials,
@@ -28,51 +29,41 @@ pub(super) fn meshes<'a>(
         let table = entry.table(&["file", "smooth", "materials", "subdivide"])?;
         let smooth = table.get("smooth").map_or(Ok(true), |smooth| smooth.truth())?;
         let own_materials = table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
-        let (file, ObjFile { mesh, materials: described }) = read(&table)?;
+        let ObjFile { mesh, materials: described, undefined, warnings } = read(&table, own_materials)?;
+        value.source.warnings.borrow_mut().extend(warnings);
         let indices = match own_materials {
-            true => Adopter { mesh: entry, file, described, materials, textures, images: Vec::new() }
+            true => Adopter { mesh: entry, described, undefined, materials, textures, images: Vec::new() }
                 .indices(&mesh.material_names)?,
             false => Vec::new(),
         };
         names.insert(entry.key, meshes.len());
-        let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| subdivisions(steps, &mesh))?;
+        let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| steps.whole(0..=12))?;
+        let triangles = (mesh.triangles.len() as u64) << (2 * subdivisions);
+        value.source.budget.triangles(table.get("subdivide").unwrap_or(entry), triangles)?;
         meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, subdivisions, materials: indices });
     }
     Ok((meshes, names))
 }
 
-/// Reads the mesh file that `table` names. A PLY file is treated like an OBJ file without materials.
-fn read(table: &Table) -> Result<(PathBuf, ObjFile), LoadError> {
+/// Reads the mesh file that `table` names, with its material libraries only if its materials are wanted. A PLY file is
+/// treated like an OBJ file without materials.
+fn read(table: &Table, with_materials: bool) -> Result<ObjFile, LoadError> {
     let value = table.need("file", "\"bunny.ply\"")?;
     let file = files::find(value)?;
     let read = match files::extension(&file).as_str() {
-        "ply" => ObjFile { mesh: ply::read(&file)?, materials: Vec::new() },
-        "obj" => obj::read(&file)?,
+        "ply" => {
+            let PlyFile { mesh, warnings } = ply::read(&file)?;
+            ObjFile { mesh, materials: Vec::new(), undefined: Vec::new(), warnings }
+        }
+        "obj" if with_materials => obj::read(&file)?,
+        "obj" => obj::read_without_libraries(&file)?,
         _ => {
             let message = format!("{} is not a mesh that can be read", value.spelled());
             return Err(value.error(message).help("meshes are `.ply` or `.obj` files"));
         }
     };
     check(value, &read.mesh)?;
-    Ok((file, read))
-}
-
-/// The largest number of triangles of a subdivided mesh.
-const MOST_TRIANGLES: u64 = 1 << 24;
-
-/// The number of subdivision steps; each makes four triangles of one.
-fn subdivisions(value: Value, mesh: &Mesh) -> Result<u32, LoadError> {
-    let steps = value.whole(0..=12)?;
-    let triangles = (mesh.triangles.len() as u64) << (2 * steps);
-    match triangles <= MOST_TRIANGLES {
-        true => Ok(steps),
-        false => {
-            let message = format!("`subdivide = {steps}` makes {triangles} triangles of this mesh");
-            Err(value
-                .error(message)
-                .help(format!("take fewer steps: {MOST_TRIANGLES} triangles are the most")))
-        }
-    }
+    Ok(read)
 }
 
 fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {
@@ -83,62 +74,82 @@ fn check(value: Value, mesh: &Mesh) -> Result<(), LoadError> {
 struct Adopter<'m, 's> {
     /// The entry of the mesh in the scene.
     mesh: Value<'m>,
-    /// The file of the mesh.
-    file: PathBuf,
     /// The materials that came with it.
     described: Vec<ObjMaterial>,
+    /// The names that its files do not define, each with a warning.
+    undefined: Vec<(String, LoadError)>,
     materials: &'m mut Materials<'s>,
     textures: &'m mut Vec<Texture>,
-    /// Images that were read already, each with its index among the textures.
-    images: Vec<(PathBuf, usize)>,
+    /// Images that were read already, each with its index among the textures; `None` if it cannot be used.
+    images: Vec<(PathBuf, Option<usize>)>,
 }
 
 impl Adopter<'_, '_> {
-    /// The index of the material for each of `names`. A `[materials.NAME]` has precedence over a material
-    /// that came with the mesh.
+    /// The index of the material for each of `names`, or none if no name is defined: the mesh then has the material of
+    /// its node. A `[materials.NAME]` has precedence over a material that came with the mesh.
     fn indices(&mut self, names: &[String]) -> Result<Vec<usize>, LoadError> {
-        names.iter().map(|name| self.index(name)).collect()
-    }
-
-    fn index(&mut self, name: &str) -> Result<usize, LoadError> {
-        if let Some(index) = self.materials.names.get(name) {
-            return Ok(index);
+        let mut indices = Vec::new();
+        let mut any = false;
+        for name in names {
+            let index = self.index(name)?;
+            any |= index.is_some();
+            indices.push(index.unwrap_or(0));
         }
-        let remedy = format!(
-            "define `[materials.{}]`, or write `materials = false` to give the whole mesh the material of \
-             its node",
-            name.escape_debug()
-        );
-        let Some(described) = self.described.iter().find(|material| material.name == name).cloned() else {
-            let message = format!(
-                "mesh {} uses material {}, which is not defined",
-                quoted(self.mesh.key),
-                quoted(name)
-            );
-            return Err(self.mesh.error(message).help(remedy));
+        let shown = match any {
+            true => "these faces have the material `default`",
+            false => "the mesh has the material of its node",
         };
-        let mut material = from_obj(&described).map_err(|trouble| {
-            let message =
-                format!("material {} of {} cannot be used: {trouble}", quoted(name), self.file.display());
-            self.mesh.error(message).help(remedy)
-        })?;
-        if let Some(image) = &described.diffuse_texture {
-            material.texture = Some(self.texture(image)?);
+        for (_, warning) in self.undefined.drain(..) {
+            let message = format!("{}; {shown}", warning.message);
+            let help =
+                "define it in the scene under `[materials]`, or write `materials = false` for the mesh";
+            self.mesh.warn(LoadError { message, ..warning }.help(help));
         }
-        Ok(self.materials.push(format!("{}/{name}", self.mesh.key), material))
+        Ok(if any { indices } else { Vec::new() })
     }
 
-    /// The index of the texture in the file `image`, which is read once.
-    fn texture(&mut self, image: &Path) -> Result<usize, LoadError> {
+    fn index(&mut self, name: &str) -> Result<Option<usize>, LoadError> {
+        if let Some(index) = self.materials.names.get(name) {
+            self.undefined.retain(|(undefined, _)| undefined != name);
+            return Ok(Some(index));
+        }
+        let Some(described) = self.described.iter().find(|material| material.name == name).cloned() else {
+            return Ok(None);
+        };
+        let mut material = from_obj(&described);
+        if let Some(image) = &described.diffuse_texture {
+            material.texture = self.texture(image)?;
+        }
+        Ok(Some(self.materials.push(format!("{}/{name}", self.mesh.key), material)))
+    }
+
+    /// The index of the texture in the file `image`, which is read once. If it cannot be used, a warning says so, and the
+    /// material has no texture.
+    fn texture(&mut self, image: &Path) -> Result<Option<usize>, LoadError> {
         if let Some((_, index)) = self.images.iter().find(|(path, _)| path == image) {
             return Ok(*index);
         }
-        let texture = textures::read(image, Wrap::Repeat).map_err(|message| {
-            let message = format!("cannot use the texture of mesh {}: {message}", quoted(self.mesh.key));
-            self.mesh.error(message).help(files::where_it_might_be(image))
-        })?;
-        self.textures.push(texture);
-        self.images.push((image.into(), self.textures.len() - 1));
-        Ok(self.textures.len() - 1)
+        let index = match image.is_file() {
+            true => match textures::read(image, Wrap::Repeat, self.mesh) {
+                Ok(texture) => {
+                    self.textures.push(texture);
+                    Some(self.textures.len() - 1)
+                }
+                Err(warning) => {
+                    let message = format!("{}; it is left out", warning.message);
+                    self.mesh.warn(LoadError { message, ..warning });
+                    None
+                }
+            },
+            false => {
+                let name = quoted(&image.file_name().unwrap_or_default().to_string_lossy());
+                let message =
+                    format!("there is no texture {name} for mesh {}; it is left out", quoted(self.mesh.key));
+                self.mesh.warn(self.mesh.error(message).help(files::where_it_might_be(image)));
+                None
+            }
+        };
+        self.images.push((image.into(), index));
+        Ok(index)
     }
 }

@@ -3,6 +3,7 @@
 mod files;
 mod graph;
 mod lights;
+mod limits;
 mod materials;
 mod meshes;
 mod names;
@@ -21,19 +22,41 @@ mod words;
 
 use super::Scene;
 use super::error::LoadError;
+use limits::Budget;
+pub use limits::Limits;
 use reader::{Source, Table};
+use std::cell::RefCell;
 use std::io::ErrorKind;
 use std::path::Path;
 
 const TABLES: [&str; 9] =
     ["film", "camera", "environment", "quality", "materials", "textures", "meshes", "lights", "nodes"];
 
-/// Reads the scene file `file`, and the meshes and textures that it names relative to its folder.
+/// A scene, and what was noticed while it was read.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene, which can be rendered.
+    pub scene: Scene,
+    /// What was ignored or replaced in files that the scene names, with file, line and column.
+    pub warnings: Vec<LoadError>,
+}
+
+/// Reads the scene file `file`, and the meshes and textures that it names relative to its folder. Warnings are
+/// dropped; [`load_within`] returns them.
 ///
 /// # Errors
 ///
 /// If `file` does not exist, cannot be read or is not UTF-8, and in all cases in which [`parse`] fails.
 pub fn load(file: &Path) -> Result<Scene, LoadError> {
+    load_within(file, Limits::default()).map(|loaded| loaded.scene)
+}
+
+/// Reads the scene file `file` as [`load`] does, within these limits.
+///
+/// # Errors
+///
+/// If `file` does not exist, cannot be read or is not UTF-8, and in all cases in which [`parse`] fails.
+pub fn load_within(file: &Path, limits: Limits) -> Result<Loaded, LoadError> {
     let bytes = std::fs::read(file).map_err(|error| match error.kind() {
         ErrorKind::NotFound => {
             LoadError::new(file, "there is no such file").help(files::where_it_might_be(file))
@@ -41,7 +64,7 @@ pub fn load(file: &Path) -> Result<Scene, LoadError> {
         _ => LoadError::new(file, format!("cannot be read: {error}")),
     })?;
     match std::str::from_utf8(&bytes) {
-        Ok(text) => parse(file, text),
+        Ok(text) => parse_within(file, text, limits),
         Err(error) => {
             let start = error.valid_up_to();
             let sound = String::from_utf8_lossy(&bytes[..start]);
@@ -52,16 +75,25 @@ pub fn load(file: &Path) -> Result<Scene, LoadError> {
 }
 
 /// Reads a scene from `text`. Meshes and textures are searched for from the folder of `file`, which need not
-/// exist itself.
+/// exist itself. Warnings are dropped; [`parse_within`] returns them.
 ///
 /// # Errors
 ///
 /// If the text is not TOML, `[camera]` is missing, a key is unknown, a value is of the wrong type or out of
-/// range, a name is not defined, a shape or a transform is degenerate, the nodes form a loop, or a file that
-/// the scene names is missing or malformed. The error names the file with line and column, and mostly says
-/// how to repair it.
+/// range, a name is not defined, a shape or a transform is degenerate, the nodes form a loop, a file that
+/// the scene names is missing or malformed, or the scene needs more memory than the default of [`Limits`]. The error
+/// names the file with line and column, and mostly says how to repair it.
 pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
-    let source = Source { file, text };
+    parse_within(file, text, Limits::default()).map(|loaded| loaded.scene)
+}
+
+/// Reads a scene from `text` as [`parse`] does, within these limits.
+///
+/// # Errors
+///
+/// In all cases in which [`parse`] fails.
+pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, LoadError> {
+    let source = Source { file, text, warnings: RefCell::default(), budget: Budget::new(limits) };
     let document = source.document()?;
     let root = Table::root(&source, &document, &TABLES)?;
 
@@ -78,10 +110,10 @@ pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
 
     let (mut textures, texture_names) = textures::textures(root.get("textures"))?;
     let mut materials = materials::materials(root.get("materials"), &texture_names)?;
-    let (meshes, mesh_names) = meshes::meshes(root.get("meshes"), &mut materials, &mut textures)?;
+    let (mut meshes, mesh_names) = meshes::meshes(root.get("meshes"), &mut materials, &mut textures)?;
     let lights = lights::lights(root.get("lights"))?;
-    let (nodes, roots) = nodes::nodes(root.get("nodes"), &materials.names, &mesh_names)?;
-    Ok(Scene {
+    let (nodes, roots) = nodes::nodes(root.get("nodes"), &materials.names, &mesh_names, &mut meshes)?;
+    let scene = Scene {
         film,
         camera,
         background: environment.background,
@@ -95,5 +127,7 @@ pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
         nodes,
         roots,
         quality,
-    })
+        max_primitives: limits.triangles(),
+    };
+    Ok(Loaded { scene, warnings: source.warnings.take() })
 }

@@ -5,19 +5,20 @@ use super::reader::{Table, Value};
 use super::shapes::{self, KINDS};
 use super::words::quoted;
 use super::{graph, transform};
-use crate::scene::Node;
 use crate::scene::error::LoadError;
+use crate::scene::{Node, SceneMesh};
 use std::collections::BTreeSet;
 
 const KEYS: [&str; 6] = ["name", "material", "shape", "children", "transform", "transform_end"];
 
 /// All nodes of `[[nodes]]` in the order of the file, and the indices of those without a parent. Fails if a
 /// name is unknown or given twice, if a shape or transform is degenerate, or if the graph is refused by
-/// `graph::check`.
+/// `graph::check`. Concave polygons are added to `all_meshes`.
 pub(super) fn nodes(
     value: Option<Value>,
     materials: &Names,
     meshes: &Names,
+    all_meshes: &mut Vec<SceneMesh>,
 ) -> Result<(Vec<Node>, Vec<usize>), LoadError> {
     let Some(value) = value else { return Ok((Vec::new(), Vec::new())) };
     let items = value.list("a list of tables, each under `[[nodes]]`")?;
@@ -36,7 +37,7 @@ pub(super) fn nodes(
             },
             transform,
             transform_end,
-            shape: table.get("shape").map(|shape| shapes::shape(shape, meshes)).transpose()?,
+            shape: table.get("shape").map(|shape| shapes::shape(shape, meshes, all_meshes)).transpose()?,
             material: table.get("material").map(|name| materials.find(name)).transpose()?,
             children: children(&listed, &names)?,
         });

@@ -1,16 +1,16 @@
-//! Reads `polygon = { corners = [ … ] }` and checks that it is flat, convex and goes around once.
+//! Reads `polygon = { corners = [ … ] }` and checks that it is flat.
 
 use super::reader::Value;
 use crate::scene::error::LoadError;
+use crate::scene::triangulate::area_vector;
 use glam::{DVec3, Vec3};
-use std::f64::consts::{PI, TAU};
 
 /// The largest distance of a corner from the plane, relative to the size of the polygon: corners written with
 /// five digits are that far away.
 const FLATNESS: f64 = 1e-5;
 
 /// The corners of a polygon, at least three and in order. Fails if two neighbours are the same point, if all
-/// lie on one line, if one lies outside of the common plane, or if the polygon is not convex.
+/// lie on one line, or if one lies outside of the common plane.
 pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
     let list = value.table(&["corners"])?.need("corners", "[[0, 0, 0], [1, 0, 0], [0, 1, 0]]")?;
     let items = list.list("a list of points")?;
@@ -35,18 +35,7 @@ pub(super) fn corners(value: Value) -> Result<Vec<Vec3>, LoadError> {
             .error(format!("corner {} does not lie in the plane of the polygon", index + 1))
             .help("divide the polygon into triangles"));
     }
-    if let Some(index) = turns_back(&exact, normal) {
-        return Err(items[index]
-            .error(format!("the polygon is not convex at corner {}", index + 1))
-            .help("divide it into convex parts, and give the corners in order"));
-    }
     Ok(corners)
-}
-
-/// The normal of the polygon, twice as long as its area: the sum over all edges of the parallelograms that
-/// they span with the first corner.
-fn area_vector(corners: &[DVec3]) -> DVec3 {
-    corners.windows(2).map(|edge| (edge[0] - corners[0]).cross(edge[1] - corners[0])).sum()
 }
 
 /// The first corner that is too far from the plane through the mean of all corners.
@@ -57,18 +46,4 @@ fn strays(corners: &[DVec3], normal: DVec3) -> Option<usize> {
     let largest = corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
     let tolerance = FLATNESS * size + f64::from(f32::EPSILON) * largest;
     corners.iter().position(|corner| (corner - middle).dot(normal).abs() > tolerance)
-}
-
-/// The first corner at which the outline turns the wrong way, or at which it has gone around more than once.
-fn turns_back(corners: &[DVec3], normal: DVec3) -> Option<usize> {
-    let count = corners.len();
-    let edge = |index: usize| (corners[(index + 1) % count] - corners[index % count]).normalize_or_zero();
-    let mut turned = 0.0;
-    (0..count).find(|&index| {
-        let (before, after) = (edge(index + count - 1), edge(index));
-        let angle = before.cross(after).dot(normal).atan2(before.dot(after));
-        turned += angle;
-        // Accept corners in the middle of a straight edge, up to the rounding of their coordinates.
-        !(-FLATNESS..PI - FLATNESS).contains(&angle) || turned > TAU + 1e-3
-    })
 }

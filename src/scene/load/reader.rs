@@ -1,9 +1,11 @@
 //! A small typed reader over TOML values. Each value knows its place in the file, so that every message uses
 //! the words of scenes and points at the text that is wrong. `numbers` reads the numbers.
 
+use super::limits::Budget;
 use super::syntax;
 use super::words::{listed, nearest, one_line, quoted};
 use crate::scene::error::LoadError;
+use std::cell::RefCell;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -15,6 +17,10 @@ pub(super) struct Source<'a> {
     pub file: &'a Path,
     /// The content of the file.
     pub text: &'a str,
+    /// What was ignored or replaced so far, in this file and in those that it names.
+    pub warnings: RefCell<Vec<LoadError>>,
+    /// The memory that the scene may still use, in bytes.
+    pub budget: Budget,
 }
 
 impl<'a> Source<'a> {
@@ -155,6 +161,11 @@ impl<'a> Value<'a> {
     /// An error at this value.
     pub fn error(&self, message: impl Into<String>) -> LoadError {
         self.source.error(self.item.span(), message)
+    }
+
+    /// Adds a warning about something that this value leads to.
+    pub fn warn(&self, warning: LoadError) {
+        self.source.warnings.borrow_mut().push(warning);
     }
 
     /// The error that the value must be `wanted` but is something else.

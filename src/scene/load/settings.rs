@@ -10,8 +10,6 @@ use glam::Vec3;
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
-/// The largest number of pixels of a picture: 2^28 of 12 bytes each fill 3 GiB.
-const MAX_PIXELS: u64 = 1 << 28;
 /// The largest number of samples: beyond a million, the rounding error of their sum in `f32` exceeds the
 /// contribution of one more.
 const MAX_SAMPLES: u32 = 1 << 20;
@@ -22,7 +20,7 @@ const MAX_DEPTH: u32 = 1000;
 const MAX_GRID: u32 = 1024;
 
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
-/// range or there are more than 2^28 pixels.
+/// range or the picture needs more memory than the limit.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
     let Some(value) = value else { return Ok(film) };
@@ -36,13 +34,8 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     if let Some(encoding) = table.get("encoding") {
         film.encoding = encoding.choice(&[("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)])?;
     }
-    let pixels = u64::from(film.width) * u64::from(film.height);
-    match pixels <= MAX_PIXELS {
-        true => Ok(film),
-        false => Err(table
-            .error(format!("the picture has {pixels} pixels; the maximum is {MAX_PIXELS}"))
-            .help("make `width` or `height` smaller")),
-    }
+    value.source.budget.film(value, film.width, film.height)?;
+    Ok(film)
 }
 
 /// The camera of `[camera]`; `aspect` is width over height of the film. Fails if a value is missing or out of

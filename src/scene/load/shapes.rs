@@ -3,9 +3,13 @@
 use super::names::Names;
 use super::polygon;
 use super::reader::{Table, Value};
+use crate::mesh::Mesh;
+use crate::scene::SceneMesh;
 use crate::scene::error::LoadError;
+use crate::scene::triangulate::{self, Cut};
 use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// All kinds of shapes: exactly one of these keys must stand in `shape`.
 pub(super) const KINDS: [&str; 10] =
@@ -13,7 +17,14 @@ pub(super) const KINDS: [&str; 10] =
 
 /// The shape of a node in the space of the node; `meshes` are the names that `mesh` may refer to. Fails if a
 /// value is missing or out of range, or if the shape is degenerate or exceeds the range of `f32`.
-pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
+///
+/// A polygon that is not convex becomes a mesh, which is added to `all_meshes`: the ray test for polygons, an exercise,
+/// is for convex ones.
+pub(super) fn shape(
+    value: Value,
+    meshes: &Names,
+    all_meshes: &mut Vec<SceneMesh>,
+) -> Result<Shape, LoadError> {
     let kind = value.table(&KINDS)?.one_of(&KINDS)?;
     let shape = match kind.key {
         "sphere" => Shape::Sphere(sphere(kind)?),
@@ -24,7 +35,10 @@ pub(super) fn shape(value: Value, meshes: &Names) -> Result<Shape, LoadError> {
         "cone" => Shape::Cone(cone(kind)?),
         "disk" => Shape::Disk(disk(kind)?),
         "bezier" => bezier(kind)?,
-        "polygon" => Shape::Polygon(Polygon { corners: polygon::corners(kind)? }),
+        "polygon" => match polygon(kind, all_meshes)? {
+            mesh @ Shape::Mesh(_) => return Ok(mesh),
+            convex => convex,
+        },
         _ => return Ok(Shape::Mesh(meshes.find(kind)?)),
     };
     match shape.bounds(&[]) {
@@ -109,7 +123,30 @@ fn bezier(value: Value) -> Result<Shape, LoadError> {
         return Err(list.error("all points of the net are the same, so no ray can hit the surface"));
     }
     let steps = table.get("steps").map_or(Ok(16), |steps| steps.whole(1..=1024))?;
+    value.source.budget.triangles(table.get("steps").unwrap_or(value), 2 * u64::from(steps).pow(2))?;
     Ok(Shape::Bezier { patch: Box::new(patch), steps })
+}
+
+/// A polygon. A concave one becomes a mesh; a polygon whose outline crosses itself becomes a fan, with a warning.
+fn polygon(value: Value, meshes: &mut Vec<SceneMesh>) -> Result<Shape, LoadError> {
+    let corners = polygon::corners(value)?;
+    let triangles: Vec<[usize; 3]> = match triangulate::cut(&corners) {
+        Cut::Fan => return Ok(Shape::Polygon(Polygon { corners })),
+        Cut::Triangles(triangles) => triangles,
+        Cut::Crossed => {
+            let warning =
+                value.error("the outline of the polygon crosses itself, so its triangles are a guess");
+            value.warn(
+                warning.help("list the corners in order around the polygon, or divide it into several"),
+            );
+            triangulate::fan(corners.len()).collect()
+        }
+    };
+    value.source.budget.triangles(value, triangles.len() as u64)?;
+    let triangles = triangles.into_iter().map(|triangle| triangle.map(|corner| corner as u32)).collect();
+    let mesh = Mesh { positions: corners, triangles, ..Mesh::default() };
+    meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: Vec::new() });
+    Ok(Shape::Mesh(meshes.len() - 1))
 }
 
 fn point(table: &Table, key: &str) -> Result<Vec3, LoadError> {

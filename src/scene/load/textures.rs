@@ -3,6 +3,7 @@
 use super::files;
 use super::names::Names;
 use super::reader::Value;
+use super::words::{one_line, quoted};
 use crate::material::{Texture, Wrap};
 use crate::scene::error::LoadError;
 use glam::Vec3;
@@ -23,23 +24,44 @@ pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Na
         let file = table.need("file", "\"wood.png\"")?;
         let path = files::find(file)?;
         names.insert(entry.key, textures.len());
-        textures.push(read(&path, wrap).map_err(|message| {
-            file.error(format!("cannot use {} as a texture: {message}", file.spelled()))
-                .help("textures are PNG or Radiance HDR files")
-        })?);
+        textures.push(read(&path, wrap, file)?);
     }
     Ok((textures, names))
 }
 
 /// Reads an image file and decodes it from sRGB to linear light; formats with floating-point pixels are
-/// linear already. Fails with a sentence if the file cannot be read or has no pixels.
-pub(super) fn read(path: &Path, wrap: Wrap) -> Result<Texture, String> {
-    let reader = ImageReader::open(path).and_then(ImageReader::with_guessed_format);
-    let image = reader.map_err(|error| error.to_string())?.decode().map_err(|error| error.to_string())?;
-    let (width, height) = (image.width(), image.height());
-    if width == 0 || height == 0 {
-        return Err("the image has no pixels".into());
+/// linear already. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
+/// than the limit; this is known from its header.
+pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<Texture, LoadError> {
+    let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
+    let trouble = |message: String| {
+        value
+            .error(format!("cannot use {name} as a texture: {}", one_line(&message)))
+            .help("textures are PNG or Radiance HDR files")
+    };
+    let open = || ImageReader::open(path).and_then(ImageReader::with_guessed_format);
+    let reader = open().map_err(|error| trouble(error.to_string()))?;
+    if let Some(format) = reader.format().filter(|format| !format.reading_enabled()) {
+        let format = format!("{format:?}").to_uppercase();
+        let png = path.with_extension("png");
+        return Err(value
+            .error(format!("{name} is a {format} image, and textures are PNG or Radiance HDR files"))
+            .help(format!(
+                "convert it, for example with `magick \"{}\" \"{}\"`, and name the new file",
+                path.display(),
+                png.display()
+            )));
     }
+    let (width, height) = reader.into_dimensions().map_err(|error| trouble(error.to_string()))?;
+    if width == 0 || height == 0 {
+        return Err(trouble("the image has no pixels".into()));
+    }
+    value.source.budget.texture(value, width, height)?;
+
+    let mut reader = open().map_err(|error| trouble(error.to_string()))?;
+    // The budget bounds the memory. The limits of the decoder are lower than what a user can allow.
+    reader.no_limits();
+    let image = reader.decode().map_err(|error| trouble(error.to_string()))?;
     Ok(Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap })
 }
 

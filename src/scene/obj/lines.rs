@@ -1,7 +1,10 @@
 //! The lines of an OBJ file, checked one by one.
 
+use super::DEFAULT_MATERIAL;
 use crate::scene::error::LoadError;
 use crate::scene::ply::text::{Word, nearest, quote, words};
+use crate::scene::triangulate::{self, Cut};
+use glam::Vec3;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
@@ -17,8 +20,12 @@ pub(super) struct Lines {
     pub faces: usize,
     /// The names after `usemtl`, each once and in order of first use.
     pub material_names: Vec<String>,
+    /// The byte range of each of these names, where it stands first.
+    pub material_spans: Vec<Range<usize>>,
     /// Byte ranges of the text after each `mtllib`, which is one file name or several.
     pub libraries: Vec<Range<usize>>,
+    /// What was ignored or guessed, each kind once with its first place.
+    pub warnings: Vec<LoadError>,
     texture_coordinates: usize,
     normals: usize,
 }
@@ -29,13 +36,38 @@ const LONG_KEYWORDS: [&str; 4] = ["usemtl", "mtllib", "usemap", "maplib"];
 /// Checks all lines of `text` and returns their content; fails at the first line that is malformed or that
 /// names a vertex, texture coordinate or normal that is not above it.
 pub(super) fn read(file: &Path, text: &str) -> Result<Lines, LoadError> {
-    let mut reader = Reader { file, text, lines: Lines::default(), names: HashSet::new() };
+    let mut reader = Reader {
+        file,
+        text,
+        lines: Lines::default(),
+        names: HashSet::new(),
+        without_uv: Repeated::default(),
+        without_normal: Repeated::default(),
+        unnamed: Repeated::default(),
+        crossed: Repeated::default(),
+        positions: Vec::new(),
+    };
     // `tobj` gets one library, which stands for all names of materials.
     reader.lines.clean.push_str("mtllib all\n");
     for line in logical_lines(text) {
         reader.line(line)?;
     }
+    reader.warn_of_repeated();
     Ok(reader.lines)
+}
+
+/// Something that may be wrong on every line: one warning at its first place says how often.
+#[derive(Default)]
+struct Repeated {
+    first: Option<Range<usize>>,
+    count: usize,
+}
+
+impl Repeated {
+    fn add(&mut self, span: Range<usize>) {
+        self.first.get_or_insert(span);
+        self.count += 1;
+    }
 }
 
 /// The byte ranges of the lines of a file. A line that ends in a backslash continues in the next one, unless
@@ -65,6 +97,11 @@ struct Reader<'a> {
     text: &'a str,
     lines: Lines,
     names: HashSet<&'a str>,
+    without_uv: Repeated,
+    without_normal: Repeated,
+    unnamed: Repeated,
+    crossed: Repeated,
+    positions: Vec<Vec3>,
 }
 
 impl<'a> Reader<'a> {
@@ -85,7 +122,8 @@ impl<'a> Reader<'a> {
             // A fourth number is the weight for free-form surfaces, and more numbers are a colour; a mesh has
             // neither.
             "v" => {
-                self.numbers(&keyword, values, 3)?;
+                let position = self.numbers(&keyword, values, 3)?;
+                self.positions.push(position);
                 self.lines.vertices += 1;
             }
             "vt" => {
@@ -97,19 +135,25 @@ impl<'a> Reader<'a> {
                 self.lines.normals += 1;
             }
             "f" => self.face(&keyword, values)?,
-            "usemtl" => self.use_material(&keyword, line.end)?,
-            "mtllib" => {
-                let names = self.rest(&keyword, line.end, "name a file, as in `mtllib box.mtl`")?;
-                self.lines.libraries.push(names);
-            }
+            "usemtl" => self.use_material(&keyword, line.end),
+            "mtllib" => match self.rest(&keyword, line.end) {
+                Some(names) => self.lines.libraries.push(names),
+                None => {
+                    let warning = self
+                        .trouble(keyword.span.clone(), "`mtllib` without a name; the line is ignored")
+                        .help("name a file, as in `mtllib box.mtl`");
+                    self.lines.warnings.push(warning);
+                }
+            },
             // Points and lines have no surface; objects, groups and smoothing do not affect one set of triangles.
             _ => self.check_keyword(&keyword)?,
         }
         Ok(())
     }
 
-    /// Copies the numbers of a `v`, `vt` or `vn` line.
-    fn numbers(&mut self, keyword: &Word, values: &[Word], count: usize) -> Result<(), LoadError> {
+    /// Copies and returns the numbers of a `v`, `vt` or `vn` line, at most three.
+    fn numbers(&mut self, keyword: &Word, values: &[Word], count: usize) -> Result<Vec3, LoadError> {
+        let mut numbers = Vec3::ZERO;
         self.lines.clean.push_str(keyword.text);
         for index in 0..count {
             let number = match values.get(index) {
@@ -125,9 +169,10 @@ impl<'a> Reader<'a> {
                 }
             };
             self.lines.clean.push_str(&format!(" {number:?}"));
+            numbers[index] = number;
         }
         self.lines.clean.push('\n');
-        Ok(())
+        Ok(numbers)
     }
 
     fn number(&self, keyword: &Word, word: &Word) -> Result<f32, LoadError> {
@@ -157,80 +202,149 @@ impl<'a> Reader<'a> {
                 .trouble(keyword.span.clone(), format!("a face with {} {noun}", corners.len()))
                 .help("name at least three vertices, as in `f 1 2 3`, or remove the line"));
         }
-        self.lines.clean.push('f');
-        for corner in corners {
-            self.corner(corner)?;
-            self.lines.clean.push(' ');
-            self.lines.clean.push_str(corner.text);
+        let checked: Vec<(usize, String)> =
+            corners.iter().map(|corner| self.corner(corner)).collect::<Result<_, _>>()?;
+        // Cut the polygon here, because `tobj` cuts concave ones into a fan as well.
+        let outline: Vec<Vec3> = checked.iter().map(|(vertex, _)| self.positions[*vertex]).collect();
+        match triangulate::cut(&outline) {
+            Cut::Triangles(triangles) => {
+                triangles.iter().for_each(|triangle| self.push_face(triangle.iter().map(|&i| &checked[i])));
+            }
+            Cut::Fan => self.push_face(checked.iter()),
+            Cut::Crossed => {
+                self.crossed.add(keyword.span.clone());
+                self.push_face(checked.iter());
+            }
         }
-        self.lines.clean.push('\n');
         self.lines.faces += 1;
         Ok(())
     }
 
-    /// Checks `1`, `1/2`, `1//3` or `1/2/3`.
-    fn corner(&self, corner: &Word) -> Result<(), LoadError> {
+    fn push_face<'c>(&mut self, corners: impl Iterator<Item = &'c (usize, String)>) {
+        self.lines.clean.push('f');
+        for (_, corner) in corners {
+            self.lines.clean.push(' ');
+            self.lines.clean.push_str(corner);
+        }
+        self.lines.clean.push('\n');
+    }
+
+    /// Checks `1`, `1/2`, `1//3` or `1/2/3`. Returns the index of the vertex, counted from 0, and the corner without
+    /// indices into tables that the file does not have.
+    fn corner(&mut self, corner: &Word) -> Result<(usize, String), LoadError> {
         let tables = [
             ("vertex", "vertices", self.lines.vertices),
             ("texture coordinate", "texture coordinates", self.lines.texture_coordinates),
             ("normal", "normals", self.lines.normals),
         ];
-        let malformed = || {
-            self.trouble(corner.span.clone(), format!("{} is not a corner of a face", quote(corner.text)))
+        let malformed = |reader: &Self| {
+            reader
+                .trouble(corner.span.clone(), format!("{} is not a corner of a face", quote(corner.text)))
                 .help(
                     "write a corner as `1`, `1/2`, `1//3` or `1/2/3`: vertex, texture coordinate and normal",
                 )
         };
         let parts: Vec<&str> = corner.text.split('/').collect();
         if parts.len() > tables.len() || parts[0].is_empty() {
-            return Err(malformed());
+            return Err(malformed(self));
         }
 
+        let (mut vertex, mut clean) = (0, String::with_capacity(corner.text.len()));
         let mut start = corner.span.start;
-        for (part, (one, many, count)) in parts.into_iter().zip(tables) {
+        for (place, (part, (one, many, count))) in parts.into_iter().zip(tables).enumerate() {
             let span = start..start + part.len();
             start = span.end + 1;
+            if place > 0 {
+                clean.push('/');
+            }
             if part.is_empty() {
                 continue;
             }
-            let index: i64 = part.parse().map_err(|_| malformed())?;
+            let index: i64 = part.parse().map_err(|_| malformed(self))?;
             let count = count as i64;
             // Negative indices count back from the line of the face: -1 is the last vertex above it.
             if (1..=count).contains(&index) || (-count..=-1).contains(&index) {
+                clean.push_str(part);
+                if place == 0 {
+                    vertex = if index > 0 { index - 1 } else { count + index } as usize;
+                }
                 continue;
             }
-            let message = match count {
-                0 => format!("the face names {one} {index}, but there are no {many} above it"),
-                1 => format!("the face names {one} {index}, but there is only {one} 1 above it"),
-                _ => format!("the face names {one} {index}, but the {many} above it are 1 to {count}"),
-            };
-            return Err(self.trouble(span, message).help(match index {
-                0 => "indices count from 1 here: add 1 to each if they were counted from 0".into(),
-                _ => format!("correct the index, or move the {many} above the faces that name them"),
-            }));
+            match place {
+                1 if count == 0 => self.without_uv.add(span),
+                2 if count == 0 => self.without_normal.add(span),
+                _ => return Err(self.no_such_index(span, index, count, one, many)),
+            }
         }
-        Ok(())
+        Ok((vertex, clean))
     }
 
-    fn use_material(&mut self, keyword: &Word, end: usize) -> Result<(), LoadError> {
-        let span = self.rest(keyword, end, "name a material, as in `usemtl red`")?;
-        let name = &self.text[span];
+    fn no_such_index(&self, span: Range<usize>, index: i64, count: i64, one: &str, many: &str) -> LoadError {
+        let message = match count {
+            0 => format!("the face names {one} {index}, but there are no {many} above it"),
+            1 => format!("the face names {one} {index}, but there is only {one} 1 above it"),
+            _ => format!("the face names {one} {index}, but the {many} above it are 1 to {count}"),
+        };
+        self.trouble(span, message).help(match index {
+            0 => "indices count from 1 here: add 1 to each if they were counted from 0".into(),
+            _ => format!("correct the index, or move the {many} above the faces that name them"),
+        })
+    }
+
+    fn use_material(&mut self, keyword: &Word, end: usize) {
+        let (name, span) = match self.rest(keyword, end) {
+            Some(span) => (&self.text[span.clone()], span),
+            None => {
+                self.unnamed.add(keyword.span.clone());
+                // Above the first name, the faces have no material anyway.
+                if self.lines.material_names.is_empty() {
+                    return;
+                }
+                (DEFAULT_MATERIAL, keyword.span.clone())
+            }
+        };
         if self.names.insert(name) {
             self.lines.material_names.push(one_line(name));
+            self.lines.material_spans.push(span);
         }
         self.lines.clean.push_str(&format!("usemtl {}\n", one_line(name)));
-        Ok(())
     }
 
-    /// The byte range of everything after a keyword. Names may contain blanks.
-    fn rest(&self, keyword: &Word, end: usize, help: &str) -> Result<Range<usize>, LoadError> {
+    /// Turns what was counted into one warning of each kind.
+    fn warn_of_repeated(&mut self) {
+        let indices = |what: &str| {
+            (
+                format!("a face names a {what}, but there are no {what}s above it; the index is ignored"),
+                format!("export the mesh with {what}s, or without their indices"),
+            )
+        };
+        let crossed = "the outline of a face crosses itself, so its triangles are a guess".to_owned();
+        let crossed_help = "list the corners of each face in order around it, or export triangles".to_owned();
+        let (uv, uv_help) = indices("texture coordinate");
+        let (normal, normal_help) = indices("normal");
+        let unnamed = "`usemtl` without a name; the faces below it get the material `default`".to_owned();
+        let unnamed_help = "name a material, as in `usemtl red`".to_owned();
+        for (repeated, message, help) in [
+            (std::mem::take(&mut self.without_uv), uv, uv_help),
+            (std::mem::take(&mut self.without_normal), normal, normal_help),
+            (std::mem::take(&mut self.unnamed), unnamed, unnamed_help),
+            (std::mem::take(&mut self.crossed), crossed, crossed_help),
+        ] {
+            let Some(first) = repeated.first else { continue };
+            let more = match repeated.count {
+                1 => String::new(),
+                count => format!(" (here first, {count} times in the file)"),
+            };
+            let warning = self.trouble(first, format!("{message}{more}")).help(help);
+            self.lines.warnings.push(warning);
+        }
+    }
+
+    /// The byte range of everything after a keyword, if there is anything. Names may contain blanks.
+    fn rest(&self, keyword: &Word, end: usize) -> Option<Range<usize>> {
         let rest = &self.text[keyword.span.end..end];
         let start = keyword.span.end + (rest.len() - rest.trim_start().len());
-        if rest.trim().is_empty() {
-            let message = format!("`{}` without a name", keyword.text);
-            return Err(self.trouble(keyword.span.clone(), message).help(help));
-        }
-        Ok(start..start + rest.trim().len())
+        (!rest.trim().is_empty()).then(|| start..start + rest.trim().len())
     }
 
     /// Fails only if a keyword looks like a misspelt one, because the format has many keywords that a mesh

@@ -140,13 +140,6 @@ fn every_index_is_checked() {
          help: indices count from 1 here: add 1 to each if they were counted from 0",
     );
     check(
-        "f 1/1 2/1 3/1",
-        &format!(
-            "5:5: the face names texture coordinate 1, but there are no texture coordinates above it\n{}",
-            order("texture coordinates")
-        ),
-    );
-    check(
         "vn 0 0 1\nf 1//1 2//1 3//9223372036854775807",
         &format!(
             "6:16: the face names normal 9223372036854775807, but there is only normal 1 above it\n{}",
@@ -204,7 +197,56 @@ fn a_file_without_faces_shows_nothing() {
         "a.obj: this is not an OBJ file\nhelp: it looks like a PLY file: give it the ending `.ply`"
     );
     check("usemlt red\nf 1 2 3", "5:1: `usemlt` is not a keyword of OBJ files\nhelp: did you mean `usemtl`?");
-    check("usemtl\nf 1 2 3", "5:1: `usemtl` without a name\nhelp: name a material, as in `usemtl red`");
+}
+
+/// Checks the warnings about the square with these lines below it, which start at line 5.
+#[track_caller]
+fn check_warnings(lines: &str, expected: &[&str]) -> Mesh {
+    let file = parsed(format!("{SQUARE}{lines}")).unwrap_or_else(|error| panic!("{error}"));
+    let messages: Vec<String> = file.warnings.iter().map(LoadError::to_string).collect();
+    let expected: Vec<String> = expected.iter().map(|message| format!("a.obj:{message}")).collect();
+    assert_eq!(messages, expected);
+    file.mesh
+}
+
+#[test]
+fn indices_into_tables_that_the_file_lacks_are_ignored() {
+    let mesh = check_warnings(
+        "f 1/1/1 2/2/1 3/3/1",
+        &[
+            "5:5: a face names a texture coordinate, but there are no texture coordinates above it; the index is \
+             ignored (here first, 3 times in the file)\n\
+             help: export the mesh with texture coordinates, or without their indices",
+            "5:7: a face names a normal, but there are no normals above it; the index is ignored (here first, 3 times \
+             in the file)\nhelp: export the mesh with normals, or without their indices",
+        ],
+    );
+    assert_eq!((mesh.triangles.len(), mesh.normals.len(), mesh.uvs.len()), (1, 0, 0));
+}
+
+#[test]
+fn a_material_without_a_name_is_no_material() {
+    let warning = "1: `usemtl` without a name; the faces below it get the material `default`\n\
+                   help: name a material, as in `usemtl red`";
+    let mesh = check_warnings("usemtl\nf 1 2 3", &[&format!("5:{warning}")]);
+    assert!(mesh.material_names.is_empty());
+    let mesh = check_warnings("usemtl red\nf 1 2 3\nusemtl \nf 1 3 4", &[&format!("7:{warning}")]);
+    assert_eq!(
+        (mesh.material_names, mesh.face_materials),
+        (vec!["red".into(), "default".into()], vec![0, 1])
+    );
+}
+
+#[test]
+fn concave_faces_are_covered_and_crossed_ones_are_guessed() {
+    let notched = mesh(format!("{SQUARE}v .5 .5 0\nf 1 2 5 3 4"));
+    let area: f32 = corners(&notched).iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).z / 2.0).sum();
+    let unsigned: f32 =
+        corners(&notched).iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).length() / 2.0).sum();
+    assert_eq!((notched.triangles.len(), area, unsigned), (3, 0.75, 0.75));
+    let warning = "5:1: the outline of a face crosses itself, so its triangles are a guess\n\
+                   help: list the corners of each face in order around it, or export triangles";
+    check_warnings("f 1 2 4 3", &[warning]);
 }
 
 /// For any bytes, the result is a valid mesh or an error.

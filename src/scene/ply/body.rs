@@ -47,6 +47,11 @@ impl<'a> Body<'a> {
         }
     }
 
+    /// The byte of the file at which the number that was read last starts.
+    pub fn last_byte(&self) -> usize {
+        self.last.start
+    }
+
     /// Reads the next number as the length of a list; fails if it is not a whole number in `0..=u32::MAX`.
     pub fn length(&mut self, scalar: Scalar, place: NumberLocation) -> Result<usize, LoadError> {
         let length = self.value(scalar, place)?;

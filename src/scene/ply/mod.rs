@@ -38,20 +38,29 @@ use glam::{Vec2, Vec3};
 use std::path::Path;
 use tables::Layout;
 
+/// The content of a PLY file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlyFile {
+    /// The vertices and faces of the file.
+    pub mesh: Mesh,
+    /// What was guessed, with file, line and column.
+    pub warnings: Vec<LoadError>,
+}
+
 /// Reads the mesh of the PLY file `file`, as [`parse`] does with its bytes.
 ///
 /// # Errors
 ///
 /// If `file` cannot be read, and in all cases in which [`parse`] fails.
-pub fn read(file: &Path) -> Result<Mesh, LoadError> {
+pub fn read(file: &Path) -> Result<PlyFile, LoadError> {
     parse(file, &text::read_bytes(file)?)
 }
 
 /// Reads the mesh from the bytes of a PLY file, ASCII or binary of either byte order; `file` is its name in
 /// messages.
 ///
-/// Positions are finite. A face with more than three corners is cut into triangles that share its first
-/// corner. Normals are scaled to unit length, and dropped all together if one of them has no direction.
+/// Positions are finite. Concave faces are cut into triangles that cover them; convex faces become fans around their
+/// first corner. A face whose outline crosses itself adds a warning. Normals are scaled to unit length, and dropped all together if one of them has no direction.
 /// Texture coordinates are dropped all together if one of them is not finite.
 ///
 /// # Errors
@@ -60,21 +69,22 @@ pub fn read(file: &Path) -> Result<Mesh, LoadError> {
 /// malformed, if the file ends early, if an ASCII file goes on after its last element, if a face has fewer
 /// than three corners or names a vertex that does not exist, if a position is not finite, or if there are no
 /// triangles. An error at a place in an ASCII file names its line and column.
-pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
+pub fn parse(file: &Path, bytes: &[u8]) -> Result<PlyFile, LoadError> {
     let header = header::read(file, bytes)?;
     let layout = Layout::of(file, bytes, &header)?;
 
     // Elements come in the order of the header, which may put faces before vertices.
     let mut body = Body::new(file, bytes, &header);
-    let mut mesh = Mesh::default();
+    let (mut mesh, mut polygons) = (Mesh::default(), Vec::new());
     for element in &header.elements {
         match element.name.as_str() {
             "vertex" => layout.vertices(&mut body, element, &mut mesh)?,
-            "face" => layout.faces(&mut body, element, &mut mesh)?,
+            "face" => layout.faces(&mut body, element, &mut mesh, &mut polygons)?,
             _ => body.skip_element(element)?,
         }
     }
     body.finish()?;
+    let warnings = tables::cut_polygons(file, bytes, &header, &mut mesh, &polygons);
 
     mesh.normals = unit_normals(mesh.normals);
     mesh.uvs = finite_uvs(mesh.uvs);
@@ -85,7 +95,7 @@ pub fn parse(file: &Path, bytes: &[u8]) -> Result<Mesh, LoadError> {
             "export the mesh again: each x, y and z has to be a number below 3e38"
         })
     })?;
-    Ok(mesh)
+    Ok(PlyFile { mesh, warnings })
 }
 
 /// The normals scaled to unit length, or none at all if one of them has no direction (zero, infinite or NaN).

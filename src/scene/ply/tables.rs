@@ -1,11 +1,12 @@
 //! From the elements `vertex` and `face` to the tables of a mesh.
 
 use super::body::{Body, NumberLocation};
-use super::header::{Element, Header, Kind, Property};
+use super::header::{Element, Encoding, Header, Kind, Property};
 use super::scalar::Scalar;
 use super::text::{nearest, trouble_at};
 use crate::mesh::Mesh;
 use crate::scene::error::LoadError;
+use crate::scene::triangulate::{self, Cut};
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
@@ -107,17 +108,28 @@ impl Layout {
         Ok(())
     }
 
-    /// Reads all faces of `element` into the triangles of `mesh`; a face with more than three corners is cut
-    /// into a fan of triangles around its first corner. Fails if a face has fewer than three corners or an
-    /// index names no vertex.
-    pub fn faces(&self, body: &mut Body, element: &Element, mesh: &mut Mesh) -> Result<(), LoadError> {
+    /// Reads all faces of `element` into the triangles of `mesh`; a face with more than three corners becomes
+    /// a fan of triangles around its first corner, and is added to `polygons`. Fails if a face has fewer than three
+    /// corners or an index names no vertex.
+    pub fn faces(
+        &self,
+        body: &mut Body,
+        element: &Element,
+        mesh: &mut Mesh,
+        polygons: &mut Vec<Polygon>,
+    ) -> Result<(), LoadError> {
         mesh.triangles.reserve(body.at_most(element.count, 4 * element.properties.len()));
         for number in 0..element.count {
             for (index, property) in element.properties.iter().enumerate() {
                 let place = NumberLocation { element, number, property };
                 match property.kind {
                     Kind::List { length, item } if index == self.corners => {
-                        self.face(body, place, length, item, mesh)?;
+                        let first = mesh.triangles.len();
+                        let byte = self.face(body, place, length, item, mesh)?;
+                        let triangles = mesh.triangles.len() - first;
+                        if triangles > 1 {
+                            polygons.push(Polygon { first, triangles, number, byte });
+                        }
                     }
                     _ => body.skip(place)?,
                 }
@@ -126,6 +138,7 @@ impl Layout {
         Ok(())
     }
 
+    /// Reads one face as a fan, and returns the byte of the file at which it starts.
     fn face(
         &self,
         body: &mut Body,
@@ -133,8 +146,9 @@ impl Layout {
         length: Scalar,
         item: Scalar,
         mesh: &mut Mesh,
-    ) -> Result<(), LoadError> {
+    ) -> Result<usize, LoadError> {
         let corners = body.length(length, place)?;
+        let byte = body.last_byte();
         if corners < 3 {
             let noun = if corners == 1 { "corner" } else { "corners" };
             let message = format!("face {} has {corners} {noun}", place.number);
@@ -150,7 +164,7 @@ impl Layout {
             mesh.triangles.push([first, previous, next]);
             previous = next;
         }
-        Ok(())
+        Ok(byte)
     }
 
     /// One index of a vertex; fails if there is no such vertex.
@@ -172,6 +186,64 @@ impl Layout {
             "correct the index, or look above it for a row with a number too few or too many"
         }))
     }
+}
+
+/// A face with more than three corners, which was read as a fan.
+pub(super) struct Polygon {
+    /// The index of its first triangle in the mesh.
+    first: usize,
+    /// The number of its triangles.
+    triangles: usize,
+    /// Which face it is, counted from 0.
+    number: usize,
+    /// The byte of the file at which it starts.
+    byte: usize,
+}
+
+/// Replaces the fans of concave polygons by triangles that cover the polygon, now that all vertices are known: faces may
+/// come before vertices. Returns a warning if the outline of a polygon crosses itself.
+pub(super) fn cut_polygons(
+    file: &Path,
+    bytes: &[u8],
+    header: &Header,
+    mesh: &mut Mesh,
+    polygons: &[Polygon],
+) -> Vec<LoadError> {
+    let mut crossed: Vec<&Polygon> = Vec::new();
+    for polygon in polygons {
+        let fan = &mut mesh.triangles[polygon.first..][..polygon.triangles];
+        let outline: Vec<u32> = fan
+            .first()
+            .into_iter()
+            .flatten()
+            .copied()
+            .chain(fan.iter().skip(1).map(|last| last[2]))
+            .collect();
+        let positions: Option<Vec<Vec3>> =
+            outline.iter().map(|&vertex| mesh.positions.get(vertex as usize).copied()).collect();
+        match triangulate::cut(&positions.unwrap_or_default()) {
+            Cut::Triangles(triangles) => {
+                for (old, new) in fan.iter_mut().zip(triangles) {
+                    *old = new.map(|corner| outline[corner]);
+                }
+            }
+            Cut::Fan => {}
+            Cut::Crossed => crossed.push(polygon),
+        }
+    }
+
+    let Some(first) = crossed.first() else { return Vec::new() };
+    let more = match crossed.len() {
+        1 => String::new(),
+        count => format!(" (this one first, {count} faces in the file)"),
+    };
+    let message =
+        format!("the outline of face {} crosses itself, so its triangles are a guess{more}", first.number);
+    let warning = match header.encoding {
+        Encoding::Ascii => trouble_at(file, bytes, first.byte..first.byte + 1, message),
+        Encoding::Binary(_) => LoadError::new(file, format!("{message} (byte {} of the file)", first.byte)),
+    };
+    vec![warning.help("list the corners of each face in order around it, or export triangles")]
 }
 
 /// Makes the errors for a header that lacks something.

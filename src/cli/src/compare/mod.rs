@@ -97,8 +97,8 @@ impl Options {
 /// Measures, prints the table and writes the rest. Returns whether all rows make the same picture; copies and
 /// instances may differ, because a ray that is transformed into another space is rounded.
 pub fn run(options: &Options) -> Result<bool> {
-    let mut scene = load_scene(&options.scene)?;
-    options.quality.apply(&mut scene);
+    let mut scene = load_scene(&options.scene, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-compare")));
     let root = root()?;

@@ -222,7 +222,9 @@ mod tests {
 
     #[test]
     fn what_leaks_is_not_proposed_however_fast_it_is() {
-        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage2.toml")).unwrap();
+        let scene =
+            crate::report::load_scene(std::path::Path::new("../../scenes/stage2.toml"), Default::default())
+                .unwrap();
         let own = Setting::of(&scene);
         let by =
             |triangle_method| Setting { quality: Quality { triangle_method, ..own.quality }, ..own.clone() };
@@ -241,7 +243,9 @@ mod tests {
 
     #[test]
     fn what_is_hardly_faster_is_not_worth_a_change() {
-        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage2.toml")).unwrap();
+        let scene =
+            crate::report::load_scene(std::path::Path::new("../../scenes/stage2.toml"), Default::default())
+                .unwrap();
         let own = Setting::of(&scene);
         let with = |leaf_size| Setting { quality: Quality { leaf_size, ..own.quality }, ..own.clone() };
         let chosen = |fastest: f64| {

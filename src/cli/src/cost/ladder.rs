@@ -296,7 +296,9 @@ mod tests {
 
     #[test]
     fn a_parameter_that_buys_nothing_says_why() {
-        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let scene =
+            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
+                .unwrap();
         let effects = Effects::default();
         let called = Called { scene: &scene, effects: &effects, primitives: 1 };
         let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();

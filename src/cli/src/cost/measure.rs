@@ -286,7 +286,9 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats_and_nothing_that_leaks() {
-        let scene = crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml")).unwrap();
+        let scene =
+            crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
+                .unwrap();
         let point = |error, seconds, leaks| Point::made_up(Setting::of(&scene), error, seconds, leaks);
         let points = [
             point(0.1, 1.0, 0),

@@ -126,9 +126,9 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         return headline::run(&bench, options.most, &out);
     };
     // Read the scene, in its own size and in that of the measured pictures.
-    let mut full = load_scene(file)?;
+    let mut full = load_scene(file, options.quality.limits())?;
     let as_written = full.quality;
-    options.quality.apply(&mut full);
+    options.quality.apply(&mut full)?;
     let small = if options.quality.names_a_size() { full.clone() } else { shrunk(&full) };
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));

@@ -76,8 +76,8 @@ impl Explained<'_> {
 
 /// Analyses the scene, measures its effects, and prints the report.
 pub fn run(options: &Options) -> Result<()> {
-    let mut scene = load_scene(&options.scene)?;
-    options.quality.apply(&mut scene);
+    let mut scene = load_scene(&options.scene, options.quality.limits())?;
+    options.quality.apply(&mut scene)?;
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = &*source.fresh();

@@ -4,7 +4,7 @@ use super::CAMERA;
 use crate::material::{Material, Wrap};
 use crate::scene::Scene;
 use crate::scene::error::LoadError;
-use crate::scene::load::parse;
+use crate::scene::load::{Limits, Loaded, parse, parse_within};
 use glam::Vec3;
 use std::path::PathBuf;
 
@@ -93,7 +93,7 @@ fn files_that_cannot_be_used_say_why() {
 
     let (place, message, help) = trouble(folder.parse("textures.wood.file = 'wood.png'"));
     assert_eq!(place, Some((2, 22)));
-    assert!(message.starts_with("cannot use 'wood.png' as a texture: "), "{message}");
+    assert!(message.starts_with("cannot use `wood.png` as a texture: "), "{message}");
     assert_eq!(help, "textures are PNG or Radiance HDR files");
 
     let (_, message, help) = trouble(folder.parse("meshes.bunny.file = 'bunny.stl'"));
@@ -145,41 +145,119 @@ fn a_mesh_comes_with_its_materials_unless_the_scene_knows_better() {
     assert_eq!((scene.materials.len(), scene.meshes[0].materials.len()), (1, 0));
 }
 
+/// The scene in `text` behind a camera, and the warnings with their help, without the folder in front.
+#[track_caller]
+fn loaded(folder: &Folder, text: &str) -> (Scene, Vec<String>) {
+    let result = parse_within(&folder.path("s.toml"), &format!("{CAMERA}{text}"), Limits::default());
+    let Loaded { scene, warnings } = result.unwrap_or_else(|error| panic!("{error}"));
+    let start = format!("{}{}", folder.0.display(), std::path::MAIN_SEPARATOR);
+    (scene, warnings.iter().map(|warning| warning.to_string().replace(&start, "")).collect())
+}
+
 #[test]
 fn an_obj_material_brings_its_image() {
     let folder = Folder::new("images");
     folder.write("m.obj", OBJ);
     folder.write("m.mtl", format!("{MTL}map_Kd wood.png\n"));
     let text = "[meshes.o]\nfile = 'm.obj'\n";
-    let (place, message, help) = trouble(folder.parse(text));
-    assert_eq!(place, Some((2, 1)));
-    assert!(message.starts_with("cannot use the texture of mesh `o`: "), "{message}");
-    assert_eq!(help, format!("looked for {}", folder.path("wood.png").display()));
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!(scene.materials[1].texture, None);
+    assert_eq!(
+        warnings,
+        [
+            "s.toml:2:1: there is no texture `wood.png` for mesh `o`; it is left out\nhelp: looked for wood.png"
+        ]
+    );
     image::RgbImage::new(3, 2).save(folder.path("wood.png")).expect("a texture");
-    let scene = folder.parse(text).expect("a scene");
-    assert_eq!((scene.materials[1].texture, scene.textures[0].width), (Some(0), 3));
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!((scene.materials[1].texture, scene.textures[0].width, warnings.len()), (Some(0), 3, 0));
 }
 
 #[test]
-fn mesh_materials_that_cannot_be_used_say_what_to_do() {
+fn a_missing_library_does_not_refuse_the_mesh() {
     let folder = Folder::new("mtl");
-    let remedy = "define `[materials.red]`, or write `materials = false` to give the whole mesh the material \
-        of its node";
-    folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\n");
+    folder.write("m.obj", OBJ);
     let text = "[meshes.o]\nfile = 'm.obj'\n";
-    let (place, message, help) = trouble(folder.parse(text));
-    assert_eq!((place, help.as_str()), (Some((2, 1)), remedy));
-    assert_eq!(message, "mesh `o` uses material `red`, which is not defined");
+    let missing = "m.obj:1:8: there is no material library `m.mtl`\n\
+                   help: looked for m.mtl: put the library there, or remove the `mtllib` line";
+    let undefined = "m.obj:5:8: material `red` is not defined; the mesh has the material of its node\n\
+                     help: define it in the scene under `[materials]`, or write `materials = false` for the mesh";
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!(
+        (scene.meshes[0].materials.len(), warnings),
+        (0, vec![missing.to_owned(), undefined.to_owned()])
+    );
+    let (scene, warnings) = loaded(&folder, &format!("[materials.red]\n{text}"));
+    assert_eq!((&scene.meshes[0].materials, warnings), (&vec![1], vec![missing.to_owned()]));
+    let (scene, warnings) = loaded(&folder, &format!("{text}materials = false"));
+    assert_eq!((scene.meshes[0].materials.len(), warnings), (0, vec![]));
 
+    // If another name is defined, faces with this one get the default.
+    folder.write("m.obj", format!("{OBJ}usemtl blue\nf 1 3 2\n"));
+    folder.write("m.mtl", MTL);
+    let (scene, warnings) = loaded(&folder, text);
+    assert_eq!((&scene.meshes[0].materials, warnings.len()), (&vec![1, 0], 1));
+    assert!(
+        warnings[0].starts_with("m.obj:7:8: material `blue` is not defined; these faces"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_warning_about_a_library_names_its_line() {
+    let folder = Folder::new("library");
     folder.write("m.obj", OBJ);
     folder.write("m.mtl", "newmtl red\nd 1.5\n");
-    let (_, message, help) = trouble(folder.parse(text));
-    let path = folder.path("m.obj");
-    let expected = "its dissolve is 1.5, and must be from 0 to 1";
-    assert_eq!(message, format!("material `red` of {} cannot be used: {expected}", path.display()));
-    assert_eq!(help, remedy);
-    folder.parse(&format!("{text}materials = false")).expect("a scene");
-    folder.parse(&format!("{text}[materials.red]")).expect("a scene");
+    let (scene, warnings) = loaded(&folder, "[meshes.o]\nfile = 'm.obj'\n");
+    assert_eq!(scene.materials[1].transmission, Vec3::ZERO);
+    assert_eq!(warnings, ["m.mtl:2:3: `d` is 1.5; 1 is used\nhelp: write a number from 0 to 1"]);
+}
+
+#[test]
+fn a_jpeg_texture_says_how_to_convert_it() {
+    let folder = Folder::new("jpeg");
+    folder.write("wood.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF\0\x01");
+    let (place, message, help) = trouble(folder.parse("textures.wood.file = 'wood.jpg'"));
+    assert_eq!(place, Some((2, 22)));
+    assert_eq!(message, "`wood.jpg` is a JPEG image, and textures are PNG or Radiance HDR files");
+    let (from, to) = (folder.path("wood.jpg"), folder.path("wood.png"));
+    assert_eq!(
+        help,
+        format!(
+            "convert it, for example with `magick \"{}\" \"{}\"`, and name the new file",
+            from.display(),
+            to.display()
+        )
+    );
+}
+
+#[test]
+fn memory_is_bounded_before_it_is_allocated() {
+    let folder = Folder::new("memory");
+    image::GrayImage::new(1000, 1000).save(folder.path("large.png")).expect("a texture");
+    let limits = Limits { memory: 30_000_000 };
+    let refused = |text: &str| {
+        let text = format!("{CAMERA}film = {{ width = 10, height = 10 }}\n{text}");
+        let error = parse_within(&folder.path("s.toml"), &text, limits).expect_err("a limit");
+        (error.place, error.message, error.help.unwrap_or_default())
+    };
+    let (place, message, help) = refused("textures.wood.file = 'large.png'");
+    assert_eq!(place, Some((3, 22)));
+    assert!(
+        message.starts_with("an image of 1000 by 1000 pixels takes about 36.0 MB, and with"),
+        "{message}"
+    );
+    assert_eq!(help, "make it smaller, or allow more memory with `--memory 1`");
+    // Each of 100 patches fits, but not all.
+    let net = "rows = [[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],[[0,1,0],[1,1,0],[2,1,0],[3,1,0]],\
+               [[0,2,0],[1,2,0],[2,2,0],[3,2,0]],[[0,3,0],[1,3,0],[2,3,0],[3,3,0]]]";
+    let patch = format!("[[nodes]]\nshape = {{ bezier = {{ {net}, steps = 50 }} }}\n");
+    let (place, message, _) = refused(&patch.repeat(100));
+    assert_eq!(place.map(|(line, _)| line), Some(62), "{message}");
+    assert!(message.starts_with("a surface of 5000 triangles takes about"), "{message}");
+    folder.write("m.ply", PLY);
+    let (place, ..) = refused("[meshes.m]\nfile = 'm.ply'\nsubdivide = 9\n");
+    assert_eq!(place.map(|(line, _)| line), Some(5));
 }
 
 #[test]

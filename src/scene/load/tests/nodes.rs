@@ -1,9 +1,11 @@
 //! Shapes, transforms and the graph.
 
-use super::{check_refused_with, scene_with};
+use super::{CAMERA, check_refused_with, scene_with};
 use crate::scene::Node;
+use crate::scene::load::{Limits, Loaded, parse_within};
 use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
 use glam::{Affine3A, Vec3};
+use std::path::Path;
 
 fn one_node(text: &str) -> Node {
     scene_with(&format!("[[nodes]]\n{text}")).nodes.remove(0)
@@ -105,7 +107,7 @@ fn shapes_that_no_ray_can_hit_are_refused() {
 }
 
 #[test]
-fn polygons_are_flat_and_convex_and_go_around_once() {
+fn polygons_are_flat() {
     let polygon = |corners: &str, message: &str| {
         check_node(&format!("shape = {{ polygon = {{ corners = [{corners}] }} }}"), &format!("3:{message}"));
     };
@@ -119,19 +121,31 @@ fn polygons_are_flat_and_convex_and_go_around_once() {
         "[0, 0, 0], [1, 0, 0], [1, 1, 0.1], [0, 1, 0]",
         "34: corner 1 does not lie in the plane of the polygon\nhelp: divide the polygon into triangles",
     );
-    let convex = "help: divide it into convex parts, and give the corners in order";
-    polygon(
-        "[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]",
-        &format!("56: the polygon is not convex at corner 3\n{convex}"),
-    );
-    // A five-pointed star turns the same way at each corner, and goes around twice.
-    polygon(
-        "[0, 10, 0], [6, -8, 0], [-10, 3, 0], [10, 3, 0], [-6, -8, 0]",
-        &format!("58: the polygon is not convex at corner 3\n{convex}"),
-    );
     // With five digits and far from the origin, a slanted hexagon is not exactly flat; a straight corner is allowed.
     let far = "[1e4, 1e4, 1e4], [10001.3, 1e4, 10000.7], [10002.6, 1e4, 10001.4], [1e4, 10001.1, 1e4]";
     one_node(&format!("shape = {{ polygon = {{ corners = [{far}] }} }}"));
+}
+
+#[test]
+fn a_concave_polygon_becomes_a_mesh_and_a_crossed_one_gives_a_warning() {
+    let polygon = |corners: &str| {
+        let text = format!("{CAMERA}[[nodes]]\nshape = {{ polygon = {{ corners = [{corners}] }} }}\n");
+        let Loaded { scene, warnings } =
+            parse_within(Path::new("s.toml"), &text, Limits::default()).expect("a scene");
+        (scene.nodes[0].shape.clone(), scene, warnings)
+    };
+    let (shape, scene, warnings) = polygon("[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]");
+    assert_eq!((shape, warnings), (Some(Shape::Mesh(0)), vec![]));
+    let mesh = &scene.meshes[0];
+    assert_eq!((mesh.mesh.triangles.len(), mesh.mesh.positions.len(), mesh.smooth), (2, 4, false));
+    // A five-pointed star turns the same way at each corner, and goes around twice.
+    let (shape, scene, warnings) = polygon("[0, 10, 0], [6, -8, 0], [-10, 3, 0], [10, 3, 0], [-6, -8, 0]");
+    assert_eq!((shape, scene.meshes[0].mesh.triangles.len()), (Some(Shape::Mesh(0)), 3));
+    assert_eq!(
+        warnings[0].to_string(),
+        "s.toml:3:21: the outline of the polygon crosses itself, so its triangles are a guess\n\
+         help: list the corners in order around the polygon, or divide it into several"
+    );
 }
 
 #[test]

@@ -80,8 +80,8 @@ fn a_film_has_pixels_and_not_too_many() {
     check_refused("film = { width = 640.0 }", "s.toml:1:18: `width` must be a whole number, but is 640.0");
     check_refused(
         "[film]\nwidth = 65536\nheight = 65536",
-        "s.toml:1:1: the picture has 4294967296 pixels; the maximum is 268435456\n\
-         help: make `width` or `height` smaller",
+        "s.toml:1:1: a picture of 65536 by 65536 pixels takes about 120.3 GB of memory; the limit is 4.0 GB\n\
+         help: make it smaller, or allow more memory with `--memory 121`",
     );
     check_refused(
         "film = { encoding = 'srbg' }",

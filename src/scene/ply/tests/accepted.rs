@@ -76,8 +76,41 @@ fn faces_may_come_before_vertices() {
 
 #[test]
 fn polygons_become_fans() {
-    let text = plain_with("vertex 3", "vertex 5").replace("3 0 1 2", "1 1 0 0 0 1 5 4 3 2 1 0");
+    let text = plain_with("vertex 3", "vertex 5").replace("3 0 1 2", "-1 1 0 -1 .5 0 5 4 3 2 1 0");
     assert_eq!(mesh(text).triangles, [[4, 3, 2], [4, 2, 1], [4, 1, 0]]);
+}
+
+#[test]
+fn concave_faces_are_covered_also_before_their_vertices() {
+    // An L of area 3.
+    let outline = "0 0 0 2 0 0 2 1 0 1 1 0 1 2 0 0 2 0";
+    let header = PLAIN.replace("vertex 3", "vertex 6");
+    let (vertices, faces) = (header.find("element vertex"), header.find("element face"));
+    let (vertices, faces, end) = (vertices.unwrap(), faces.unwrap(), header.find("end_header").unwrap());
+    let swapped = format!("{}{}{}", &header[..vertices], &header[faces..end], &header[vertices..faces]);
+    for text in [
+        format!("{header}{outline}\n6 0 1 2 3 4 5"),
+        format!("{swapped}end_header\n6 5 4 3 2 1 0\n{outline}"),
+    ] {
+        let mesh = mesh(text);
+        let areas = (0..4).map(|i| {
+            let [a, b, c] = mesh.corners(i);
+            (b - a).cross(c - a).z / 2.0
+        });
+        assert_eq!((mesh.triangles.len(), areas.clone().sum::<f32>().abs()), (4, 3.0));
+        assert_eq!(areas.map(f32::abs).sum::<f32>(), 3.0);
+    }
+}
+
+#[test]
+fn a_face_that_crosses_itself_gives_a_warning() {
+    let text = plain_with("vertex 3", "vertex 4").replace("3 0 1 2", "1 1 0\n4 0 1 2 3");
+    let warnings = crate::scene::ply::parse(std::path::Path::new("a.ply"), text.as_bytes()).unwrap().warnings;
+    assert_eq!(
+        warnings[0].to_string(),
+        "a.ply:14:1: the outline of face 0 crosses itself, so its triangles are a guess\n\
+         help: list the corners of each face in order around it, or export triangles"
+    );
 }
 
 /// From the lecture "Additional Data".
