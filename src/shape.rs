@@ -77,7 +77,7 @@ pub struct Disk {
     pub radius: f32,
 }
 
-/// A flat convex polygon, which is hit from either side.
+/// A flat convex polygon, which is hit from either side. A concave polygon of a scene file becomes a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polygon {
     /// Three or more corners in order around the polygon, in world units.

@@ -1,0 +1,222 @@
+//! OBJ files.
+
+use super::Row;
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// Lines below a square whose four vertices are lines 1 to 4.
+const BELOW_A_SQUARE: &[(&str, &str, &str)] = &[
+    ("a triangle", "f 1 2 3\n", "3v 1t"),
+    ("a quad", "f 1 2 3 4\n", "4v 2t area 1"),
+    ("two triangles that share an edge", "f 1 2 3\nf 1 3 4\n", "4v 2t area 1"),
+    ("negative indices", "f -4 -3 -2 -1\n", "4v 2t area 1"),
+    ("positive and negative indices in one face", "f 1 2 -2 -1\n", "4v 2t area 1"),
+    ("no line end at the end of the file", "f 1 2 3 4", "4v 2t"),
+    ("line ends of Windows", "f 1 2 3\r\nf 1 3 4\r\n", "4v 2t"),
+    ("blanks at the end of a line", "f 1 2 3 4   \n", "4v 2t"),
+    ("blanks at the start of a line", "   f 1 2 3 4\n", "4v 2t"),
+    ("tabs between words", "f\t1\t2\t3\t4\n", "4v 2t"),
+    ("several blanks between words", "f  1   2 3    4\n", "4v 2t"),
+    ("empty lines", "\n\nf 1 2 3\n\n\nf 1 3 4\n\n", "4v 2t"),
+    ("a comment above the faces", "# 2 faces\nf 1 2 3 4\n", "4v 2t"),
+    ("a comment after a face", "f 1 2 3 4 # quad\n", "4v 2t"),
+    ("a comment without a blank", "#f 1 2 3\nf 1 2 3 4\n", "4v 2t"),
+    ("a comment that ends in a backslash", "# C:\\mesh\\\nf 1 2 3 4\n", "4v 2t"),
+    ("a line that continues after a backslash", "f 1 2 \\\n3 4\n", "4v 2t"),
+    ("a continued line with line ends of Windows", "f 1 2 \\\r\n3 4\r\n", "4v 2t"),
+    ("a line that continues twice", "f 1 \\\n2 \\\n3 4\n", "4v 2t"),
+    ("a backslash at the end of the file", "f 1 2 3 4 \\", "4v 2t"),
+    ("an object", "o box\nf 1 2 3 4\n", "4v 2t"),
+    ("an object without a name", "o\nf 1 2 3 4\n", "4v 2t"),
+    ("an object with blanks in its name", "o my box.001\nf 1 2 3 4\n", "4v 2t"),
+    ("a group", "g side\nf 1 2 3 4\n", "4v 2t"),
+    ("a group without a name", "g\nf 1 2 3 4\n", "4v 2t"),
+    ("several groups of one face", "g left side\nf 1 2 3 4\n", "4v 2t"),
+    ("objects with vertices of their own", "o a\nf 1 2 3\no b\nv 5 5 5\nf 5 1 2\n", "4v 2t"),
+    ("smoothing off", "s off\nf 1 2 3 4\n", "4v 2t"),
+    ("smoothing 0", "s 0\nf 1 2 3 4\n", "4v 2t"),
+    ("a smoothing group", "s 1\nf 1 2 3 4\n", "4v 2t"),
+    ("a merging group", "mg 1 0.5\nf 1 2 3 4\n", "4v 2t"),
+    ("points of a parameter space", "vp 0.5 0.5\nf 1 2 3 4\n", "4v 2t"),
+    ("a point element", "p 1 2 3\nf 1 2 3 4\n", "4v 2t"),
+    ("a line element", "l 1 2 3 4\nf 1 2 3 4\n", "4v 2t"),
+    ("a line element with texture coordinates", "vt 0 0\nl 1/1 2/1\nf 1 2 3 4\n", "4v 2t"),
+    ("a free-form curve", "cstype bezier\ndeg 3\ncurv 0 1 1 2 3 4\nend\nf 1 2 3 4\n", "4v 2t"),
+    ("a display attribute", "bevel off\nc_interp off\nd_interp off\nlod 1\nf 1 2 3 4\n", "4v 2t"),
+    ("a shadow object", "shadow_obj none.obj\nf 1 2 3 4\n", "4v 2t"),
+    ("a texture map library", "maplib maps.txt\nusemap wood\nf 1 2 3 4\n", "4v 2t"),
+    ("texture coordinates", "vt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n", "3v 1t 3uv"),
+    ("texture coordinates with three numbers", "vt 0 0 0\nvt 1 0 0\nf 1/1 2/2 3/2\n", "3v 1t 3uv"),
+    ("texture coordinates with one number", "vt 0\nvt 1\nf 1/1 2/2 3/2\n", "3v 1t 3uv"),
+    ("texture coordinates outside of the image", "vt -3 7.5\nf 1/1 2/1 3/1\n", "3v 1t 3uv"),
+    ("texture coordinates that no face names", "vt 0 0\nf 1 2 3\n", "3v 1t"),
+    ("a seam of texture coordinates", "vt 0 0\nvt 1 0\nf 1/1 2/1 3/1\nf 1/2 3/2 4/2\n", "6v 2t 6uv"),
+    ("normals", "vn 0 0 1\nf 1//1 2//1 3//1\n", "3v 1t 3n"),
+    ("normals that are not of unit length", "vn 0 0 7\nf 1//1 2//1 3//1\n", "3v 1t 3n"),
+    ("normals that no face names", "vn 0 0 1\nf 1 2 3\n", "3v 1t"),
+    ("a normal of length 0", "vn 0 0 0\nf 1//1 2//1 3//1\n", "3v 1t"),
+    ("a normal that is NaN", "vn nan nan nan\nf 1//1 2//1 3//1\n", "3v 1t"),
+    ("a hard edge", "vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n", "6v 2t 6n"),
+    ("texture coordinates and normals", "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1\n", "3v 1t 3n 3uv"),
+    ("a slash after the vertex", "f 1/ 2/ 3/\n", "3v 1t"),
+    ("two slashes after the vertex", "f 1// 2// 3//\n", "3v 1t"),
+    ("negative indices of all tables", "vt 0 0\nvn 0 0 1\nf -4/-1/-1 -3/-1/-1 -2/-1/-1\n", "3v 1t 3n 3uv"),
+    ("indices with a sign", "f +1 +2 +3\n", "3v 1t"),
+    ("indices with leading zeros", "f 01 02 03\n", "3v 1t"),
+    (
+        "texture indices without the table",
+        "f 1/1 2/2 3/3\n",
+        "3v 1t | m.obj:5:5: a face names a texture coordinate, but there are no texture coordinates above it",
+    ),
+    (
+        "normal indices without the table",
+        "f 1//1 2//1 3//1\n",
+        "3v 1t | m.obj:5:6: a face names a normal, but there are no normals above it; the index is ignored (here first, 3",
+    ),
+    (
+        "both indices without the tables",
+        "f 1/1/1 2/1/1 3/1/1\n",
+        "3v 1t | m.obj:5:5: a face names a texture coordinate | m.obj:5:7: a face names a normal",
+    ),
+    (
+        "texture indices of 0 without the table",
+        "f 1/0 2/0 3/0\n",
+        "3v 1t | m.obj:5:5: a face names a texture coordinate",
+    ),
+    ("a convex pentagon", "v -1 0.5 0\nf 1 2 3 4 5\n", "5v 3t area 1.5"),
+    ("a concave polygon", "v 0.5 0.5 0\nf 1 2 5 3 4\n", "5v 3t area 0.75"),
+    ("a concave polygon that starts at its notch", "v 0.5 0.5 0\nf 5 3 4 1 2\n", "5v 3t area 0.75"),
+    ("a concave polygon in clockwise order", "v 0.5 0.5 0\nf 4 3 5 2 1\n", "5v 3t area 0.75"),
+    ("a concave quad", "v 0.25 0.25 0\nf 1 2 5 4\n", "4v 2t area 0.25"),
+    ("a concave polygon of negative indices", "v 0.5 0.5 0\nf -5 -4 -1 -3 -2\n", "5v 3t area 0.75"),
+    ("a straight corner", "v 0.5 0 0\nf 1 5 2 3 4\n", "5v 3t area 1"),
+    (
+        "a concave polygon with a straight corner",
+        "v 0.5 0.5 0\nv 0.5 0 0\nf 1 6 2 5 3 4\n",
+        "6v 4t area 0.75",
+    ),
+    (
+        "a ring with a bridge",
+        "v .25 .25 0\nv .75 .25 0\nv .75 .75 0\nv .25 .75 0\nf 1 2 3 4 1 5 8 7 6 5\n",
+        "8v 8t area 0.75",
+    ),
+    (
+        "a concave polygon with normals",
+        "v .5 .5 0\nvn 0 0 1\nf 1//1 2//1 5//1 3//1 4//1\n",
+        "5v 3t 5n area 0.75",
+    ),
+    ("a quad that is not flat", "v 1 1 .1\nf 1 2 5 4\n", "4v 2t"),
+    ("a face that repeats a corner", "f 1 2 2 3\n", "3v 2t area 0.5"),
+    ("a face without area", "v 2 0 0\nv 3 0 0\nf 1 2 5 6\nf 1 2 3\n", "5v 3t area 0.5"),
+    (
+        "a face that crosses itself",
+        "f 1 2 4 3\n",
+        "4v 2t | m.obj:5:1: the outline of a face crosses itself, so its triangles are a guess\n",
+    ),
+    (
+        "two faces that cross themselves",
+        "f 1 2 3\nf 1 2 4 3\nf 1 3 2 4\n",
+        "4v 5t | m.obj:6:1: the outline of a face crosses itself, so its triangles are a guess (here first, 2",
+    ),
+    (
+        "a material that is not defined",
+        "usemtl red\nf 1 2 3\n",
+        "3v 1t 1m | m.obj:5:8: material `red` is not defined; the mesh has the material of its node",
+    ),
+    ("a material that no face uses", "f 1 2 3\nusemtl red\n", "3v 1t"),
+    ("a material without a name", "usemtl\nf 1 2 3\n", "3v 1t | m.obj:5:1: `usemtl` without a name"),
+    (
+        "a library without a name",
+        "mtllib\nf 1 2 3\n",
+        "3v 1t | m.obj:5:1: `mtllib` without a name; the line is",
+    ),
+    (
+        "a missing library",
+        "mtllib box.mtl\nf 1 2 3\n",
+        "3v 1t | m.obj:5:8: there is no material library `box.mtl`",
+    ),
+    (
+        "two missing libraries in one line",
+        "mtllib a.mtl b.mtl\nf 1 2 3\n",
+        "3v 1t | m.obj:5:8: there is no material library `a.mtl` | m.obj:5:14: there is no material library `b.mtl`",
+    ),
+    (
+        "an index of 0",
+        "f 0 1 2\n",
+        " | m.obj:5:3: the face names vertex 0, but the vertices above it are 1 to 4",
+    ),
+    ("an index that is too large", "f 1 2 5\n", " | m.obj:5:7: the face names vertex 5"),
+    ("a negative index that is too large", "f 1 2 -5\n", " | m.obj:5:7: the face names vertex -5"),
+    ("an index of a later vertex", "f 1 2 5\nv 2 2 2\n", " | m.obj:5:7: the face names vertex 5"),
+    (
+        "an index of a normal that is too large",
+        "vn 0 0 1\nf 1//2 2//1 3//1\n",
+        " | m.obj:6:6: the face names normal 2",
+    ),
+    ("a face of two corners", "f 1 2\n", " | m.obj:5:1: a face with 2 corners"),
+    ("a face of decimal indices", "f 1.0 2.0 3.0\n", " | m.obj:5:3: `1.0` is not a corner of a face"),
+    ("a decimal comma", "v 0,5 1 2\nf 1 2 3\n", " | m.obj:5:3: `0,5` is not a number"),
+    ("a vertex that is NaN", "v nan 0 0\nf 1 2 3\n", " | m.obj:5:3: `nan` is not a finite number"),
+    ("a vertex that is too far away", "v 1e39 0 0\nf 1 2 3\n", " | m.obj:5:3: `1e39` is not a finite number"),
+    ("a misspelt keyword", "usemlt red\nf 1 2 3\n", " | m.obj:5:1: `usemlt` is not a keyword of OBJ files"),
+    ("no faces", "", " | m.obj: the file has no faces"),
+    ("only lines", "l 1 2 3\n", " | m.obj: the file has no faces"),
+    (
+        "a name with a control character",
+        "mtllib \u{1b}[31m\nf 1 2 3\n",
+        "3v 1t | m.obj:5:8: there is no material library `\\u{1b}[31m`",
+    ),
+];
+
+/// Whole files.
+const FILES: &[(&str, &str, &str)] = &[
+    ("a byte order mark", "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "3v 1t"),
+    ("a weight after each position", "v 0 0 0 1.0\nv 1 0 0 1.0\nv 0 1 0 1.0\nf 1 2 3\n", "3v 1t"),
+    ("a colour after each position", "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n", "3v 1t"),
+    ("a colour in bytes", "v 0 0 0 255 0 0\nv 1 0 0 0 255 0\nv 0 1 0 0 0 255\nf 1 2 3\n", "3v 1t"),
+    ("a colour and a weight", "v 0 0 0 1 0 0 1\nv 1 0 0 0 1 0 1\nv 0 1 0 0 0 1 1\nf 1 2 3\n", "3v 1t"),
+    ("numbers in scientific notation", "v 0e0 0 0\nv 1e+0 0 0\nv 0 10E-1 0\nf 1 2 3\n", "3v 1t area 0.5"),
+    ("numbers without a leading zero", "v .0 0 0\nv 1. 0 0\nv 0 +1 -.0\nf 1 2 3\n", "3v 1t area 0.5"),
+    (
+        "numbers with many digits",
+        "v 0.000000000000000000001 0 0\nv 1.0000000000000000001 0 0\nv 0 1 0\nf 1 2 3",
+        "3v 1t",
+    ),
+    ("vertices between faces", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nv 1 1 0\nf 2 4 3\n", "4v 2t area 1"),
+    (
+        "negative indices per object",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n",
+        "6v 2t area 1",
+    ),
+    ("vertices that no face names", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n", "3v 1t"),
+    ("equal vertices", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3\nf 4 3 2\n", "4v 2t"),
+    ("lines that end in a carriage return", "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 2 3\r\n", "3v 1t"),
+    (
+        "the header of Blender",
+        "# Blender 4.2.0\n# www.blender.org\no Plane\nv 0 0 0\nv 1 0 0\nv 0 1 0\ns 0\nf 1 2 3\n",
+        "3v 1t",
+    ),
+    (
+        "the header of 3ds Max",
+        "# 3ds Max Wavefront OBJ Exporter\r\n\r\n#\r\n# object Box\r\n#\r\n\r\nv  0 0 0\r\nv  1 0 0\r\nv  0 1 0\r\n# 3 vertices\r\n\r\ng Box\r\nf 1 2 3 \r\n# 1 polygons\r\n",
+        "3v 1t",
+    ),
+    ("an empty file", "", " | m.obj: the file has no faces"),
+    ("a PLY file with the wrong ending", "ply\nformat ascii 1.0\n", " | m.obj: this is not an OBJ file"),
+    ("a web page", "<!DOCTYPE html>\n", " | m.obj: this is not an OBJ file"),
+    (
+        "a pointer of Git LFS",
+        "version https://git-lfs.github.com/spec/v1\n",
+        " | m.obj: this is not an OBJ file",
+    ),
+    ("an MTL file with the wrong ending", "newmtl red\nKd 1 0 0\n", " | m.obj: this is not an OBJ file"),
+];
+
+pub(super) fn rows() -> Vec<Row> {
+    let below = BELOW_A_SQUARE
+        .iter()
+        .map(|(feature, lines, expected)| Row::mesh(feature, "m.obj", format!("{SQUARE}{lines}"), expected));
+    let files = FILES.iter().map(|(feature, text, expected)| Row::mesh(feature, "m.obj", text, expected));
+    let latin = [b"# gr\xfcn\n", SQUARE.as_bytes(), b"o gr\xfcn\nf 1 2 3 4\n"].concat();
+    below.chain(files).chain([Row::mesh("text in Latin-1", "m.obj", latin, "4v 2t")]).collect()
+}
