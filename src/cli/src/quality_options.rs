@@ -272,7 +272,7 @@ mod tests {
         let Read::Given(given) = LINE.read(line.split_whitespace().map(OsString::from)).unwrap() else {
             panic!("help was requested");
         };
-        QualityOptions::read(&given).unwrap().apply(&mut scene);
+        QualityOptions::read(&given).unwrap().apply(&mut scene).unwrap();
         assert_eq!(scene.quality, wanted);
         assert_eq!(arguments(&own, &own), "");
         assert!(parse_share("1.5").is_err() && parse_share("NaN").is_err() && parse_share("some").is_err());

@@ -114,7 +114,7 @@ fn exceeds(what: &str, bytes: u64, limit: u64) -> String {
 }
 
 fn advice(needed: u64) -> String {
-    format!("make it smaller, or allow more memory with `--memory {}`", needed.div_ceil(GIGABYTE))
+    format!("make it smaller, or allow more memory: at least `--memory {}`", needed.div_ceil(GIGABYTE))
 }
 
 fn size(bytes: u64) -> String {

@@ -247,7 +247,7 @@ fn memory_is_bounded_before_it_is_allocated() {
         message.starts_with("an image of 1000 by 1000 pixels takes about 36.0 MB, and with"),
         "{message}"
     );
-    assert_eq!(help, "make it smaller, or allow more memory with `--memory 1`");
+    assert_eq!(help, "make it smaller, or allow more memory: at least `--memory 1`");
     // Each of 100 patches fits, but not all.
     let net = "rows = [[[0,0,0],[1,0,0],[2,0,0],[3,0,0]],[[0,1,0],[1,1,0],[2,1,0],[3,1,0]],\
                [[0,2,0],[1,2,0],[2,2,0],[3,2,0]],[[0,3,0],[1,3,0],[2,3,0],[3,3,0]]]";

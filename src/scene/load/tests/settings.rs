@@ -81,7 +81,7 @@ fn a_film_has_pixels_and_not_too_many() {
     check_refused(
         "[film]\nwidth = 65536\nheight = 65536",
         "s.toml:1:1: a picture of 65536 by 65536 pixels takes about 120.3 GB of memory; the limit is 4.0 GB\n\
-         help: make it smaller, or allow more memory with `--memory 121`",
+         help: make it smaller, or allow more memory: at least `--memory 121`",
     );
     check_refused(
         "film = { encoding = 'srbg' }",

@@ -30,7 +30,12 @@ const CHANGES: &[(&str, &str, &str, &str)] = &[
     ("lengths and indices as uint", "list uchar int", "list uint uint", "3v 1t"),
     ("indices as ushort", "list uchar int", "list uchar ushort", "3v 1t"),
     ("indices as floats", "3 0 1 2\n", "3 0.0 1.0 2.0\n", "3v 1t"),
-    ("a vertex that is missing", "3\nproperty float x", "4\nproperty float x", " | m.ply:13:7: face 0 has 2 corners"),
+    (
+        "a vertex that is missing",
+        "3\nproperty float x",
+        "4\nproperty float x",
+        " | m.ply:13:7: face 0 has 2 corners",
+    ),
     ("several vertices in one row", "0 0 0\n1 0 0\n0 1 0\n", "0 0 0 1 0 0 0 1 0\n", "3v 1t"),
     ("a vertex in several rows", "1 0 0\n", "1\n0\n0\n", "3v 1t"),
     ("empty lines between rows", "1 0 0\n", "\n1 0 0\n\n", "3v 1t"),
