@@ -45,10 +45,27 @@ pub struct Trial<'a> {
     pub seed: u64,
     /// How often this trial has drawn inputs.
     draws: Cell<u32>,
-    /// The inputs that were drawn before, if they are kept.
-    drawn: Option<Arc<Drawn>>,
+    /// Where the inputs come from.
+    inputs: Inputs,
     /// Whether a failing input is replaced by a smaller one, which only a message needs.
     shrinks: bool,
+}
+
+/// Where the inputs of a trial come from, and how many of them are used.
+#[derive(Clone)]
+pub struct Inputs {
+    /// The inputs that were drawn before, if they are kept.
+    pub drawn: Option<Arc<Drawn>>,
+    /// Only one in so many inputs is used, and one in so many rows of a picture; at least 1. A grader that repeats a check
+    /// with hidden inputs needs no more than a sample: these only have to show that the answers are not those to known
+    /// inputs.
+    pub one_in: usize,
+}
+
+impl Default for Inputs {
+    fn default() -> Self {
+        Inputs { drawn: None, one_in: 1 }
+    }
 }
 
 /// The result of a check for the student.
@@ -70,7 +87,7 @@ pub enum Verdict {
 impl<'a> Trial<'a> {
     /// A trial of `kit` by the check `name`, with the inputs of `seed`.
     pub fn new(kit: &'a dyn Kit, name: &'static str, seed: u64) -> Self {
-        Trial { kit, name, seed, draws: Cell::new(0), drawn: None, shrinks: true }
+        Trial { kit, name, seed, draws: Cell::new(0), inputs: Inputs::default(), shrinks: true }
     }
 
     /// `public` for the seed that students have, and a value drawn from `hidden` for any other seed.
@@ -118,9 +135,10 @@ impl<'a> Trial<'a> {
 
     /// The part of [`Trial::forall`] that does not depend on the type of the inputs, so that it is compiled only once.
     fn hold(&self, cases: usize, law: &dyn Law, caller: &'static Location<'static>) -> CheckResult {
+        let cases = cases.div_ceil(self.inputs.one_in);
         let draw = || law.draw(cases, &mut self.runner());
         let key = (self.name, self.seed, caller, self.draws.replace(self.draws.get() + 1));
-        let values = match &self.drawn {
+        let values = match &self.inputs.drawn {
             Some(drawn) => drawn.get(key, &draw),
             None => draw(),
         };
@@ -142,6 +160,11 @@ impl<'a> Trial<'a> {
             Some(tree) => Err(shrink(tree, broken)),
             None => Err(broken),
         }
+    }
+
+    /// Only one in so many rows of a picture is judged.
+    pub(crate) fn row_step(&self) -> usize {
+        self.inputs.one_in
     }
 
     /// A generator that makes the same random choices in each run.
@@ -298,29 +321,29 @@ pub fn run(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Verdic
 
 /// Whether `kit` passes a check. Faster than [`run`] if it fails, because there is no message with a small input.
 pub fn passes(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> bool {
-    matches!(on_a_thread(check, kit, seed, None, false), Ok(Ok(())))
+    matches!(on_a_thread(check, kit, seed, Inputs::default(), false), Ok(Ok(())))
 }
 
 /// Whether the law holds, or the error that prevented an answer.
 pub fn examine(check: &Check, kit: &Arc<dyn Kit + Send + Sync>, seed: u64) -> Result<CheckResult, KitError> {
-    examine_with(check, kit, seed, None)
+    examine_with(check, kit, seed, Inputs::default())
 }
 
-/// The same as [`examine`], with inputs that may have been `drawn` before.
+/// The same as [`examine`], with these inputs.
 pub fn examine_with(
     check: &Check,
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
-    drawn: Option<Arc<Drawn>>,
+    inputs: Inputs,
 ) -> Result<CheckResult, KitError> {
-    on_a_thread(check, kit, seed, drawn, true)
+    on_a_thread(check, kit, seed, inputs, true)
 }
 
 fn on_a_thread(
     check: &Check,
     kit: &Arc<dyn Kit + Send + Sync>,
     seed: u64,
-    drawn: Option<Arc<Drawn>>,
+    inputs: Inputs,
     shrinks: bool,
 ) -> Result<CheckResult, KitError> {
     let (send, outcome) = mpsc::channel();
@@ -330,7 +353,7 @@ fn on_a_thread(
         .name(check.name.into())
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
-            let trial = Trial { drawn, shrinks, ..Trial::new(&*kit, check.name, seed) };
+            let trial = Trial { inputs, shrinks, ..Trial::new(&*kit, check.name, seed) };
             let symmetry = trial.varied(Symmetry::IDENTITY, check.symmetries.strategy());
             let turned = Door(TurnedKit { kit: &*kit, symmetry });
             let is_turned = symmetry != Symmetry::IDENTITY;

@@ -16,11 +16,18 @@ const COUNTED_AFTER: u32 = 20;
 
 /// Ends a process that exceeds its time. It has one thread per process, which sleeps between calls.
 pub(super) struct Watchdog {
-    deadline: Mutex<Deadline>,
+    state: Mutex<State>,
     changed: Condvar,
     barked: AtomicBool,
     /// Measures the times of the process. If it is set, time counts only while the process computes.
     launcher: Option<Arc<dyn Launcher>>,
+}
+
+struct State {
+    deadline: Deadline,
+    /// When the thread wakes by itself; `None` if it waits for a call. Waking it for each call would cost more than most
+    /// calls.
+    wakes: Option<Instant>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -49,7 +56,7 @@ impl Watchdog {
     /// Starts a watchdog for this process.
     pub(super) fn guard(child: &Arc<Mutex<Child>>, launcher: Option<Arc<dyn Launcher>>) -> Arc<Watchdog> {
         let watchdog = Arc::new(Watchdog {
-            deadline: Mutex::new(Deadline::None),
+            state: Mutex::new(State { deadline: Deadline::None, wakes: None }),
             changed: Condvar::new(),
             barked: AtomicBool::new(false),
             launcher,
@@ -68,43 +75,40 @@ impl Watchdog {
             }
             None => Times { computed: Duration::MAX, waited: Duration::ZERO },
         };
-        let mut deadline = lock(&self.deadline);
+        let mut state = lock(&self.state);
         loop {
-            deadline = match *deadline {
+            let (call, end) = match state.deadline {
                 Deadline::Retired => return,
-                Deadline::None => self.changed.wait(deadline).unwrap_or_else(PoisonError::into_inner),
-                Deadline::At(call, end) => match end.checked_duration_since(Instant::now()) {
-                    Some(left) => {
-                        let early = call.patience / COUNTED_AFTER;
-                        let left = match call.before {
-                            None if fair => early.saturating_sub(call.asked.elapsed()).min(left),
-                            _ => left,
-                        };
-                        let (mut deadline, timed_out) =
-                            self.changed.wait_timeout(deadline, left).unwrap_or_else(PoisonError::into_inner);
-                        if let Deadline::At(call, _) = &mut *deadline
-                            && timed_out.timed_out()
-                            && fair
-                            && call.before.is_none()
-                            && call.asked.elapsed() >= early
-                        {
-                            call.before = Some(times());
-                        }
-                        deadline
-                    }
-                    None => match call.more_time(times()) {
-                        Some(later) => {
-                            *deadline = Deadline::At(call, later);
-                            deadline
-                        }
-                        None => {
-                            self.barked.store(true, Ordering::Relaxed);
-                            let _ = lock(child).kill();
-                            return;
-                        }
-                    },
-                },
+                Deadline::None => {
+                    state.wakes = None;
+                    state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
+                    continue;
+                }
+                Deadline::At(call, end) => (call, end),
             };
+            let now = Instant::now();
+            if now < end {
+                // Sleep until the processor time is to be measured, or else until the deadline.
+                let measured = call.asked + call.patience / COUNTED_AFTER;
+                let measures = fair && call.before.is_none();
+                if measures && now >= measured {
+                    state.deadline = Deadline::At(Call { before: Some(times()), ..call }, end);
+                    continue;
+                }
+                let wakes = if measures { measured.min(end) } else { end };
+                state.wakes = Some(wakes);
+                let waited = self.changed.wait_timeout(state, wakes - now);
+                state = waited.unwrap_or_else(PoisonError::into_inner).0;
+                continue;
+            }
+            match call.more_time(times()) {
+                Some(later) => state.deadline = Deadline::At(call, later),
+                None => {
+                    self.barked.store(true, Ordering::Relaxed);
+                    let _ = lock(child).kill();
+                    return;
+                }
+            }
         }
     }
 
@@ -114,19 +118,21 @@ impl Watchdog {
 
     pub(super) fn bark_after(&self, patience: Duration) {
         let asked = Instant::now();
-        self.set(Deadline::At(Call { asked, patience, before: None }, asked + patience));
+        let mut state = lock(&self.state);
+        state.deadline = Deadline::At(Call { asked, patience, before: None }, asked + patience);
+        // A thread that wakes early enough by itself then sees the new deadline.
+        let first = if self.launcher.is_some() { patience / COUNTED_AFTER } else { patience };
+        if state.wakes.is_none_or(|wakes| wakes > asked + first) {
+            self.changed.notify_one();
+        }
     }
 
     pub(super) fn rest(&self) {
-        self.set(Deadline::None);
+        lock(&self.state).deadline = Deadline::None;
     }
 
     pub(super) fn retire(&self) {
-        self.set(Deadline::Retired);
-    }
-
-    fn set(&self, deadline: Deadline) {
-        *lock(&self.deadline) = deadline;
+        lock(&self.state).deadline = Deadline::Retired;
         self.changed.notify_one();
     }
 }

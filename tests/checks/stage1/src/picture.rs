@@ -9,7 +9,7 @@ use raykata::shape::{Plane, Sphere};
 pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> CheckResult {
     let floor = Plane { point: Vec3::ZERO, normal: Vec3::Y };
     let sphere = Sphere { center: Vec3::Y, radius: 1.0 };
-    let rays = picture::rays(Vec3::new(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
+    let rays = picture::rays(trial, Vec3::new(2.0, 2.5, 5.0), 0.8 * Vec3::Y);
     let on_floor =
         trial.kit.plane(&rays.iter().map(|&ray| PlaneQuery { ray, plane: floor }).collect::<Vec<_>>());
     let to_sphere: Vec<SphereQuery> = rays.iter().map(|&ray| SphereQuery { ray, sphere }).collect();
@@ -29,5 +29,5 @@ pub(super) fn picture_of_a_sphere_on_a_plane(trial: &Trial<'_>) -> CheckResult {
     let colors =
         hit.zip(facing).map(|(hit, normal)| if hit { picture::normal_color(normal) } else { Vec3::ZERO });
     // The outline of the sphere crosses about 60 of 4800 pixels. There rounding decides whether a ray hits or misses.
-    picture::compare("stage1_sphere_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
+    picture::compare(trial, "stage1_sphere_on_a_plane", &picture::film_of(colors.collect()), &rays, 0.001)
 }

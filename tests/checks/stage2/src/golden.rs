@@ -41,7 +41,7 @@ pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
 
 pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
     let mesh = octahedron();
-    let rays = picture::rays(vec3(1.2, 1.6, 2.4), Vec3::ZERO);
+    let rays = picture::rays(trial, vec3(1.2, 1.6, 2.4), Vec3::ZERO);
     let mut nearest: Vec<(f32, Vec3)> = vec![(f32::INFINITY, Vec3::ZERO); rays.len()];
     let normals = trial.kit.vertex_normals(std::slice::from_ref(&mesh)).remove(0);
     for (face, corners) in mesh.triangles.iter().enumerate() {
@@ -65,5 +65,5 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
     }
     // The outline crosses about 120 of 4800 pixels. There rounding decides whether a ray hits or misses.
     let film = picture::film_of(nearest.into_iter().map(|(_, color)| color).collect());
-    picture::compare("stage2_octahedron", &film, &rays, 0.002)
+    picture::compare(trial, "stage2_octahedron", &film, &rays, 0.002)
 }

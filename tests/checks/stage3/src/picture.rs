@@ -24,7 +24,7 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> CheckResult {
     let spheres = spiral();
     let boxes: Vec<Aabb> = spheres.iter().map(tree::sphere_box).collect();
     let bvh = tree::joined(&boxes, 2);
-    let rays = picture::rays(vec3(4.0, 5.0, 6.0), TARGET);
+    let rays = picture::rays(trial, vec3(4.0, 5.0, 6.0), TARGET);
     let queries: Vec<SearchQuery> = rays.iter().map(|ray| tree::search_query(&bvh, &spheres, ray)).collect();
     // White is near the camera, black is the background.
     let depths = trial
@@ -33,5 +33,5 @@ pub(super) fn picture_of_depth(trial: &Trial<'_>) -> CheckResult {
         .into_iter()
         .map(|answer| answer.hit.map_or(0.0, |hit| ((11.0 - hit.t) / 6.0).clamp(0.0, 1.0)));
     // The answers come from a table, so no pixel may differ.
-    picture::compare("stage3_depth", &picture::film_of(depths.map(Vec3::splat).collect()), &rays, 0.0)
+    picture::compare(trial, "stage3_depth", &picture::film_of(depths.map(Vec3::splat).collect()), &rays, 0.0)
 }

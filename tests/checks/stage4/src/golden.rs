@@ -55,7 +55,7 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
 }
 
 pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
-    let rays = picture::rays(vec3(0.0, 1.0, 3.2), Vec3::ZERO);
+    let rays = picture::rays(trial, vec3(0.0, 1.0, 3.2), Vec3::ZERO);
     let points: Vec<Option<Vec3>> = rays
         .iter()
         .map(|ray| {
@@ -73,5 +73,5 @@ pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
     let colors = trial.kit.shade(&queries).into_iter().zip(points);
     let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
     // The points are given, so pixels may differ only where a light is exactly at the horizon: a few of 4800.
-    picture::compare("stage4_lit_sphere", &picture::film_of(colors.collect()), &rays, 0.001)
+    picture::compare(trial, "stage4_lit_sphere", &picture::film_of(colors.collect()), &rays, 0.001)
 }
