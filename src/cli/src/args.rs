@@ -253,7 +253,7 @@ pub fn entry(head: &str, words: &str) -> String {
 }
 
 /// `words` wrapped to lines that end before column [`WIDTH`]; all lines but the first begin at `column`.
-fn wrapped(words: &str, column: usize) -> String {
+pub fn wrapped(words: &str, column: usize) -> String {
     let mut text = String::new();
     let mut at = column;
     for word in words.split(' ') {

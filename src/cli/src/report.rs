@@ -52,12 +52,21 @@ impl fmt::Display for Bytes {
     }
 }
 
-/// Reads a scene within these limits; an error shows the line that is wrong. Warnings are printed to standard error.
+/// Reads a scene within these limits; an error shows the line that is wrong, unless the file is another document than a
+/// scene. Warnings are printed to standard error.
 pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
     /// The most warnings that are shown: a library of many materials may have the same fault in each.
     const MOST: usize = 10;
-    let Loaded { scene, warnings } =
-        load::load_within(file, limits).map_err(|error| anyhow!(draw(&error)))?;
+    let is_toml = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    let Loaded { scene, warnings } = load::load_within(file, limits).map_err(|error| {
+        if file.is_file() && !is_toml {
+            let name = printable(&file.display().to_string());
+            return anyhow!(
+                "{name}: this is no scene\nhelp: scenes are TOML files, such as scenes/showcase.toml"
+            );
+        }
+        anyhow!(draw(&error))
+    })?;
     for warning in warnings.iter().take(MOST) {
         eprintln!("warning: {}", draw_as(Level::WARNING, warning));
     }
