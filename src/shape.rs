@@ -23,6 +23,29 @@ pub struct Plane {
     pub normal: Vec3,
 }
 
+/// An infinite plane as an equation: all points `(x, y, z)` with `A x + B y + C z + D = 0`.
+///
+/// All four coefficients times the same factor other than 0 give the same plane; a negative factor turns its
+/// normal to the other side.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlaneEquation {
+    /// `(A, B, C)`, a normal of the plane, of any length but zero.
+    pub normal: Vec3,
+    /// `D`: minus the distance of the plane from the origin along the normal in world units, times the length
+    /// of the normal.
+    pub d: f32,
+}
+
+impl PlaneEquation {
+    /// The same plane by a point and a normal. The point is the one nearest to the origin, rounded to single
+    /// precision.
+    pub fn to_plane(&self) -> Plane {
+        let normal = self.normal.as_dvec3();
+        let point = -f64::from(self.d) / normal.length_squared() * normal;
+        Plane { point: point.as_vec3(), normal: self.normal }
+    }
+}
+
 /// A triangle with corners `a`, `b`, `c`; its normal `(b - a) × (c - a)` points to the side from which the
 /// corners run anticlockwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,6 +123,8 @@ pub enum Shape {
     Sphere(Sphere),
     /// An infinite plane.
     Plane(Plane),
+    /// An infinite plane that is given by its coefficients.
+    PlaneEquation(PlaneEquation),
     /// A single triangle.
     Triangle(Triangle),
     /// A solid box with faces perpendicular to the axes.
@@ -135,7 +160,7 @@ impl Shape {
     /// If the shape is a mesh whose index is not in `meshes`.
     pub fn bounds(&self, meshes: &[crate::scene::SceneMesh]) -> Option<Aabb> {
         Some(match self {
-            Shape::Plane(_) => return None,
+            Shape::Plane(_) | Shape::PlaneEquation(_) => return None,
             Shape::Sphere(s) => around([s.center], [Vec3::splat(s.radius)]),
             Shape::Triangle(t) => bounds_of_points(&[t.a, t.b, t.c]),
             Shape::Cuboid(c) => Aabb::new(c.min, c.max),
@@ -210,5 +235,15 @@ mod tests {
             vec3(2.0, 2.0, 1.0),
         );
         assert_eq!(Shape::Plane(Plane { point: a, normal: b }).bounds(&[]), None);
+        assert_eq!(Shape::PlaneEquation(PlaneEquation { normal: a, d: 1.0 }).bounds(&[]), None);
+    }
+
+    #[test]
+    fn a_plane_equation_holds_at_its_point() {
+        // 2 y - 6 = 0 is the plane y = 3, for any factor.
+        for factor in [1.0, -2.0, 1e-30] {
+            let equation = PlaneEquation { normal: factor * vec3(0.0, 2.0, 0.0), d: factor * -6.0 };
+            assert!((equation.to_plane().point - vec3(0.0, 3.0, 0.0)).length() < 1e-6);
+        }
     }
 }

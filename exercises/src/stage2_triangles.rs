@@ -113,6 +113,23 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     todo!("return the three signed areas, divided by the area of the triangle, if none is negative")
 }
 
+/// Backfacing test: whether the triangle turns its back to the ray. Its front is the side to which the normal
+/// `n = (b - a) × (c - a)` points, the side from which its corners run anticlockwise. The ray comes from behind if
+/// `n·d > 0`, with d the ray's direction.
+///
+/// Returns `false` for a triangle seen edge-on (`n·d = 0` exactly), for a triangle without area and for a NaN: the
+/// intersection test decides about these. Whether the ray hits the triangle, and its range, do not matter. A renderer
+/// skips the intersection test for triangles of one-sided meshes that turn their back to the ray.
+///
+/// Pitfall: the sign depends on this ray, not on the direction in which the camera looks, and not on a limit for the
+/// cosine. The triangle may have any size: for edges of 1e-20 the products underflow in single precision, and every
+/// triangle looks edge-on.
+///
+/// Slide: "Ray-Triangle Intersection III".
+pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
+    todo!("return whether n·d > 0 for n = (b - a) × (c - a)")
+}
+
 /// Interpolation with barycentric coordinates: `α A + β B + γ C` for `barycentric` = `(α, β, γ)` and the values A, B and
 /// C at the corners a, b and c. The result is not normalized.
 pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {

@@ -137,6 +137,29 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     // </solution>
 }
 
+/// Ray-plane intersection with the plane as an equation: put `o + t v` into `A x + B y + C z + D = 0` and solve for `t`.
+/// With `normal` = n = (A, B, C), `d` = D and the direction v of the ray, `t = (-D - n·o) / (n·v)`.
+///
+/// Returns `t` in lengths of `direction` if it counts. Neither `direction` nor `normal` need be a unit vector: all four
+/// coefficients times the same factor, positive or negative, give the same plane and so the same `t`. The plane can be
+/// hit from both sides, and [`face_forward`] turns its normal to the ray. The result is `None` for a ray parallel to the
+/// plane (`n·v = 0` exactly), a ray that starts in the plane, a normal of 0, and a NaN anywhere.
+///
+/// Pitfall: far from the origin D and n·o are large and cancel. `t` must keep its digits there, up to a few roundings,
+/// for the plane that the coefficients give: add D and n·o in double precision, in which the product of two `f32` is
+/// exact. Factors are between 1e-12 and 1e12 in the checks.
+///
+/// Slide: "Ray-plane intersection".
+pub fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32> {
+    // <solution>
+    let (n, o, v) = (normal.as_dvec3(), ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let t = ((-f64::from(d) - n.dot(o)) / n.dot(v)) as f32;
+    // Reject NaN (from 0/0) and infinity (from 1/0) together with all other t out of range.
+    ray.contains(t).then_some(t)
+    // <stub> todo!("solve n·(o + t v) + D = 0 for t and return it if ray.contains(t)")
+    // </solution>
+}
+
 /// `normal` or `-normal`: the one that points to the side from which a ray along `direction` comes, so that
 /// `n·d ≤ 0`.
 ///

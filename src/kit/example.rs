@@ -117,6 +117,10 @@ examples! {
         ray: example(),
         plane: crate::shape::Plane { point: Vec3::Z, normal: Vec3::Z },
     };
+    PlaneEquationQuery => PlaneEquationQuery {
+        ray: example(),
+        plane: crate::shape::PlaneEquation { normal: Vec3::Z, d: -1.0 },
+    };
     TriangleQuery => TriangleQuery { ray: example(), triangle: example() };
     InsideQuery => InsideQuery { ray: example(), point: Vec3::Z, triangle: example() };
     InterpolateQuery => InterpolateQuery { barycentric: Vec3::X, corners: [Vec3::ZERO; 3] };

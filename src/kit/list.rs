@@ -46,6 +46,11 @@ macro_rules! student_functions {
                 Plane fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32>
                     = stage1_shapes::plane;
                 |q: PlaneQuery| -> Option<f32> { F::plane(&q.ray, q.plane.point, q.plane.normal) }
+                /// The `t` of the hit with the infinite plane `n·p + D = 0` in the range of the ray, with `normal`
+                /// = n = (A, B, C) of any length but zero and `d` = D; `None` if there is none.
+                PlaneByCoefficients fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32>
+                    = stage1_shapes::plane_by_coefficients;
+                |q: PlaneEquationQuery| -> Option<f32> { F::plane_by_coefficients(&q.ray, q.plane.normal, q.plane.d) }
                 /// `normal`, negated if necessary, so that it points to the side from which a ray of
                 /// direction `direction` comes.
                 FaceForward fn face_forward(normal: Vec3, direction: Vec3) -> Vec3
@@ -95,6 +100,12 @@ macro_rules! student_functions {
                 InsideByAreas fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3>
                     = stage2_triangles::inside_by_areas;
                 |q: InsideQuery| -> Option<Vec3> { F::inside_by_areas(q.point, &q.triangle) }
+                /// Whether a triangle turns its back to the ray: the direction of the ray and the normal
+                /// `(b - a) × (c - a)` point to the same side. False for a triangle that is seen edge-on or has no
+                /// area, and for a NaN.
+                Backfacing fn backfacing(ray: &Ray, triangle: &Triangle) -> bool
+                    = stage2_triangles::backfacing;
+                |q: TriangleQuery| -> bool { F::backfacing(&q.ray, &q.triangle) }
                 /// The value at the barycentric coordinates `(α, β, γ)` between the values at three corners.
                 Interpolate fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3
                     = stage2_triangles::interpolate;

@@ -53,7 +53,7 @@ pub use scene_graph::{
     SolidHit, SolidQuery,
 };
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, Surface, TermQuery};
-pub use shapes::{PlaneQuery, RootQuery, SphereQuery};
+pub use shapes::{PlaneEquationQuery, PlaneQuery, RootQuery, SphereQuery};
 pub use stability::OffsetQuery;
 pub use table::{
     BuildQuery, SearchAnswer, SearchQuery, SlabQuery, SplitAnswer, SplitQuery, Table, TableProbe,

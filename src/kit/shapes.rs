@@ -1,7 +1,7 @@
 //! Stage 1, spheres and planes: queries.
 
 use crate::ray::Ray;
-use crate::shape::{Plane, Sphere};
+use crate::shape::{Plane, PlaneEquation, Sphere};
 use serde::{Deserialize, Serialize};
 
 /// Asks where `ray` hits `sphere`; the answer is the `t` of the nearest hit that counts, if there is one.
@@ -20,6 +20,16 @@ pub struct PlaneQuery {
     pub ray: Ray,
     /// The infinite plane that is intersected.
     pub plane: Plane,
+}
+
+/// Asks where `ray` hits the plane with these coefficients; the answer is the `t` of the hit, if there is one that
+/// counts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlaneEquationQuery {
+    /// The ray; its range says which hits count.
+    pub ray: Ray,
+    /// The infinite plane that is intersected.
+    pub plane: PlaneEquation,
 }
 
 /// Asks which of two roots is the first that counts for `ray`.

@@ -4,6 +4,7 @@
 //! a frame needs: all its indices are in range, and its graph has no cycle.
 
 pub mod error;
+mod gamma2;
 pub mod load;
 pub mod obj;
 pub mod ply;
@@ -11,7 +12,8 @@ mod quality;
 mod shown;
 mod triangulate;
 
-pub use quality::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
+pub use gamma2::{ColorPlace, Gamma2, MaterialColor};
+pub use quality::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod};
 pub use shown::Shown;
 
 use crate::camera::Camera;
@@ -54,6 +56,9 @@ pub struct SceneMesh {
     /// Whether shading normals are interpolated over each triangle; otherwise the normal of the triangle is
     /// used.
     pub smooth: bool,
+    /// Whether only the front of each triangle is hit, the side from which its corners run anticlockwise. Rays
+    /// pass through its back, shadow rays as well.
+    pub one_sided: bool,
     /// Number of Loop subdivision steps before anything is traced (stage 8), 0 to 12 in a scene file. Each
     /// step divides every triangle into four.
     pub subdivisions: u32,
@@ -99,6 +104,7 @@ impl Scene {
             meshes: Vec::new(),
             nodes: Vec::new(),
             roots: Vec::new(),
+            gamma2: Gamma2::default(),
             quality: Quality::default(),
             max_primitives: load::Limits::default().triangles(),
         }
@@ -159,6 +165,8 @@ pub struct Scene {
     pub nodes: Vec<Node>,
     /// Indices of the nodes that have no parent, in ascending order. Their transforms lead to world space.
     pub roots: Vec<usize>,
+    /// Which colours and images a frame decodes with gamma 2. Until then they are decoded with the sRGB curve.
+    pub gamma2: Gamma2,
     /// Sampling, accuracy and acceleration structure, as the scene file sets them.
     pub quality: Quality,
     /// The most primitives of the flattened scene; meshes beyond it are left out, with a note.

@@ -17,6 +17,10 @@ pub enum Accelerator {
     /// A bounding volume hierarchy (stage 3).
     #[default]
     Bvh,
+    /// A bounding volume hierarchy whose search visits both children of every node that the ray enters, in any order:
+    /// the baseline that shows what the order and the shorter ray save (stage 3). Shadow rays stop at the first hit,
+    /// as with [`Accelerator::Bvh`].
+    BvhBothChildren,
     /// A uniform grid of equal cells (stage 9).
     Grid,
     /// An octree that is searched from the root down (stage 9).
@@ -36,11 +40,12 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 11] = [
+    pub const ALL: [Accelerator; 12] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
         Accelerator::Bvh,
+        Accelerator::BvhBothChildren,
         Accelerator::CachedBvh,
         Accelerator::PacketBvh,
         Accelerator::Grid,
@@ -50,6 +55,14 @@ impl Accelerator {
         Accelerator::Bsp,
     ];
 
+    /// Whether the structure is a bounding volume hierarchy of stage 3, however it is searched.
+    pub fn is_hierarchy(self) -> bool {
+        matches!(
+            self,
+            Accelerator::Bvh | Accelerator::BvhBothChildren | Accelerator::CachedBvh | Accelerator::PacketBvh
+        )
+    }
+
     /// The name in scene files, in snake case, for example `bounding_boxes`.
     pub fn name(self) -> &'static str {
         match self {
@@ -57,6 +70,7 @@ impl Accelerator {
             Accelerator::BoundingBoxes => "bounding_boxes",
             Accelerator::BoundingSpheres => "bounding_spheres",
             Accelerator::Bvh => "bvh",
+            Accelerator::BvhBothChildren => "bvh_both_children",
             Accelerator::CachedBvh => "cached_bvh",
             Accelerator::PacketBvh => "packet_bvh",
             Accelerator::Grid => "grid",
@@ -95,12 +109,58 @@ pub enum TriangleMethod {
     /// Intersect the plane of the triangle, then find the barycentric coordinates with the Gram matrix of its
     /// edges (stage 2).
     Gram,
+    /// Intersect the plane of the triangle (stage 1), then decide by inside test I: planes through the origin of
+    /// the ray and the sides (stage 2). Test III gives the barycentric coordinates of a hit.
+    InsideByPlanes,
+    /// Intersect the plane of the triangle (stage 1), then decide by inside test II: the sides of the triangle as
+    /// seen along the ray (stage 2). Test III gives the barycentric coordinates of a hit.
+    InsideByDirection,
+    /// Intersect the plane of the triangle (stage 1), then decide by inside test III: barycentric coordinates as
+    /// ratios of areas (stage 2).
+    InsideByAreas,
     /// The method of the student's choice (stage 2). That of the reference is Möller and Trumbore's.
     Choice,
     /// The watertight test (stage 10): no ray passes between two triangles that share an edge. Until it is
     /// written, frames use [`TriangleMethod::Choice`].
     #[default]
     Watertight,
+}
+
+impl TriangleMethod {
+    /// All methods, with their names in scene files.
+    pub const ALL: [(&str, TriangleMethod); 7] = [
+        ("cramer", TriangleMethod::Cramer),
+        ("gram", TriangleMethod::Gram),
+        ("inside_by_planes", TriangleMethod::InsideByPlanes),
+        ("inside_by_direction", TriangleMethod::InsideByDirection),
+        ("inside_by_areas", TriangleMethod::InsideByAreas),
+        ("choice", TriangleMethod::Choice),
+        ("watertight", TriangleMethod::Watertight),
+    ];
+}
+
+/// Which ray/sphere test is used with [`Precision::Single`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SphereMethod {
+    /// Solve the quadratic equation of the ray and the sphere (stage 1).
+    #[default]
+    Algebraic,
+    /// By right triangles: the point nearest to the centre and half of the chord (stage 1).
+    Geometric,
+    /// The quadratic equation `a t² + b t + c = 0` with coefficients in single precision, solved by `stable_roots`
+    /// (stage 10). The roots lose no digits, but `b² - 4ac` cancels for spheres that are small or far away: stage 1
+    /// avoids that, so its method stays the default.
+    StableRoots,
+}
+
+impl SphereMethod {
+    /// All methods, with their names in scene files.
+    pub const ALL: [(&str, SphereMethod); 3] = [
+        ("algebraic", SphereMethod::Algebraic),
+        ("geometric", SphereMethod::Geometric),
+        ("stable_roots", SphereMethod::StableRoots),
+    ];
 }
 
 /// Where the samples of a pixel lie (stage 6). Lens, shutter time, area lights and rough surfaces are sampled
@@ -141,11 +201,11 @@ impl Sampler {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Precision {
-    /// Single precision, 24 bits, by the [`TriangleMethod`] of the scene. The watertight test of the
+    /// Single precision, 24 bits, by the [`TriangleMethod`] and the [`SphereMethod`] of the scene. The watertight test of the
     /// reference computes in double precision all the same.
     #[default]
     Single,
-    /// Double precision, 53 bits, with any [`TriangleMethod`].
+    /// Double precision, 53 bits, with any [`TriangleMethod`] and [`SphereMethod`].
     Double,
 }
 
@@ -176,6 +236,8 @@ pub struct Quality {
     pub leaf_size: u32,
     /// The ray/triangle test with [`Precision::Single`]; watertight by default.
     pub triangle_method: TriangleMethod,
+    /// The ray/sphere test with [`Precision::Single`]; algebraic by default.
+    pub sphere_method: SphereMethod,
     /// Whether the triangles of a mesh are copied for each of its instances, as without stage 8; `false`
     /// shares one mesh.
     pub copies: bool,
@@ -203,6 +265,7 @@ impl Default for Quality {
             split: Split::default(),
             leaf_size: 4,
             triangle_method: TriangleMethod::default(),
+            sphere_method: SphereMethod::default(),
             copies: false,
             savings: Savings::default(),
             precision: Precision::default(),

@@ -63,7 +63,7 @@ impl SurfaceInteraction {
                 let primitive = &world.primitives[index as usize];
                 let point = match geometry_at::<F>(world, primitive, ray.time) {
                     Geometry::Sphere(sphere) => on_sphere::<F>(ray, hit.t, &sphere),
-                    Geometry::Triangle(triangle) => {
+                    Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                         on_triangle::<F>(world, looks, ray, primitive, &triangle, hit.detail)
                     }
                     Geometry::Solid(index) => {
@@ -98,9 +98,7 @@ fn in_instance<F: StudentFunctions>(
 ) -> (Point, u32) {
     let (instance, primitive, material) = inside(world, outer, inner);
     let ray = F::ray_to_object(ray, &instance.placement.to_object);
-    let Geometry::Triangle(triangle) = &primitive.geometry else {
-        unreachable!("shared meshes are triangles")
-    };
+    let Some(triangle) = primitive.geometry.triangle() else { unreachable!("shared meshes are triangles") };
     let point = on_triangle::<F>(world, looks, &ray, primitive, triangle, detail);
     (to_world::<F>(point, &instance.placement), material)
 }
@@ -218,7 +216,7 @@ fn barycentric<F: StudentFunctions>(
 #[cold]
 fn test_again<F: StudentFunctions>(tests: ShapeTests, ray: &Ray, triangle: &Triangle) -> (f32, f32) {
     let unbounded = ray.with_range(f32::NEG_INFINITY, f32::INFINITY);
-    let hit = tests.triangle::<F>(&unbounded, triangle);
+    let hit = tests.triangle::<F>(&unbounded, triangle, None);
     hit.map_or((1.0 / 3.0, 1.0 / 3.0), |hit| (hit.beta, hit.gamma))
 }
 
@@ -314,7 +312,7 @@ pub fn texture_coordinates<F: StudentFunctions>(
             let Some(image) = primitive.image.get() else { return middle };
             match geometry_at::<F>(world, primitive, ray.time) {
                 Geometry::Sphere(sphere) => around_sphere(world.sphere_axes[image] * (point - sphere.center)),
-                Geometry::Triangle(triangle) => {
+                Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => {
                     uv_on_triangle(world, image, barycentric::<F>(tests, ray, &triangle, hit.detail))
                 }
                 Geometry::Solid(_) | Geometry::Instance(_) => middle,
@@ -322,8 +320,8 @@ pub fn texture_coordinates<F: StudentFunctions>(
         }
         Target::Instance(outer, inner) => {
             let (instance, primitive, _) = inside(world, outer, inner);
-            match (primitive.image.get(), &primitive.geometry) {
-                (Some(image), Geometry::Triangle(triangle)) => {
+            match (primitive.image.get(), primitive.geometry.triangle()) {
+                (Some(image), Some(triangle)) => {
                     let ray = F::ray_to_object(ray, &instance.placement.to_object);
                     uv_on_triangle(world, image, barycentric::<F>(tests, &ray, triangle, hit.detail))
                 }

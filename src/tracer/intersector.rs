@@ -4,7 +4,7 @@
 use super::hit::{Detail, Hit, Target};
 use super::motion::plane_at;
 use super::plan::Plan;
-use super::probe::{Notes, PacketProbe, SceneProbe, Structured};
+use super::probe::{GramTable, Notes, PacketProbe, SceneProbe, Structured};
 use super::solids::{bounds_of_solid, placed_bounds};
 use super::structure::Structure;
 use crate::aabb::Aabb;
@@ -13,7 +13,7 @@ use crate::graph::Graph;
 use crate::kit::StudentFunctions;
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
-use crate::world::{Geometry, Primitive, World};
+use crate::world::{Geometry, InfinitePlane, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
 
@@ -54,8 +54,17 @@ impl<F: StudentFunctions> Intersector<F> {
         let mesh_structures = meshes.map(|(mesh, bounds)| over(bounds, &mesh.primitives, None)).collect();
         // One note is enough, because all structures are of the same kind.
         notes.truncate(1);
-        let scene =
-            Structured { world, structure, mesh_structures, tests: plan.tests, savings: quality.savings };
+        let gram = |primitives: &[Primitive]| GramTable::new::<F>(primitives, plan.tests);
+        let scene = Structured {
+            structure,
+            mesh_structures,
+            gram: gram(&world.primitives),
+            mesh_gram: world.shared_meshes.iter().map(|mesh| gram(&mesh.primitives)).collect(),
+            tests: plan.tests,
+            conservative: plan.conservative,
+            savings: quality.savings,
+            world,
+        };
         Intersector { scene, notes, accelerator: plan.accelerator, functions: PhantomData }
     }
 
@@ -124,8 +133,7 @@ impl<F: StudentFunctions> Intersector<F> {
     pub fn any_hit<T: Tally>(&self, ray: &Ray, tally: &mut T) -> bool {
         let in_plane = self.scene.world.planes.iter().any(|plane| {
             tally.note(Event::PrimitiveTest);
-            let plane = plane_at::<F>(plane, ray.time).0;
-            F::plane(ray, plane.point, plane.normal).is_some()
+            intersect_plane::<F>(plane, ray).is_some()
         });
         let mut notes = Notes::for_any_hit();
         let mut probe = SceneProbe::<F, T>::new(&self.scene, ray, tally, &mut notes);
@@ -139,8 +147,7 @@ impl<F: StudentFunctions> Intersector<F> {
         let mut closest = None;
         for (index, plane) in (0..).zip(&self.scene.world.planes) {
             tally.note(Event::PrimitiveTest);
-            let plane = plane_at::<F>(plane, ray.time).0;
-            if let Some(t) = F::plane(&ray, plane.point, plane.normal) {
+            if let Some(t) = intersect_plane::<F>(plane, &ray) {
                 closest = Some(Hit { t, target: Target::Plane(index), detail: Detail::None });
                 // Shorten the ray, except without a search: then later shapes cover earlier ones.
                 if self.accelerator.is_some() {
@@ -152,19 +159,27 @@ impl<F: StudentFunctions> Intersector<F> {
     }
 }
 
+/// The `t` of the hit of `ray` with an infinite plane within its range, by the form in which the plane is given.
+#[inline(always)]
+fn intersect_plane<F: StudentFunctions>(plane: &InfinitePlane, ray: &Ray) -> Option<f32> {
+    if let Some(equation) = &plane.equation {
+        return F::plane_by_coefficients(ray, equation.normal, equation.d);
+    }
+    let plane = plane_at::<F>(plane, ray.time).0;
+    F::plane(ray, plane.point, plane.normal)
+}
+
 /// The corners of a triangle that does not move; `None` for any other primitive.
 fn hull(primitive: &Primitive) -> Option<Vec<Vec3>> {
-    match (primitive.end.get(), &primitive.geometry) {
-        (None, Geometry::Triangle(triangle)) => Some(vec![triangle.a, triangle.b, triangle.c]),
-        _ => None,
-    }
+    let still = primitive.end.get().is_none();
+    primitive.geometry.triangle().filter(|_| still).map(|triangle| vec![triangle.a, triangle.b, triangle.c])
 }
 
 /// The box around all positions of the primitive between times 0 and 1.
 fn bounds_of<F: StudentFunctions>(world: &World, mesh_bounds: &[Aabb], primitive: &Primitive) -> Aabb {
     let bounds = |geometry: &Geometry| match geometry {
         Geometry::Sphere(sphere) => F::sphere_bounds(sphere),
-        Geometry::Triangle(triangle) => F::triangle_bounds(triangle),
+        Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => F::triangle_bounds(triangle),
         Geometry::Solid(index) => bounds_of_solid::<F>(&world.solids[*index as usize]),
         Geometry::Instance(index) => {
             let instance = &world.instances[*index as usize];

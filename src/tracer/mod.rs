@@ -7,10 +7,11 @@
 //! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
 //! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a
-//! pixel, and `outlines` draws structures.
+//! pixel, `outlines` draws structures, and `gamma2` decodes colours.
 
 mod camera_sampler;
 mod frame;
+mod gamma2;
 mod grid_resolution;
 mod hit;
 mod interaction;
@@ -40,6 +41,7 @@ use crate::kit::{
 use crate::ray::Ray;
 use crate::world::World;
 use frame::Frame;
+use gamma2::decoded;
 use glam::Vec3;
 use hit::{Hit, Target};
 use intersector::Intersector;
@@ -65,7 +67,8 @@ impl<F> Renderer<F> {
 
 impl<F: StudentFunctions> Frames for Renderer<F> {
     fn render(&self, job: &RenderJob, watch: &dyn Watch) -> Option<Rendering> {
-        let (rendering, notes) = with_what_is_written::<F, _>(|written| render(job, written, watch));
+        let (rendering, notes) =
+            with_what_is_written::<F, _>(|written| render(&decoded(job, written), written, watch));
         rendering.map(|mut rendering| {
             rendering.notes.extend(notes);
             rendering
@@ -73,7 +76,7 @@ impl<F: StudentFunctions> Frames for Renderer<F> {
     }
 
     fn trace(&self, job: &RenderJob, x: u32, y: u32) -> Vec<TracedRay> {
-        with_what_is_written::<F, _>(|written| trace(job, written, x, y)).0
+        with_what_is_written::<F, _>(|written| trace(&decoded(job, written), written, x, y)).0
     }
 
     fn outlines(&self, job: &RenderJob, depth: u32) -> Vec<[Vec3; 2]> {

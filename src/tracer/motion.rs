@@ -25,6 +25,9 @@ fn moved<F: StudentFunctions>(start: &Geometry, end: &Geometry, time: f32) -> Ge
         (Geometry::Triangle(start), Geometry::Triangle(end)) => {
             Geometry::Triangle(triangle_at::<F>(start, end, time))
         }
+        (Geometry::OneSided(start), Geometry::OneSided(end)) => {
+            Geometry::OneSided(triangle_at::<F>(start, end, time))
+        }
         _ => *start, // a primitive does not change its kind, and solids do not move
     }
 }

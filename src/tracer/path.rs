@@ -8,7 +8,7 @@ use super::packets::Packets;
 use super::random_choices::{area_of, sample_area_light, sample_rough_surface};
 use super::record::Record;
 use crate::count::{Counts, Event, Tally};
-use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions};
+use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
 use crate::random::Points;
 use crate::ray::Ray;
@@ -185,14 +185,14 @@ impl<F: StudentFunctions> Frame<'_, F> {
         mut record: impl FnMut(&Ray, bool),
     ) -> Vec3 {
         let Scratch { tally, lights, shadows, .. } = scratch;
-        let to_viewer = -path.ray.direction.normalize();
+        let to_viewer = -self.unit(path.ray.direction);
         let ambient = self.job.scene.ambient;
         F::shade(&at.surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
             if !shadows[light] {
                 return true;
             }
             tally.note(Event::Shadow);
-            let ray = Ray { time: path.ray.time, ..*shadow_ray };
+            let ray = self.off_surface(at, Ray { time: path.ray.time, ..*shadow_ray });
             let blocked = self.intersector.any_hit(&ray, tally);
             record(&ray, blocked);
             !blocked
@@ -215,7 +215,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
             return;
         }
         // Let the student's `scatter` choose the ideal secondary rays and their weights.
-        let direction = path.ray.direction.normalize();
+        let direction = self.unit(path.ray.direction);
         let normal = at.surface.shading_normal;
         let (weight, depth) = (path.weight, path.depth);
         let children = F::scatter(direction, normal, at.entering, material, weight, depth, &self.limits);
@@ -237,10 +237,31 @@ impl<F: StudentFunctions> Frame<'_, F> {
                     child
                 };
                 let ray = Ray { time: path.ray.time, ..F::spawn_ray(&at.surface, &child) };
+                let ray = self.off_surface(at, ray);
                 let points = path.points.beyond(child.bounce, part, parts);
                 let (weight, depth) = (child.weight, path.depth + 1);
                 scratch.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(number) });
             }
+        }
+    }
+
+    /// The unit vector along `direction`, by `safe_normalize` of stage 10 if it is written.
+    #[inline(always)]
+    fn unit(&self, direction: Vec3) -> Vec3 {
+        match self.plan.safe_units {
+            true => F::safe_normalize(direction).unwrap_or(direction),
+            false => direction.normalize(),
+        }
+    }
+
+    /// `ray`, which leaves the surface, with the origin that `offset_origin` of stage 10 gives if it is written;
+    /// otherwise with its own.
+    #[inline(always)]
+    fn off_surface(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
+        let Surface { point, error, geometric_normal, .. } = at.surface;
+        match self.plan.offsets {
+            true => Ray { origin: F::offset_origin(point, error, geometric_normal, ray.direction), ..ray },
+            false => ray,
         }
     }
 

@@ -1,11 +1,11 @@
 //! What a frame computes, and what it leaves out while exercises are not written yet.
 
-use super::intersection::ShapeTests;
+use super::intersection::{ShapeTests, SphereTest, TriangleTest};
 use super::written::Written;
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::material::{Emitter, Light, Material};
-use crate::scene::{Accelerator, Precision, Quality, Sampler, Scene, TriangleMethod};
+use crate::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod};
 use crate::shape::Shape;
 use crate::world::WorldFunctions;
 use glam::Vec3;
@@ -18,6 +18,13 @@ pub struct Plan {
     pub accelerator: Option<Accelerator>,
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
+    /// Whether `conservative_slab` of stage 10 tests the boxes of hierarchies; otherwise `slab` of stage 3.
+    pub conservative: bool,
+    /// Whether `offset_origin` of stage 10 moves the origins of rays that leave a surface; otherwise the functions of
+    /// stages 4 and 5 that make these rays.
+    pub offsets: bool,
+    /// Whether `safe_normalize` of stage 10 normalizes the directions of rays.
+    pub safe_units: bool,
     /// What a pixel shows: light, normals or work. If `shade` is not written, it shows normals.
     pub view: View,
     /// The student functions that the world is made with, and the kinds of shapes that are shown.
@@ -46,6 +53,10 @@ impl Plan {
         let mut plan = Plan {
             accelerator: choose_accelerator(&scene.quality, written, &mut notes),
             tests: choose_tests(&scene.quality, written, &mut notes),
+            // The functions of stage 10 replace earlier ones as soon as they are written.
+            conservative: written.has(Function::conservative_slab),
+            offsets: written.has(Function::offset_origin),
+            safe_units: written.has(Function::safe_normalize),
             view: choose_view(job.view, written, &mut notes),
             world: WorldFunctions::of::<F>(&|function| written.has(function)),
             smooth: written.has_all(&[Function::shading_normal, Function::interpolate]),
@@ -66,13 +77,16 @@ impl Plan {
     }
 
     fn leave_out_shapes<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
-        let sphere = match self.tests {
-            ShapeTests::InDouble => Function::sphere_in_double,
-            _ => Function::sphere_algebraic,
+        let spheres: &[Function] = match self.tests.spheres {
+            SphereTest::Algebraic => &[Function::sphere_algebraic],
+            SphereTest::Geometric => &[Function::sphere_geometric],
+            SphereTest::StableRoots => &[Function::stable_roots, Function::nearest_root],
+            SphereTest::InDouble => &[Function::sphere_in_double],
         };
         let is_sphere = |shape: &Shape| matches!(shape, Shape::Sphere(_));
-        let is_plane = |shape: &Shape| matches!(shape, Shape::Plane(_));
-        for function in [sphere, Function::sphere_normal] {
+        let has_equation = |shape: &Shape| matches!(shape, Shape::PlaneEquation(_));
+        let is_plane = |shape: &Shape| matches!(shape, Shape::Plane(_)) || has_equation(shape);
+        for &function in spheres.iter().chain(&[Function::sphere_normal]) {
             if self.world.spheres && !written.has(function) {
                 self.world.spheres = false;
                 self.note_if(
@@ -83,17 +97,34 @@ impl Plan {
         }
         if !written.has(Function::plane) {
             self.world.planes = false;
-            self.note_if(
-                shows(scene, is_plane),
-                &format!("planes are left out: {} is not written yet", Function::plane),
-            );
+            // A plane that moves is tested by a point and a normal, however it is given.
+            let tested = |shape: &Shape, moves: bool| self.world.equations && has_equation(shape) && !moves;
+            let left_out = scene.shown().iter().any(|shown| {
+                let shape = scene.nodes[shown.node].shape.as_ref();
+                shape.is_some_and(|shape| is_plane(shape) && !tested(shape, shown.moves))
+            });
+            self.note_if(left_out, &format!("planes are left out: {} is not written yet", Function::plane));
         }
-        let functions: &[Function] = match self.tests {
-            ShapeTests::Watertight => &[Function::watertight],
-            ShapeTests::Choice => &[Function::triangle_choice],
-            ShapeTests::Cramer => &[Function::triangle_cramer],
-            ShapeTests::Gram => &[Function::gram_scalars, Function::triangle_gram],
-            ShapeTests::InDouble => &[Function::triangle_in_double],
+        self.note_if(
+            self.world.planes && !self.world.equations && shows(scene, has_equation),
+            &format!(
+                "planes that coefficients give are tested by a point and a normal: {} is not written yet",
+                Function::plane_by_coefficients
+            ),
+        );
+        let functions: &[Function] = match self.tests.triangles {
+            TriangleTest::Watertight => &[Function::watertight],
+            TriangleTest::Choice => &[Function::triangle_choice],
+            TriangleTest::Cramer => &[Function::triangle_cramer],
+            TriangleTest::Gram => &[Function::gram_scalars, Function::triangle_gram],
+            TriangleTest::InsideByPlanes => {
+                &[Function::plane, Function::inside_by_planes, Function::inside_by_areas]
+            }
+            TriangleTest::InsideByDirection => {
+                &[Function::plane, Function::inside_by_direction, Function::inside_by_areas]
+            }
+            TriangleTest::InsideByAreas => &[Function::plane, Function::inside_by_areas],
+            TriangleTest::InDouble => &[Function::triangle_in_double],
         };
         if let Some(missing) = functions.iter().find(|&&function| !written.has(function)) {
             self.world.triangles = false;
@@ -104,6 +135,10 @@ impl Plan {
             let shown = shows(scene, in_triangles);
             self.note_if(shown, &format!("triangles and meshes are left out: {missing} is not written yet"));
         }
+        self.note_if(
+            self.world.triangles && !self.world.one_sided && scene.meshes.iter().any(|mesh| mesh.one_sided),
+            &format!("one-sided meshes are hit from both sides: {} is not written yet", Function::backfacing),
+        );
         self.note_if(
             !self.facing,
             "surfaces that are seen from inside are dark: `face_forward` of stage 1 is not written yet",
@@ -188,6 +223,10 @@ impl Plan {
     }
 
     fn leave_out_images<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        self.note_if(
+            !scene.gamma2.is_empty() && !written.has(Function::decode_gamma),
+            "gamma 2 is decoded with the sRGB curve: `decode_gamma` of stage 4 is not written yet",
+        );
         if written.has(Function::texture_color) {
             return;
         }
@@ -242,20 +281,31 @@ fn choose_tests<F: StudentFunctions>(
     written: &Written<F>,
     notes: &mut Vec<String>,
 ) -> ShapeTests {
-    let single = match quality.triangle_method {
+    let triangles = match quality.triangle_method {
         // Until the watertight method is written, use the method of the student's choice.
-        TriangleMethod::Watertight if written.has(Function::watertight) => ShapeTests::Watertight,
-        TriangleMethod::Watertight | TriangleMethod::Choice => ShapeTests::Choice,
-        TriangleMethod::Cramer => ShapeTests::Cramer,
-        TriangleMethod::Gram => ShapeTests::Gram,
+        TriangleMethod::Watertight if written.has(Function::watertight) => TriangleTest::Watertight,
+        TriangleMethod::Watertight | TriangleMethod::Choice => TriangleTest::Choice,
+        TriangleMethod::Cramer => TriangleTest::Cramer,
+        TriangleMethod::Gram => TriangleTest::Gram,
+        TriangleMethod::InsideByPlanes => TriangleTest::InsideByPlanes,
+        TriangleMethod::InsideByDirection => TriangleTest::InsideByDirection,
+        TriangleMethod::InsideByAreas => TriangleTest::InsideByAreas,
     };
+    let spheres = match quality.sphere_method {
+        SphereMethod::Algebraic => SphereTest::Algebraic,
+        SphereMethod::Geometric => SphereTest::Geometric,
+        SphereMethod::StableRoots => SphereTest::StableRoots,
+    };
+    let single = ShapeTests { triangles, spheres };
     if quality.precision == Precision::Single {
         return single;
     }
     // Double precision needs both tests; without one, fall back to single precision.
     let triangles = written.has(Function::triangle_in_double);
     let missing = match (triangles, written.has(Function::sphere_in_double)) {
-        (true, true) => return ShapeTests::InDouble,
+        (true, true) => {
+            return ShapeTests { triangles: TriangleTest::InDouble, spheres: SphereTest::InDouble };
+        }
         (false, true) => "`triangle_in_double` of stage 10 is",
         (true, false) => "`sphere_in_double` of stage 10 is",
         (false, false) => "`triangle_in_double` and `sphere_in_double` of stage 10 are",
@@ -273,7 +323,8 @@ fn choose_accelerator<F: StudentFunctions>(
     // Use the structure of the scene, or else a hierarchy.
     let wanted = quality.accelerator;
     if wanted != Accelerator::BruteForce {
-        if written.has_all(HIERARCHY) {
+        let boxes = written.has(Function::slab) || written.has(Function::conservative_slab);
+        if boxes && written.has_all(HIERARCHY) {
             let (stage, functions) = own_functions(wanted);
             if written.has_all(functions) {
                 return Some(wanted);
@@ -294,13 +345,12 @@ fn choose_accelerator<F: StudentFunctions>(
     None
 }
 
-/// The functions that a bounding volume hierarchy needs. Every structure needs them, because they bound
-/// primitives.
+/// The functions that a bounding volume hierarchy needs, beside a test of boxes. Every structure needs them, because
+/// they bound primitives.
 const HIERARCHY: &[Function] = &[
     Function::triangle_bounds,
     Function::sphere_bounds,
     Function::union,
-    Function::slab,
     Function::build,
     Function::closest_hit,
     Function::any_hit,
@@ -310,6 +360,7 @@ const HIERARCHY: &[Function] = &[
 fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
     match accelerator {
         Accelerator::BruteForce | Accelerator::Bvh => (3, &[]),
+        Accelerator::BvhBothChildren => (3, &[Function::closest_hit_both]),
         Accelerator::BoundingBoxes => (8, &[Function::closest_hit_in_graph]),
         Accelerator::BoundingSpheres => {
             (8, &[Function::closest_hit_in_graph, Function::bounding_sphere, Function::enter_bounding_sphere])

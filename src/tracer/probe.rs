@@ -1,16 +1,17 @@
 //! What searches may ask about the primitives of a world, or of a shared mesh.
 
 use super::hit::{Detail, Hit, Target};
-use super::intersection::ShapeTests;
+use super::intersection::{ShapeTests, TriangleTest};
 use super::motion::geometry_at;
 use super::solids::intersect_solid;
 use super::structure::{Primitives, Structure};
 use crate::bvh::{Contents, Node, PrimitiveHit, Probe};
 use crate::count::{Event, Tally};
 use crate::graph::Savings;
-use crate::kit::StudentFunctions;
+use crate::kit::{GramScalars, StudentFunctions};
 use crate::partition::Cells;
 use crate::ray::Ray;
+use crate::shape::Triangle;
 use crate::world::{Geometry, Primitive, World};
 use glam::Vec3;
 use std::marker::PhantomData;
@@ -23,10 +24,33 @@ pub struct Structured {
     pub structure: Structure,
     /// One acceleration structure per shared mesh, over its triangles.
     pub mesh_structures: Vec<Structure>,
+    /// The scalars of the Gram method for each primitive of the world.
+    pub gram: GramTable,
+    /// The same for each shared mesh.
+    pub mesh_gram: Vec<GramTable>,
     /// Which student functions test rays against triangles and spheres.
     pub tests: ShapeTests,
+    /// Whether `conservative_slab` of stage 10 tests the boxes of hierarchies; otherwise `slab` of stage 3.
+    pub conservative: bool,
     /// Which shortcuts a search of the scene graph takes.
     pub savings: Savings,
+}
+
+/// The scalars of the Gram method, one entry per primitive: they are computed once and not for every ray. Empty for
+/// any other method.
+#[derive(Default)]
+pub struct GramTable(Vec<GramScalars>);
+
+impl GramTable {
+    /// Computes the scalars of all triangles that do not move. Other primitives get an entry that is never read.
+    pub fn new<F: StudentFunctions>(primitives: &[Primitive], tests: ShapeTests) -> GramTable {
+        if tests.triangles != TriangleTest::Gram {
+            return GramTable::default();
+        }
+        let unused = GramScalars { uv: 0.0, vv: 0.0, uu: 0.0, d: 0.0 };
+        let scalars = |primitive: &Primitive| primitive.geometry.triangle().map_or(unused, F::gram_scalars);
+        GramTable(primitives.iter().map(scalars).collect())
+    }
 }
 
 /// Answers the questions of a search about one set of primitives, and counts them.
@@ -38,7 +62,9 @@ pub struct SceneProbe<'a, F, T> {
     nodes: &'a [Node],
     primitives: &'a [Primitive],
     world: &'a World,
+    gram: &'a [GramScalars],
     tests: ShapeTests,
+    conservative: bool,
     inverse_direction: Vec3,
     tally: &'a mut T,
     scene: &'a Structured,
@@ -78,15 +104,16 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     /// A probe for `ray` against the primitives of the world; `tally` counts its answers.
     #[inline(always)]
     pub fn new(scene: &'a Structured, ray: &Ray, tally: &'a mut T, notes: &'a mut Notes) -> Self {
-        SceneProbe::over(scene, &scene.structure, &scene.world.primitives, ray, tally, notes)
+        let world = (&scene.structure, scene.world.primitives.as_slice(), &scene.gram);
+        SceneProbe::over(scene, world, ray, tally, notes)
     }
 
-    /// A probe for `ray` against `primitives`, over which `structure` is built.
+    /// A probe for `ray` against primitives with the structure that is built over them and their scalars of the
+    /// Gram method.
     #[inline(always)]
     fn over(
         scene: &'a Structured,
-        structure: &'a Structure,
-        primitives: &'a [Primitive],
+        (structure, primitives, gram): (&'a Structure, &'a [Primitive], &'a GramTable),
         ray: &Ray,
         tally: &'a mut T,
         notes: &'a mut Notes,
@@ -95,7 +122,9 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
             nodes: structure.nodes(),
             primitives,
             world: &scene.world,
+            gram: &gram.0,
             tests: scene.tests,
+            conservative: scene.conservative,
             inverse_direction: ray.direction.recip(),
             tally,
             scene,
@@ -105,17 +134,42 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
     }
 
     #[inline(always)]
-    fn intersect(&mut self, index: u32, ray: &Ray, geometry: &Geometry) -> Option<f32> {
+    fn intersect(
+        &mut self,
+        index: u32,
+        ray: &Ray,
+        geometry: &Geometry,
+        scalars: Option<&GramScalars>,
+    ) -> Option<f32> {
         match geometry {
             Geometry::Sphere(sphere) => self.tests.sphere::<F>(ray, sphere),
             Geometry::Triangle(triangle) => {
-                let hit = self.tests.triangle::<F>(ray, triangle)?;
+                let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
                 self.notes.last = (index, Detail::Triangle(hit.beta, hit.gamma));
                 Some(hit.t)
             }
+            Geometry::OneSided(triangle) => self.intersect_front(index, ray, triangle, scalars),
             Geometry::Solid(solid) => self.intersect_solid(index, ray, *solid),
             Geometry::Instance(instance) => self.intersect_instance(index, ray, *instance),
         }
+    }
+
+    /// Tests the triangle of a one-sided mesh, unless it turns its back to the ray. Out of line, because few scenes
+    /// have such meshes.
+    #[cold]
+    fn intersect_front(
+        &mut self,
+        index: u32,
+        ray: &Ray,
+        triangle: &Triangle,
+        scalars: Option<&GramScalars>,
+    ) -> Option<f32> {
+        if F::backfacing(ray, triangle) {
+            return None;
+        }
+        let hit = self.tests.triangle::<F>(ray, triangle, scalars)?;
+        self.notes.last = (index, Detail::Triangle(hit.beta, hit.gamma));
+        Some(hit.t)
     }
 
     #[cold]
@@ -132,12 +186,12 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         let instance = &self.world.instances[instance as usize];
         let ray = F::ray_to_object(ray, &instance.placement.to_object);
         let mesh = instance.shared_mesh as usize;
-        let (structure, primitives) =
-            (&self.scene.mesh_structures[mesh], &self.world.shared_meshes[mesh].primitives);
+        let structure = &self.scene.mesh_structures[mesh];
+        let primitives = self.world.shared_meshes[mesh].primitives.as_slice();
+        let searched = (structure, primitives, &self.scene.mesh_gram[mesh]);
         // Search the shared mesh with a probe and notes of its own.
         let mut notes = Notes { any_will_do: self.notes.any_will_do, ..Notes::for_closest_hit() };
-        let mut probe =
-            SceneProbe::<F, T>::over(self.scene, structure, primitives, &ray, self.tally, &mut notes);
+        let mut probe = SceneProbe::<F, T>::over(self.scene, searched, &ray, self.tally, &mut notes);
         if self.notes.any_will_do {
             let hit = structure.any_hit::<F, _>(&mut probe, &ray, self.scene.savings);
             return hit.then_some(ray.t_min.next_up());
@@ -156,8 +210,8 @@ impl<'a, F: StudentFunctions, T: Tally> SceneProbe<'a, F, T> {
         self.tally.note(Event::PrimitiveTest);
         let primitive = &self.primitives[index as usize];
         match primitive.end.get() {
-            None => self.intersect(index, ray, &primitive.geometry),
-            Some(_) => self.intersect(index, ray, &geometry_at::<F>(self.world, primitive, ray.time)),
+            None => self.intersect(index, ray, &primitive.geometry, self.gram.get(index as usize)),
+            Some(_) => self.intersect(index, ray, &geometry_at::<F>(self.world, primitive, ray.time), None),
         }
     }
 
@@ -191,7 +245,12 @@ impl<F: StudentFunctions, T: Tally> Probe for SceneProbe<'_, F, T> {
     fn enter(&mut self, node: u32, ray: &Ray) -> Option<f32> {
         self.tally.note(Event::BoxTest);
         let bounds = &self.nodes[node as usize].bounds;
-        F::slab(ray, self.inverse_direction, bounds).map(|(enter, _)| enter)
+        let interval = if self.conservative {
+            F::conservative_slab(ray, self.inverse_direction, bounds)
+        } else {
+            F::slab(ray, self.inverse_direction, bounds)
+        };
+        interval.map(|(enter, _)| enter)
     }
 
     #[inline(always)]
@@ -221,6 +280,11 @@ impl<F: StudentFunctions, T: Tally> Primitives for SceneProbe<'_, F, T> {
     #[inline]
     fn count(&mut self, event: Event) {
         self.tally.note(event);
+    }
+
+    #[inline]
+    fn conservative(&self) -> bool {
+        self.conservative
     }
 
     #[inline]

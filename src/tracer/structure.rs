@@ -25,6 +25,8 @@ pub enum Structure {
     Painter,
     /// A bounding volume hierarchy.
     Hierarchy(Bvh),
+    /// A bounding volume hierarchy whose search visits both children of every node that the ray enters.
+    BothChildren(Bvh),
     /// The scene graph, with a bounding volume around each node.
     Graph {
         /// The nodes of the scene graph.
@@ -69,6 +71,9 @@ pub trait Primitives: Probe + Cells {
 
     /// Counts one event.
     fn count(&mut self, event: Event);
+
+    /// Whether `conservative_slab` of stage 10 tests boxes; otherwise `slab` of stage 3.
+    fn conservative(&self) -> bool;
 
     /// The reciprocal of each component of the direction of the ray; infinite where a component is 0.
     fn inverse_direction(&self) -> Vec3;
@@ -126,6 +131,9 @@ impl Structure {
                 let tree = limited(n, || F::bsp_build(&hulls, leaf_size, depth));
                 Structure::Bsp { tree, around: around(bounds) }
             }
+            (Some(Accelerator::BvhBothChildren), _) => {
+                Structure::BothChildren(F::build(bounds, quality.split, leaf_size))
+            }
             (
                 Some(
                     Accelerator::Bvh
@@ -153,6 +161,7 @@ impl Structure {
     ) -> Option<PrimitiveHit> {
         match self {
             Structure::Hierarchy(bvh) => F::closest_hit(bvh, probe, ray),
+            Structure::BothChildren(bvh) => F::closest_hit_both(bvh, probe, ray),
             Structure::Graph { graph, volumes } => {
                 let mut probe = GraphProbe::<F, P> { probe, volumes, functions: PhantomData };
                 F::closest_hit_in_graph(graph, &mut probe, ray, savings)
@@ -177,7 +186,7 @@ impl Structure {
         savings: Savings,
     ) -> bool {
         match self {
-            Structure::Hierarchy(bvh) => F::any_hit(bvh, probe, ray),
+            Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => F::any_hit(bvh, probe, ray),
             Structure::List | Structure::Painter => last_hit(probe, ray).is_some(),
             other => other.closest_hit::<F, P>(probe, ray, savings).is_some(),
         }
@@ -186,7 +195,7 @@ impl Structure {
     /// The nodes of a bounding volume hierarchy; empty for any other structure.
     pub fn nodes(&self) -> &[Node] {
         match self {
-            Structure::Hierarchy(bvh) => &bvh.nodes,
+            Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => &bvh.nodes,
             _ => &[],
         }
     }
@@ -202,7 +211,9 @@ impl Structure {
         }
         let (nodes, levels, references, bytes) = match self {
             Structure::List | Structure::Painter => return None,
-            Structure::Hierarchy(bvh) => tree(&bvh.nodes, bvh.depth(), &bvh.order),
+            Structure::Hierarchy(bvh) | Structure::BothChildren(bvh) => {
+                tree(&bvh.nodes, bvh.depth(), &bvh.order)
+            }
             Structure::Graph { graph, volumes } => {
                 let lists: usize =
                     graph.nodes.iter().map(|n| bytes(&n.children) + bytes(&n.primitives)).sum();
@@ -251,7 +262,9 @@ impl<F: StudentFunctions, P: Primitives> Probe for GraphProbe<'_, F, P> {
         match self.volumes {
             Volumes::Boxes(boxes) => {
                 let bounds = &boxes[node as usize];
-                F::slab(ray, self.probe.inverse_direction(), bounds).map(|(enter, _)| enter)
+                let (inverse, conservative) = (self.probe.inverse_direction(), self.probe.conservative());
+                let test = if conservative { F::conservative_slab } else { F::slab };
+                test(ray, inverse, bounds).map(|(enter, _)| enter)
             }
             Volumes::Spheres(spheres) => F::enter_bounding_sphere(ray, spheres[node as usize].as_ref()?),
         }

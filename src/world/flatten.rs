@@ -11,7 +11,7 @@ use super::{
 use crate::effects::Effects;
 use crate::graph::{Graph, GraphNode, Placement};
 use crate::scene::{Accelerator, Node, Scene, blend};
-use crate::shape::{Plane, Shape, Sphere, Triangle};
+use crate::shape::{Plane, PlaneEquation, Shape, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2};
 use std::ops::Range;
 
@@ -116,7 +116,13 @@ impl Flattener<'_> {
             Shape::Sphere(_) if !self.functions.spheres => {}
             Shape::Sphere(sphere) => self.sphere(sphere, way, material),
             Shape::Plane(_) if !self.functions.planes => {}
-            Shape::Plane(plane) => self.plane(plane, way, material),
+            Shape::Plane(plane) => self.plane(plane, None, way, material),
+            // A plane that moves is tested by a point and a normal.
+            Shape::PlaneEquation(equation) => match (self.functions.equations, way.end) {
+                (true, None) => self.plane(&equation.to_plane(), Some(*equation), way, material),
+                _ if self.functions.planes => self.plane(&equation.to_plane(), None, way, material),
+                _ => {}
+            },
             Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
@@ -199,7 +205,7 @@ impl Flattener<'_> {
         self.world.primitives.push(Primitive { geometry, material, normals: Slot::NONE, image, end });
     }
 
-    fn plane(&mut self, plane: &Plane, way: &Way, material: u32) {
+    fn plane(&mut self, plane: &Plane, equation: Option<PlaneEquation>, way: &Way, material: u32) {
         let (u, v) = plane_axes(plane.normal);
         let corners = |to_world: &Affine3A| {
             let a = to_world.transform_point3(plane.point);
@@ -210,8 +216,14 @@ impl Flattener<'_> {
         };
         let normal = unit(normal_matrix(&way.start) * unit(plane.normal));
         let point = way.start.transform_point3(plane.point);
+        // A transform changes the coefficients: D follows from the new normal and a point of the plane.
+        let equation = equation.map(|equation| match way.start == Affine3A::IDENTITY {
+            true => equation,
+            false => PlaneEquation { normal, d: -normal.as_dvec3().dot(point.as_dvec3()) as f32 },
+        });
         self.world.planes.push(InfinitePlane {
             plane: Plane { point, normal },
+            equation,
             material,
             axes: [u, v].map(|axis| way.start.transform_vector3(axis)),
             motion: way.end.map(|end| [corners(&way.start), corners(&end)]),
@@ -220,7 +232,7 @@ impl Flattener<'_> {
 
     fn facets(&mut self, facets: &[Facet], way: &Way, material: u32) {
         for facet in facets {
-            let triangle = self.triangle(facet, way, material);
+            let triangle = self.triangle(facet, false, way, material);
             self.world.primitives.push(triangle);
         }
     }
@@ -240,7 +252,7 @@ impl Flattener<'_> {
         }
         for face in 0..ready.mesh.triangles.len() {
             let material = ready.material_of(face).unwrap_or(material);
-            let triangle = self.triangle(&ready.facet(face), way, material);
+            let triangle = self.triangle(&ready.facet(face), ready.one_sided, way, material);
             self.world.primitives.push(triangle);
         }
     }
@@ -261,14 +273,14 @@ impl Flattener<'_> {
         let here = Way::still(Affine3A::IDENTITY);
         let primitives = (0..ready.mesh.triangles.len()).map(|face| {
             let material = ready.material_of(face).unwrap_or(Primitive::INHERITED);
-            self.triangle(&ready.facet(face), &here, material)
+            self.triangle(&ready.facet(face), ready.one_sided, &here, material)
         });
         let shared_mesh = SharedMesh { primitives: primitives.collect() };
         self.world.shared_meshes.push(shared_mesh);
         self.world.shared_meshes.len() as u32 - 1
     }
 
-    fn triangle(&mut self, facet: &Facet, way: &Way, material: u32) -> Primitive {
+    fn triangle(&mut self, facet: &Facet, one_sided: bool, way: &Way, material: u32) -> Primitive {
         let reads_image = self.reads_image(material);
         // Exchange two corners if the transform is a reflection, which would turn the inside out.
         let mirrored = way.start.matrix3.determinant() < 0.0;
@@ -276,7 +288,8 @@ impl Flattener<'_> {
         let world = &mut self.world;
         let corners = |to_world: &Affine3A| {
             let [a, b, c] = facet.corners.map(|corner| to_world.transform_point3(corner));
-            Geometry::Triangle(Triangle { a, b, c })
+            let triangle = Triangle { a, b, c };
+            if one_sided { Geometry::OneSided(triangle) } else { Geometry::Triangle(triangle) }
         };
         // Transform the vertex normals, for time 1 as well if the triangle moves.
         let mut normals = Slot::NONE;

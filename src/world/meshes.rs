@@ -20,6 +20,8 @@ pub(super) struct Ready {
     /// For each of the mesh's own material names, the index of the material in the scene; empty if the mesh
     /// takes the material of its node.
     pub materials: Vec<usize>,
+    /// Whether the triangles are hit from their front only.
+    pub one_sided: bool,
     /// Whether the mesh is kept once and placed by instances.
     pub shared: bool,
     /// Index into [`super::World::shared_meshes`], once a first instance has been made.
@@ -47,6 +49,7 @@ impl Meshes {
                 normals: if smooth { normals_of(&mesh, is_new, functions) } else { Vec::new() },
                 mesh,
                 materials: source.materials.clone(),
+                one_sided: source.one_sided && functions.one_sided,
                 shared: shared(places.of_meshes[index]),
                 shared_mesh: None,
             }
@@ -58,6 +61,7 @@ impl Meshes {
                 normals: normals_of(&mesh, true, functions),
                 mesh: Arc::new(mesh),
                 materials: Vec::new(),
+                one_sided: false,
                 shared: shared(places.of_nodes[index]),
                 shared_mesh: None,
             };

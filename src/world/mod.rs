@@ -21,7 +21,7 @@ use crate::kit::{Function, StudentFunctions};
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::scene::Scene;
-use crate::shape::{BezierPatch, Plane, Sphere, Triangle};
+use crate::shape::{BezierPatch, Plane, PlaneEquation, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 /// The shape of a primitive: what a ray can be tested against.
@@ -32,10 +32,23 @@ pub enum Geometry {
     /// A triangle, in the space of the primitive; its front is the side from which the corners run
     /// anticlockwise.
     Triangle(Triangle),
+    /// A triangle that is hit from its front only.
+    OneSided(Triangle),
     /// Index into [`World::solids`], whose shape is tested in a space of its own.
     Solid(u32),
     /// Index into [`World::instances`], whose shared mesh is searched in the space of that mesh.
     Instance(u32),
+}
+
+impl Geometry {
+    /// The triangle, if the primitive is one, whether it is hit from one side or from both.
+    #[inline]
+    pub fn triangle(&self) -> Option<&Triangle> {
+        match self {
+            Geometry::Triangle(triangle) | Geometry::OneSided(triangle) => Some(triangle),
+            Geometry::Sphere(_) | Geometry::Solid(_) | Geometry::Instance(_) => None,
+        }
+    }
 }
 
 /// An optional index into a table, `0..u32::MAX`. It takes four bytes instead of the eight of an
@@ -103,6 +116,9 @@ pub struct Instance {
 pub struct InfinitePlane {
     /// The plane, at time 0 if it moves; its normal is of unit length.
     pub plane: Plane,
+    /// The coefficients of the same plane in world space, if rays are tested against them: the scene gives the
+    /// plane by coefficients, and it does not move.
+    pub equation: Option<PlaneEquation>,
     /// Index of its material in [`World::materials`].
     pub material: u32,
     /// The axes of its texture: two directions along the plane in world space, at time 0 if it moves. Each is
@@ -169,6 +185,11 @@ pub struct WorldFunctions {
     pub spheres: bool,
     /// Whether infinite planes are shown; otherwise they are left out.
     pub planes: bool,
+    /// Whether rays are tested against the coefficients of a plane that is given by them; otherwise by a point
+    /// and a normal.
+    pub equations: bool,
+    /// Whether the triangles of one-sided meshes are hit from their front only; otherwise from both sides.
+    pub one_sided: bool,
     /// Whether triangles are shown, and shapes that are made of triangles; otherwise both are left out.
     pub triangles: bool,
 }
@@ -182,6 +203,8 @@ impl Default for WorldFunctions {
             subdivide: None,
             spheres: true,
             planes: true,
+            equations: false,
+            one_sided: false,
             triangles: true,
         }
     }
@@ -210,6 +233,8 @@ impl WorldFunctions {
             placement: in_spaces.into_iter().all(written).then_some(F::placement),
             bezier_point: written(Function::bezier_point).then_some(F::bezier_point),
             subdivide: written(Function::loop_subdivide).then_some(F::loop_subdivide),
+            equations: written(Function::plane_by_coefficients),
+            one_sided: written(Function::backfacing),
             ..WorldFunctions::default()
         }
     }

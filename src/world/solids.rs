@@ -42,7 +42,11 @@ impl SolidShape {
             Shape::Cone(cone) => SolidShape::Cone(*cone),
             Shape::Disk(disk) => SolidShape::Disk(*disk),
             Shape::Polygon(polygon) => SolidShape::Polygon(polygon.clone()),
-            Shape::Plane(_) | Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } => return None,
+            Shape::Plane(_)
+            | Shape::PlaneEquation(_)
+            | Shape::Triangle(_)
+            | Shape::Mesh(_)
+            | Shape::Bezier { .. } => return None,
         })
     }
 

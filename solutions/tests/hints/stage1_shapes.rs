@@ -48,6 +48,13 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     ray.contains(t).then_some(t)
 }
 
+pub fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32> {
+    let (n, o, v) = (normal.as_dvec3(), ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let t = (-f64::from(d) - n.dot(o)) / n.dot(v);
+    let t = t as f32;
+    ray.contains(t).then_some(t)
+}
+
 pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     if normal.dot(direction) > 0.0 { -normal } else { normal }
 }

@@ -51,6 +51,11 @@ pub fn triangle_gram(ray: &Ray, triangle: &Triangle, scalars: &GramScalars) -> O
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some(TriangleHit { t, beta, gamma })
 }
 
+pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
+    let [a, b, c, d] = [triangle.a, triangle.b, triangle.c, ray.direction].map(|v| v.as_dvec3());
+    (b - a).cross(c - a).dot(d) > 0.0
+}
+
 pub fn face_normal(triangle: &Triangle) -> Option<Vec3> {
     let edge = |v: Vec3| v / v.abs().max_element();
     edge(triangle.b - triangle.a).cross(edge(triangle.c - triangle.a)).try_normalize()

@@ -57,6 +57,15 @@ pub fn plane(ray: &Ray, point: Vec3, normal: Vec3) -> Option<f32> {
     if ray.contains(t) { Some(t) } else { None }
 }
 
+pub fn plane_by_coefficients(ray: &Ray, normal: Vec3, d: f32) -> Option<f32> {
+    let denominator = normal.dot(ray.direction);
+    if denominator == 0.0 {
+        return None;
+    }
+    let t = -(normal.dot(ray.origin) + d) / denominator;
+    if ray.contains(t) { Some(t) } else { None }
+}
+
 pub fn face_forward(normal: Vec3, direction: Vec3) -> Vec3 {
     if direction.dot(normal) < 0.0 { normal } else { -normal }
 }

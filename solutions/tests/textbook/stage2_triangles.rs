@@ -106,6 +106,11 @@ pub fn inside_by_areas(point: Vec3, triangle: &Triangle) -> Option<Vec3> {
     if alpha >= 0.0 && beta >= 0.0 && gamma >= 0.0 { Some(Vec3::new(alpha, beta, gamma)) } else { None }
 }
 
+pub fn backfacing(ray: &Ray, triangle: &Triangle) -> bool {
+    let normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
+    normal.dot(ray.direction) > 0.0
+}
+
 pub fn interpolate(barycentric: Vec3, corners: [Vec3; 3]) -> Vec3 {
     barycentric.x * corners[0] + barycentric.y * corners[1] + barycentric.z * corners[2]
 }

@@ -3,7 +3,7 @@
 use crate::args::{Given, Misuse, Opt, names};
 use anyhow::{Result, anyhow};
 use raykata::scene::load::Limits;
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod};
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod};
 
 /// The number of threads that render, the same for all commands.
 pub struct Threads(u16);
@@ -61,6 +61,7 @@ pub struct QualityOptions {
     accelerator: Option<Accelerator>,
     grid_resolution: Option<u32>,
     triangles: Option<TriangleMethod>,
+    spheres: Option<SphereMethod>,
     precision: Option<Precision>,
     min_contribution: Option<f32>,
     memory: Memory,
@@ -81,11 +82,12 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 11] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 12] = [
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
     ("bounding-spheres", Accelerator::BoundingSpheres),
     ("bvh", Accelerator::Bvh),
+    ("bvh-both-children", Accelerator::BvhBothChildren),
     ("cached-bvh", Accelerator::CachedBvh),
     ("packet-bvh", Accelerator::PacketBvh),
     ("grid", Accelerator::Grid),
@@ -95,11 +97,20 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 11] = [
     ("bsp", Accelerator::Bsp),
 ];
 
-const TRIANGLES: [(&str, TriangleMethod); 4] = [
+const TRIANGLES: [(&str, TriangleMethod); 7] = [
     ("cramer", TriangleMethod::Cramer),
     ("gram", TriangleMethod::Gram),
+    ("inside-by-planes", TriangleMethod::InsideByPlanes),
+    ("inside-by-direction", TriangleMethod::InsideByDirection),
+    ("inside-by-areas", TriangleMethod::InsideByAreas),
     ("choice", TriangleMethod::Choice),
     ("watertight", TriangleMethod::Watertight),
+];
+
+const SPHERES: [(&str, SphereMethod); 3] = [
+    ("algebraic", SphereMethod::Algebraic),
+    ("geometric", SphereMethod::Geometric),
+    ("stable-roots", SphereMethod::StableRoots),
 ];
 
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
@@ -126,6 +137,7 @@ impl QualityOptions {
             "Cells of a grid along its longest side; 0 takes the number of the formula.",
         ),
         Opt::value("--triangles", "NAME", "Ray/triangle test.").choices(&names(&TRIANGLES)),
+        Opt::value("--spheres", "NAME", "Ray/sphere test.").choices(&names(&SPHERES)),
         Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
         Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
         Memory::OPTION,
@@ -145,6 +157,7 @@ impl QualityOptions {
             accelerator: given.choice("--accelerator", &ACCELERATORS)?,
             grid_resolution: given.number("--grid-resolution", 0..=1024)?,
             triangles: given.choice("--triangles", &TRIANGLES)?,
+            spheres: given.choice("--spheres", &SPHERES)?,
             precision: given.choice("--precision", &PRECISIONS)?,
             min_contribution: given.parsed("--min-contribution", parse_share)?,
             memory: Memory::read(given)?,
@@ -178,6 +191,7 @@ impl QualityOptions {
         quality.accelerator = self.accelerator.unwrap_or(quality.accelerator);
         quality.grid_resolution = self.grid_resolution.unwrap_or(quality.grid_resolution);
         quality.triangle_method = self.triangles.unwrap_or(quality.triangle_method);
+        quality.sphere_method = self.spheres.unwrap_or(quality.sphere_method);
         quality.precision = self.precision.unwrap_or(quality.precision);
         quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
         Ok(())
@@ -199,6 +213,7 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
             ("--depth", quality.max_depth.to_string()),
             ("--min-contribution", quality.min_contribution.to_string()),
             ("--triangles", named(serde_json::to_value(quality.triangle_method))),
+            ("--spheres", named(serde_json::to_value(quality.sphere_method))),
             ("--precision", named(serde_json::to_value(quality.precision))),
             ("--accelerator", named(serde_json::to_value(quality.accelerator))),
             ("--split", named(serde_json::to_value(quality.split))),
@@ -247,6 +262,19 @@ mod tests {
     }
 
     #[test]
+    fn every_method_has_the_name_of_scene_files() {
+        assert_eq!(
+            TRIANGLES.map(|(name, method)| (name.replace('-', "_"), method)),
+            owned(TriangleMethod::ALL)
+        );
+        assert_eq!(SPHERES.map(|(name, method)| (name.replace('-', "_"), method)), owned(SphereMethod::ALL));
+    }
+
+    fn owned<T: Copy, const N: usize>(all: [(&str, T); N]) -> [(String, T); N] {
+        all.map(|(name, one)| (name.to_owned(), one))
+    }
+
+    #[test]
     fn arguments_turn_every_parameter() {
         let mut scene =
             crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Limits::default())
@@ -259,7 +287,8 @@ mod tests {
             glossy_samples: 3,
             max_depth: 9,
             min_contribution: 0.03,
-            triangle_method: TriangleMethod::Gram,
+            triangle_method: TriangleMethod::InsideByDirection,
+            sphere_method: SphereMethod::StableRoots,
             precision: Precision::Double,
             accelerator: Accelerator::OctreeByCells,
             split: Split::SpatialMedian,

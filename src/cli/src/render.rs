@@ -7,7 +7,7 @@ use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use raykata::film::{Film, encode_srgb};
 use raykata::kit::{Kit, RenderJob, Rendering, View, kit_error};
-use raykata::scene::{Accelerator, Encoding};
+use raykata::scene::Encoding;
 use std::path::{Path, PathBuf};
 
 /// `raykata render`.
@@ -162,7 +162,7 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
     println!("  primitives       {}", Thousands(rendering.primitives));
     if let Some(size) = rendering.structure {
         let how = match quality.accelerator {
-            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => {
+            one if one.is_hierarchy() => {
                 format!(", {:?}, leaves of {} or fewer", quality.split, quality.leaf_size)
             }
             _ => format!(", {} references", Thousands(size.references)),

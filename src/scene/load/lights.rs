@@ -3,6 +3,7 @@
 use super::reader::Value;
 use super::shapes::{disk, sphere};
 use crate::material::{AreaShape, Emitter, Falloff, Light};
+use crate::scene::ColorPlace;
 use crate::scene::error::LoadError;
 use glam::Vec3;
 
@@ -12,10 +13,11 @@ const KEYS: [&str; 6] = ["point", "directional", "area", "color", "intensity", "
 /// range, or if a rectangle has no area.
 pub(super) fn lights(value: Option<Value>) -> Result<Vec<Light>, LoadError> {
     let Some(value) = value else { return Ok(Vec::new()) };
-    value.list("a list of tables, each under `[[lights]]`")?.into_iter().map(light).collect()
+    let lights = value.list("a list of tables, each under `[[lights]]`")?;
+    lights.into_iter().enumerate().map(|(index, value)| light(value, index)).collect()
 }
 
-fn light(value: Value) -> Result<Light, LoadError> {
+fn light(value: Value, index: usize) -> Result<Light, LoadError> {
     let table = value.table(&KEYS)?;
     let emitter = table.one_of(&["point", "directional", "area"])?;
     Ok(Light {
@@ -27,7 +29,7 @@ fn light(value: Value) -> Result<Light, LoadError> {
             }
             _ => area(emitter)?,
         },
-        color: table.get("color").map_or(Ok(Vec3::ONE), |color| color.color())?,
+        color: table.get("color").map_or(Ok(Vec3::ONE), |color| color.color(ColorPlace::Light(index)))?,
         intensity: table.get("intensity").map_or(Ok(1.0), |intensity| intensity.not_negative())?,
         shadows: table.get("shadows").map_or(Ok(true), |shadows| shadows.truth())?,
     })

@@ -5,6 +5,7 @@ use super::reader::Value;
 use crate::material::{Fresnel, Material};
 use crate::scene::error::LoadError;
 use crate::scene::obj::ObjMaterial;
+use crate::scene::{ColorPlace, MaterialColor};
 use glam::Vec3;
 
 const FRESNEL: [(&str, Fresnel); 3] =
@@ -52,7 +53,8 @@ pub(super) fn materials<'a>(value: Option<Value<'a>>, textures: &Names) -> Resul
     materials.names.insert("default", 0);
     let Some(value) = value else { return Ok(materials) };
     for entry in value.any_table()?.values() {
-        let material = material(entry, textures)?;
+        let index = if entry.key == "default" { 0 } else { materials.list.len() };
+        let material = material(entry, index, textures)?;
         if entry.key == "default" {
             materials.list[0] = material;
         } else {
@@ -63,26 +65,30 @@ pub(super) fn materials<'a>(value: Option<Value<'a>>, textures: &Names) -> Resul
     Ok(materials)
 }
 
-fn material(value: Value, textures: &Names) -> Result<Material, LoadError> {
+fn material(value: Value, index: usize, textures: &Names) -> Result<Material, LoadError> {
     let table = value.table(&KEYS)?;
     let mut material = Material::default();
+    let at = |color| ColorPlace::Material(index, color);
     for value in table.values() {
         match value.key {
-            "ambient" => material.ambient = value.color()?,
-            "diffuse" => material.diffuse = value.color()?,
-            "specular" => material.specular = value.color()?,
+            "ambient" => material.ambient = value.color(at(MaterialColor::Ambient))?,
+            "diffuse" => material.diffuse = value.color(at(MaterialColor::Diffuse))?,
+            "specular" => material.specular = value.color(at(MaterialColor::Specular))?,
             "exponent" => material.exponent = value.not_negative()?,
-            "mirror" => material.mirror = value.color()?,
-            "transmission" => material.transmission = value.color()?,
+            "mirror" => material.mirror = value.color(at(MaterialColor::Mirror))?,
+            "transmission" => material.transmission = value.color(at(MaterialColor::Transmission))?,
             "index_of_refraction" => material.index_of_refraction = value.positive()?,
             "fresnel" => material.fresnel = value.choice(&FRESNEL)?,
             "roughness" => material.roughness = value.share()?,
-            "emission" => material.emission = value.color()?,
+            "emission" => material.emission = value.color(at(MaterialColor::Emission))?,
             _ => material.texture = Some(textures.find(value)?),
         }
     }
     if table.get("ambient").is_none() {
-        material.ambient = material.diffuse;
+        material.ambient = match table.get("diffuse") {
+            Some(diffuse) => diffuse.color(at(MaterialColor::Ambient))?,
+            None => material.diffuse,
+        };
     }
     Ok(material)
 }

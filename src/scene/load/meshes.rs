@@ -26,8 +26,9 @@ pub(super) fn meshes<'a>(
     let (mut meshes, mut names) = (Vec::new(), Names::new("mesh"));
     let Some(value) = value else { return Ok((meshes, names)) };
     for entry in value.any_table()?.values() {
-        let table = entry.table(&["file", "smooth", "materials", "subdivide"])?;
+        let table = entry.table(&["file", "smooth", "one_sided", "materials", "subdivide"])?;
         let smooth = table.get("smooth").map_or(Ok(true), |smooth| smooth.truth())?;
+        let one_sided = table.get("one_sided").map_or(Ok(false), |wanted| wanted.truth())?;
         let own_materials = table.get("materials").map_or(Ok(true), |wanted| wanted.truth())?;
         let ObjFile { mesh, materials: described, undefined, warnings } = read(&table, own_materials)?;
         value.source.warnings.borrow_mut().extend(warnings);
@@ -40,7 +41,7 @@ pub(super) fn meshes<'a>(
         let subdivisions = table.get("subdivide").map_or(Ok(0), |steps| steps.whole(0..=12))?;
         let triangles = (mesh.triangles.len() as u64) << (2 * subdivisions);
         value.source.budget.triangles(table.get("subdivide").unwrap_or(entry), triangles)?;
-        meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, subdivisions, materials: indices });
+        meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth, one_sided, subdivisions, materials: indices });
     }
     Ok((meshes, names))
 }
@@ -131,7 +132,7 @@ impl Adopter<'_, '_> {
         }
         let index = match image.is_file() {
             true => match textures::read(image, Wrap::Repeat, self.mesh) {
-                Ok(texture) => {
+                Ok((texture, _)) => {
                     self.textures.push(texture);
                     Some(self.textures.len() - 1)
                 }

@@ -25,12 +25,22 @@ use super::error::LoadError;
 use limits::Budget;
 pub use limits::Limits;
 use reader::{Source, Table};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::io::ErrorKind;
 use std::path::Path;
 
-const TABLES: [&str; 9] =
-    ["film", "camera", "environment", "quality", "materials", "textures", "meshes", "lights", "nodes"];
+const TABLES: [&str; 10] = [
+    "color_encoding",
+    "film",
+    "camera",
+    "environment",
+    "quality",
+    "materials",
+    "textures",
+    "meshes",
+    "lights",
+    "nodes",
+];
 
 /// A scene, and what was noticed while it was read.
 #[derive(Clone, Debug)]
@@ -93,10 +103,20 @@ pub fn parse(file: &Path, text: &str) -> Result<Scene, LoadError> {
 ///
 /// In all cases in which [`parse`] fails.
 pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, LoadError> {
-    let source = Source { file, text, warnings: RefCell::default(), budget: Budget::new(limits) };
+    let source = Source {
+        file,
+        text,
+        warnings: RefCell::default(),
+        encoding: Cell::default(),
+        gamma2: RefCell::default(),
+        budget: Budget::new(limits),
+    };
     let document = source.document()?;
     let root = Table::root(&source, &document, &TABLES)?;
 
+    if let Some(encoding) = root.get("color_encoding") {
+        source.encoding.set(encoding.choice(&settings::ENCODINGS)?);
+    }
     let film = settings::film(root.get("film"))?;
     let camera = match root.get("camera") {
         Some(camera) => settings::camera(camera, film.width as f32 / film.height as f32)?,
@@ -126,6 +146,7 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
         meshes,
         nodes,
         roots,
+        gamma2: source.gamma2.take(),
         quality,
         max_primitives: limits.triangles(),
     };

@@ -2,7 +2,9 @@
 //! `f32` only.
 
 use super::reader::Value;
+use super::textures::srgb_to_linear;
 use crate::scene::error::LoadError;
+use crate::scene::{ColorPlace, Encoding};
 use glam::{DVec3, Vec3};
 use std::ops::RangeInclusive;
 use toml::de::DeValue;
@@ -90,10 +92,21 @@ impl<'a> Value<'a> {
         })
     }
 
-    /// The value as a linear colour: one number for a grey, or three for red, green and blue. Fails if one of
-    /// them is below 0 or not finite.
-    pub fn color(&self) -> Result<Vec3, LoadError> {
-        let color = self.one_or_three("a colour, that is one number or three")?;
+    /// The value as a linear colour: one number for a grey, or three for red, green and blue, or a text with two
+    /// hexadecimal digits for each, such as `"#ff8000"`. Fails if a number is below 0 or not finite.
+    ///
+    /// A text is decoded with the sRGB curve. If the scene asks for gamma 2, its bytes are kept for `place`, where the
+    /// frame decodes them.
+    pub fn color(&self, place: ColorPlace) -> Result<Vec3, LoadError> {
+        let wanted = "a colour, that is one number, three, or a text such as \"#ff8000\"";
+        if self.item().as_str().is_some() {
+            let bytes = self.text().ok().and_then(hexadecimal).ok_or_else(|| self.wrong(wanted))?;
+            if self.source.encoding.get() == Encoding::Gamma2 {
+                self.source.gamma2.borrow_mut().colors.push((place, bytes));
+            }
+            return Ok(Vec3::from_array(bytes.map(|byte| srgb_to_linear(f32::from(byte) / 255.0))));
+        }
+        let color = self.one_or_three(wanted)?;
         self.each_component(color, "at least 0", |number| number >= 0.0)
     }
 
@@ -143,4 +156,14 @@ impl<'a> Value<'a> {
         let items = self.list("").unwrap_or_default();
         Err(items.get(bad).unwrap_or(self).wrong(condition))
     }
+}
+
+/// Red, green and blue of a text such as `#ff8000`; `None` if it has another form.
+fn hexadecimal(text: &str) -> Option<[u8; 3]> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii())?;
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let [_, red, green, blue] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some([red, green, blue])
 }

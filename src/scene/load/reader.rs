@@ -5,7 +5,8 @@ use super::limits::Budget;
 use super::syntax;
 use super::words::{listed, nearest, one_line, quoted};
 use crate::scene::error::LoadError;
-use std::cell::RefCell;
+use crate::scene::{Encoding, Gamma2};
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -19,6 +20,10 @@ pub(super) struct Source<'a> {
     pub text: &'a str,
     /// What was ignored or replaced so far, in this file and in those that it names.
     pub warnings: RefCell<Vec<LoadError>>,
+    /// How colours that are written as text are encoded.
+    pub encoding: Cell<Encoding>,
+    /// The colours and images that a frame has to decode with gamma 2.
+    pub gamma2: RefCell<Gamma2>,
     /// The memory that the scene may still use, in bytes.
     pub budget: Budget,
 }

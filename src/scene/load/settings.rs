@@ -1,12 +1,18 @@
 //! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
-use super::reader::Value;
+use super::reader::{Table, Value};
 use crate::camera::{Camera, Lens, Shutter};
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::scene::error::LoadError;
-use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
+use crate::scene::{
+    Accelerator, ColorPlace, Encoding, FilmSettings, Precision, Quality, Sampler, SphereMethod, Split,
+    TriangleMethod,
+};
 use glam::Vec3;
+
+/// How bytes encode linear light: those of 8-bit pictures, of colours as text, and of images.
+pub(super) const ENCODINGS: [(&str, Encoding); 2] = [("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)];
 
 /// The largest width or height of a picture, in pixels.
 const MAX_SIDE: u32 = 65_536;
@@ -32,7 +38,7 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
         film.height = height.whole(1..=MAX_SIDE)?;
     }
     if let Some(encoding) = table.get("encoding") {
-        film.encoding = encoding.choice(&[("srgb", Encoding::Srgb), ("gamma2", Encoding::Gamma2)])?;
+        film.encoding = encoding.choice(&ENCODINGS)?;
     }
     value.source.budget.film(value, film.width, film.height)?;
     Ok(film)
@@ -41,8 +47,16 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
 /// The camera of `[camera]`; `aspect` is width over height of the film. Fails if a value is missing or out of
 /// range, if the view direction is zero, or if `up` is parallel to it.
 pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
-    let table =
-        value.table(&["position", "look_at", "direction", "up", "vertical_fov", "lens", "shutter"])?;
+    let table = value.table(&[
+        "position",
+        "look_at",
+        "direction",
+        "up",
+        "vertical_fov",
+        "horizontal_fov",
+        "lens",
+        "shutter",
+    ])?;
     let position = table.need("position", "[0, 1, 5]")?.vector()?;
     let aim = table.one_of(&["look_at", "direction"])?;
     let direction = match aim.key {
@@ -56,10 +70,7 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
     };
     let up_value = table.get("up");
     let up = up_value.map_or(Ok(Vec3::Y), |up| up.direction())?;
-    let below_180 = |angle| 0.0 < angle && angle < 180.0;
-    let vertical_fov = table
-        .get("vertical_fov")
-        .map_or(Ok(40.0), |angle| angle.number_that("above 0 and below 180 degrees", below_180))?;
+    let vertical_fov = field_of_view(&table, aspect)?;
 
     let camera = Camera::new(position, direction, up, vertical_fov, aspect).map_err(|error| {
         // The only remaining error is that `up` is parallel to the view direction. Suggest an axis along
@@ -72,6 +83,33 @@ pub(super) fn camera(value: Value, aspect: f32) -> Result<Camera, LoadError> {
         shutter: table.get("shutter").map(shutter).transpose()?,
         ..camera
     })
+}
+
+/// The vertical field of view in degrees: `vertical_fov`, or the one that follows from `horizontal_fov` and the
+/// aspect ratio; 40 if neither is given, and an error if both are.
+fn field_of_view(table: &Table, aspect: f32) -> Result<f32, LoadError> {
+    let angle = |value: Value| {
+        value.number_that("above 0 and below 180 degrees", |angle| 0.0 < angle && angle < 180.0)
+    };
+    match (table.get("vertical_fov"), table.get("horizontal_fov")) {
+        (None, None) => Ok(40.0),
+        (Some(vertical), None) => angle(vertical),
+        (None, Some(horizontal)) => {
+            // The film at distance 1 is `aspect` times as wide as high.
+            let half_width = (f64::from(angle(horizontal)?).to_radians() / 2.0).tan();
+            let vertical = 2.0 * (half_width / f64::from(aspect)).atan().to_degrees();
+            // On a very wide or high film the angle can round to 180 or, in principle, to 0.
+            Some(vertical as f32).filter(|angle| 0.0 < *angle && *angle < 180.0).ok_or_else(|| {
+                horizontal.error("this `horizontal_fov` makes the vertical one 180 degrees on so high a film")
+            })
+        }
+        (Some(_), Some(horizontal)) => {
+            let message = "`camera` has both `vertical_fov` and `horizontal_fov`";
+            Err(horizontal
+                .error(message)
+                .help("delete one of the two: it follows from the other and the film's size"))
+        }
+    }
 }
 
 fn lens(value: Value) -> Result<Lens, LoadError> {
@@ -108,13 +146,17 @@ pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError
     let Some(value) = value else { return Ok(Environment::default()) };
     let table = value.table(&["background", "ambient", "indirect_light"])?;
     Ok(Environment {
-        background: table.get("background").map_or(Ok(Vec3::ZERO), |color| color.color())?,
-        ambient: table.get("ambient").map_or(Ok(Vec3::ZERO), |color| color.color())?,
+        background: table
+            .get("background")
+            .map_or(Ok(Vec3::ZERO), |color| color.color(ColorPlace::Background))?,
+        ambient: table
+            .get("ambient")
+            .map_or(Ok(Vec3::ZERO), |color| color.color(ColorPlace::AmbientLight))?,
         indirect_light: table.get("indirect_light").map_or(Ok(false), |wanted| wanted.truth())?,
     })
 }
 
-const QUALITY_KEYS: [&str; 15] = [
+const QUALITY_KEYS: [&str; 16] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
@@ -127,6 +169,7 @@ const QUALITY_KEYS: [&str; 15] = [
     "split",
     "leaf_size",
     "triangle_method",
+    "sphere_method",
     "precision",
     "grid_resolution",
     "kd_heuristics",
@@ -154,7 +197,8 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "precision" => quality.precision = value.choice(&PRECISIONS)?,
             "split" => quality.split = value.choice(&SPLITS)?,
             "leaf_size" => quality.leaf_size = value.whole(1..=u32::MAX)?,
-            "triangle_method" => quality.triangle_method = value.choice(&TRIANGLE_METHODS)?,
+            "triangle_method" => quality.triangle_method = value.choice(&TriangleMethod::ALL)?,
+            "sphere_method" => quality.sphere_method = value.choice(&SphereMethod::ALL)?,
             _ => quality.grid_resolution = value.whole(0..=MAX_GRID)?,
         }
     }
@@ -195,11 +239,4 @@ const SPLITS: [(&str, Split); 3] = [
     ("object_median", Split::ObjectMedian),
     ("spatial_median", Split::SpatialMedian),
     ("surface_area", Split::SurfaceArea),
-];
-
-const TRIANGLE_METHODS: [(&str, TriangleMethod); 4] = [
-    ("cramer", TriangleMethod::Cramer),
-    ("gram", TriangleMethod::Gram),
-    ("choice", TriangleMethod::Choice),
-    ("watertight", TriangleMethod::Watertight),
 ];

@@ -7,7 +7,9 @@ use crate::mesh::Mesh;
 use crate::scene::SceneMesh;
 use crate::scene::error::LoadError;
 use crate::scene::triangulate::{self, Cut};
-use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
+use crate::shape::{
+    BezierPatch, Cone, Cuboid, Cylinder, Disk, Plane, PlaneEquation, Polygon, Shape, Sphere, Triangle,
+};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -28,7 +30,7 @@ pub(super) fn shape(
     let kind = value.table(&KINDS)?.one_of(&KINDS)?;
     let shape = match kind.key {
         "sphere" => Shape::Sphere(sphere(kind)?),
-        "plane" => Shape::Plane(plane(kind)?),
+        "plane" => plane(kind)?,
         "triangle" => Shape::Triangle(triangle(kind)?),
         "box" => Shape::Cuboid(cuboid(kind)?),
         "cylinder" => Shape::Cylinder(cylinder(kind)?),
@@ -55,9 +57,29 @@ pub(super) fn sphere(value: Value) -> Result<Sphere, LoadError> {
     Ok(Sphere { center: point(&table, "center")?, radius: radius(&table)? })
 }
 
-fn plane(value: Value) -> Result<Plane, LoadError> {
-    let table = value.table(&["point", "normal"])?;
-    Ok(Plane { point: point(&table, "point")?, normal: normal(&table)? })
+/// A plane by a point and a normal, or by the coefficients of its equation.
+fn plane(value: Value) -> Result<Shape, LoadError> {
+    let table = value.table(&["point", "normal", "coefficients"])?;
+    let Some(coefficients) = table.get("coefficients") else {
+        return Ok(Shape::Plane(Plane { point: point(&table, "point")?, normal: normal(&table)? }));
+    };
+    if let Some(other) = table.get("point").or(table.get("normal")) {
+        let message = format!("`plane` has both `coefficients` and `{}`", other.key);
+        return Err(other.error(message).help("give `point` and `normal`, or `coefficients` alone"));
+    }
+    let [a, b, c, d] = coefficients.numbers("four numbers")?;
+    let equation = PlaneEquation { normal: Vec3::new(a, b, c), d };
+    if equation.normal == Vec3::ZERO {
+        let message = "the first three of `coefficients` are 0, so they give no plane";
+        return Err(coefficients
+            .error(message)
+            .help("A x + B y + C z + D = 0: write, for example, [0, 1, 0, -2]"));
+    }
+    // The transforms of the scene use a point of the plane.
+    match equation.to_plane().point.is_finite() {
+        true => Ok(Shape::PlaneEquation(equation)),
+        false => Err(coefficients.error("the plane is farther away than the largest number, 3.4e38")),
+    }
 }
 
 /// A triangle. Slivers and tiny triangles are accepted; corners exactly on one line are not.
@@ -145,7 +167,13 @@ fn polygon(value: Value, meshes: &mut Vec<SceneMesh>) -> Result<Shape, LoadError
     value.source.budget.triangles(value, triangles.len() as u64)?;
     let triangles = triangles.into_iter().map(|triangle| triangle.map(|corner| corner as u32)).collect();
     let mesh = Mesh { positions: corners, triangles, ..Mesh::default() };
-    meshes.push(SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: Vec::new() });
+    meshes.push(SceneMesh {
+        mesh: Arc::new(mesh),
+        smooth: false,
+        one_sided: false,
+        subdivisions: 0,
+        materials: Vec::new(),
+    });
     Ok(Shape::Mesh(meshes.len() - 1))
 }
 

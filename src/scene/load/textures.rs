@@ -3,8 +3,10 @@
 use super::files;
 use super::names::Names;
 use super::reader::Value;
+use super::settings::ENCODINGS;
 use super::words::{one_line, quoted};
 use crate::material::{Texture, Wrap};
+use crate::scene::Encoding;
 use crate::scene::error::LoadError;
 use glam::Vec3;
 use image::{DynamicImage, ImageReader};
@@ -19,20 +21,31 @@ pub(super) fn textures<'a>(value: Option<Value<'a>>) -> Result<(Vec<Texture>, Na
     let (mut textures, mut names) = (Vec::new(), Names::new("texture"));
     let Some(value) = value else { return Ok((textures, names)) };
     for entry in value.any_table()?.values() {
-        let table = entry.table(&["file", "wrap"])?;
+        let table = entry.table(&["file", "wrap", "encoding"])?;
         let wrap = table.get("wrap").map_or(Ok(Wrap::Repeat), |wrap| wrap.choice(&WRAPS))?;
         let file = table.need("file", "\"wood.png\"")?;
         let path = files::find(file)?;
         names.insert(entry.key, textures.len());
-        textures.push(read(&path, wrap, file)?);
+        let encoding = table.get("encoding");
+        let gamma2 =
+            encoding.map_or(Ok(false), |one| one.choice(&ENCODINGS).map(|e| e == Encoding::Gamma2))?;
+        let (texture, has_bytes) = read(&path, wrap, file)?;
+        if let Some(encoding) = encoding.filter(|_| gamma2) {
+            if !has_bytes {
+                let message = "only images with 8 bits per component are encoded with gamma 2";
+                return Err(encoding.error(message).help("delete the key, or convert the image to 8 bits"));
+            }
+            value.source.gamma2.borrow_mut().textures.push(textures.len());
+        }
+        textures.push(texture);
     }
     Ok((textures, names))
 }
 
 /// Reads an image file and decodes it from sRGB to linear light; formats with floating-point pixels are
-/// linear already. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
+/// linear already. Also says whether its components have 8 bits. Fails at `value`, which names the image, if the file cannot be read, has no pixels, or needs more memory
 /// than the limit; this is known from its header.
-pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<Texture, LoadError> {
+pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<(Texture, bool), LoadError> {
     let name = quoted(&path.file_name().unwrap_or_default().to_string_lossy());
     let trouble = |message: String| {
         value
@@ -62,7 +75,14 @@ pub(super) fn read(path: &Path, wrap: Wrap, value: Value) -> Result<Texture, Loa
     // The budget bounds the memory. The limits of the decoder are lower than what a user can allow.
     reader.no_limits();
     let image = reader.decode().map_err(|error| trouble(error.to_string()))?;
-    Ok(Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap })
+    let has_bytes = matches!(
+        image,
+        DynamicImage::ImageLuma8(_)
+            | DynamicImage::ImageLumaA8(_)
+            | DynamicImage::ImageRgb8(_)
+            | DynamicImage::ImageRgba8(_)
+    );
+    Ok((Texture { width, height, pixels: Arc::new(linear_pixels(image)), wrap }, has_bytes))
 }
 
 /// The pixels row by row from the top, in linear light; transparency is ignored.
@@ -89,6 +109,6 @@ fn linear_pixels(image: DynamicImage) -> Vec<Vec3> {
 }
 
 /// The inverse of the sRGB curve (IEC 61966-2-1): linear near black, a power above; both values in `0..=1`.
-fn srgb_to_linear(encoded: f32) -> f32 {
+pub(super) fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::TriangleHit;
 use raykata::ray::Ray;
-use raykata::shape::{Plane, Sphere, Triangle};
+use raykata::shape::{Plane, PlaneEquation, Sphere, Triangle};
 
 /// The largest relative error of one rounding to `f32`.
 pub const U: f64 = f32::EPSILON as f64 / 2.0;
@@ -116,6 +116,40 @@ pub fn plane(ray: &Ray, plane: &Plane) -> Expected {
     }
     // Bound the error of each dot product by a few roundings of its largest term.
     let distance_slack = 8.0 * U * (offset.abs().dot(normal.abs()));
+    let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
+    if slope.abs() <= 16.0 * slope_slack {
+        return Expected::Open;
+    }
+    let t = distance / slope;
+    let tolerance = 2.0 * (distance_slack + t.abs() * slope_slack) / slope.abs();
+    first_in_range(ray, &[t], tolerance)
+}
+
+/// How a method may round the sum of D and n·o.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sum {
+    /// In single precision: the error is a few roundings of the largest term.
+    Single,
+    /// In double precision, rounded once at the end: the error is a few roundings of the sum.
+    Double,
+}
+
+/// The hit of a ray with a plane that coefficients give.
+pub fn plane_equation(ray: &Ray, plane: &PlaneEquation, sum: Sum) -> Expected {
+    let (normal, d) = (plane.normal.as_dvec3(), f64::from(plane.d));
+    let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
+    let (distance, slope) = (-d - normal.dot(origin), direction.dot(normal));
+    // Products that are all 0 stay 0 for any length of the vectors.
+    if slope == 0.0 && normal * direction == DVec3::ZERO {
+        return Expected::Miss;
+    }
+    // Bound the error of the sum and of the dot product. In double precision each product is exact, and each of three
+    // sums has an error of half an `f64::EPSILON`.
+    let terms = d.abs() + normal.abs().dot(origin.abs());
+    let distance_slack = match sum {
+        Sum::Single => 8.0 * U * terms,
+        Sum::Double => 4.0 * f64::EPSILON * terms + 8.0 * U * distance.abs(),
+    };
     let slope_slack = 8.0 * U * direction.abs().dot(normal.abs());
     if slope.abs() <= 16.0 * slope_slack {
         return Expected::Open;

@@ -3,8 +3,8 @@
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
 use raykata::kit::{
-    BuildQuery, InsideQuery, LightSample, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery, SlabQuery,
-    SphereQuery, Surface, TriangleQuery,
+    BuildQuery, InsideQuery, LightSample, PlaneEquationQuery, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery,
+    SlabQuery, SphereQuery, Surface, TriangleQuery,
 };
 use raykata::material::Material;
 use raykata::random::Stratum;
@@ -194,6 +194,12 @@ impl Arguments for SphereQuery {
 impl Arguments for PlaneQuery {
     fn call(&self, function: &str) -> String {
         call(function, &[&self.ray, &self.plane.point, &self.plane.normal])
+    }
+}
+
+impl Arguments for PlaneEquationQuery {
+    fn call(&self, function: &str) -> String {
+        call(function, &[&self.ray, &self.plane.normal, &self.plane.d])
     }
 }
 

@@ -5,7 +5,9 @@ use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, kit_error};
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, Split, TriangleMethod, load};
+use raykata::scene::{
+    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod, load,
+};
 use sha2::{Digest, Sha256};
 use std::fmt;
 use std::path::Path;
@@ -85,6 +87,16 @@ impl Scenes {
             "effects, Random",
             "effects, lights from the middle",
             "effects, Double",
+            "effects, Cramer",
+            "effects, Gram",
+            "effects, InsideByPlanes",
+            "effects, InsideByDirection",
+            "effects, Choice",
+            "effects, StableRoots",
+            "effects, ObjectMedian",
+            "effects, SpatialMedian",
+            "methods",
+            "one_sided",
             "effects, no lens, all smooth",
             "stage8",
         ];
@@ -149,9 +161,13 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         (quality.accelerator, quality.grid_resolution) = (Accelerator::Grid, 9);
     }));
     turned.extend(Split::ALL.map(|split| with(&format!("{split:?}"), &|quality| quality.split = split)));
-    let methods = [TriangleMethod::Cramer, TriangleMethod::Gram, TriangleMethod::Choice];
+    let methods = TriangleMethod::ALL.into_iter().filter(|(_, one)| *one != TriangleMethod::default());
     turned.extend(
-        methods.map(|method| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
+        methods.map(|(_, method)| with(&format!("{method:?}"), &|quality| quality.triangle_method = method)),
+    );
+    let methods = SphereMethod::ALL.into_iter().filter(|(_, one)| *one != SphereMethod::default());
+    turned.extend(
+        methods.map(|(_, method)| with(&format!("{method:?}"), &|quality| quality.sphere_method = method)),
     );
     turned.push(with("Double", &|quality| quality.precision = Precision::Double));
     let samplers = [Sampler::Center, Sampler::Random, Sampler::Jittered, Sampler::Gaussian];

@@ -139,7 +139,10 @@ impl Bench<'_> {
         let tried = match row.quality.accelerator {
             // Each primitive is in one leaf, and a ray tests some tens even in the forest, so whole pictures
             // take seconds.
-            Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh => return Ok(Some(1)),
+            Accelerator::Bvh
+            | Accelerator::BvhBothChildren
+            | Accelerator::CachedBvh
+            | Accelerator::PacketBvh => return Ok(Some(1)),
             // A ray may test all primitives, or all in a node or a cell.
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes

@@ -2,7 +2,7 @@
 
 use raykata::graph::Savings;
 use raykata::partition::KdHeuristics;
-use raykata::scene::{Accelerator, Quality, Scene, Split};
+use raykata::scene::{Accelerator, Precision, Quality, Scene, SphereMethod, Split, TriangleMethod};
 
 /// What is compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,17 +16,20 @@ pub enum Of {
     Heuristics,
     /// The grid at growing resolutions, and the formula's.
     Grids,
+    /// The tests of triangles and of spheres, one after the other.
+    Methods,
     /// Meshes with several instances: shared, or copied.
     Instances,
 }
 
 impl Of {
     /// All of them by name.
-    pub const NAMES: [(&str, Of); 5] = [
+    pub const NAMES: [(&str, Of); 6] = [
         ("structures", Of::Structures),
         ("savings", Of::Savings),
         ("heuristics", Of::Heuristics),
         ("grids", Of::Grids),
+        ("methods", Of::Methods),
         ("instances", Of::Instances),
     ];
 }
@@ -81,6 +84,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                 graph("graph, boxes, sort", boxes, Savings { skip: false, ..Savings::default() }),
                 graph("graph, boxes, skip and sort", boxes, Savings::default()),
                 graph("graph, spheres, skip and sort", spheres, Savings::default()),
+                with("bvh, both children", &|quality| quality.accelerator = Accelerator::BvhBothChildren),
                 with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
                 with("bvh, last hit first", &|quality| quality.accelerator = Accelerator::CachedBvh),
                 with("bvh, packets of 8", &|quality| quality.accelerator = Accelerator::PacketBvh),
@@ -111,6 +115,22 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             };
             let ladder = [1, 4, 8, 16, 32, 64, 128, 256].map(|n| grid(&format!("grid, {n} along"), n));
             [ladder.to_vec(), vec![grid("grid, by the formula", 0)]].concat()
+        }
+        Of::Methods => {
+            let single = |name: String, change: &dyn Fn(&mut Quality)| {
+                with(&name, &|quality| {
+                    quality.precision = Precision::Single;
+                    change(quality);
+                })
+            };
+            let triangles = TriangleMethod::ALL.map(|(name, method)| {
+                single(format!("triangles, {name}"), &|quality| quality.triangle_method = method)
+            });
+            let spheres = SphereMethod::ALL.map(|(name, method)| {
+                single(format!("spheres, {name}"), &|quality| quality.sphere_method = method)
+            });
+            let double = with("both, double precision", &|quality| quality.precision = Precision::Double);
+            [triangles.to_vec(), spheres.to_vec(), vec![double]].concat()
         }
         Of::Instances => vec![
             with("one mesh, many places", &|quality| quality.copies = false),

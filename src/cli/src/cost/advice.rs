@@ -70,12 +70,13 @@ pub struct Advice {
 pub const AS_GOOD: f64 = 1.02;
 
 /// Parameters with a best value that does not depend on the others: the fastest of the equally accurate values.
-const CHOSEN_ONCE: [Parameter; 6] = [
+const CHOSEN_ONCE: [Parameter; 7] = [
     Parameter::Accelerator,
     Parameter::Split,
     Parameter::LeafSize,
     Parameter::GridResolution,
     Parameter::Intersection,
+    Parameter::SphereTest,
     Parameter::Precision,
 ];
 

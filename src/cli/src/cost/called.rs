@@ -17,7 +17,7 @@ impl Called<'_> {
     pub fn shows_triangles(&self) -> bool {
         self.shows(|shape, moves| match shape {
             Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } => true,
-            Shape::Sphere(_) | Shape::Plane(_) => false,
+            Shape::Sphere(_) | Shape::Plane(_) | Shape::PlaneEquation(_) => false,
             // A moving shape has no object space of its own and is made of triangles.
             _ => moves,
         })

@@ -4,7 +4,7 @@ use super::called::Called;
 use super::setting::Setting;
 use crate::report::Thousands;
 use raykata::effects::Effect;
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, Split, TriangleMethod};
+use raykata::scene::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod};
 use serde::Serialize;
 
 /// A parameter that trades accuracy for time.
@@ -27,6 +27,8 @@ pub enum Parameter {
     SmoothNormals,
     /// The ray/triangle test.
     Intersection,
+    /// The ray/sphere test.
+    SphereTest,
     /// The precision of ray/shape tests.
     Precision,
     /// The acceleration structure.
@@ -66,7 +68,7 @@ pub const LEAST_DEPTH: u32 = 8;
 
 impl Parameter {
     /// All parameters by their names on the command line.
-    pub const NAMES: [(&str, Parameter); 13] = [
+    pub const NAMES: [(&str, Parameter); 14] = [
         ("samples", Parameter::Samples),
         ("sampler", Parameter::Sampler),
         ("light-samples", Parameter::LightSamples),
@@ -75,6 +77,7 @@ impl Parameter {
         ("min-contribution", Parameter::MinContribution),
         ("smooth-normals", Parameter::SmoothNormals),
         ("intersection", Parameter::Intersection),
+        ("sphere-test", Parameter::SphereTest),
         ("precision", Parameter::Precision),
         ("accelerator", Parameter::Accelerator),
         ("split", Parameter::Split),
@@ -93,6 +96,7 @@ impl Parameter {
             Parameter::MinContribution => "minimum contribution",
             Parameter::SmoothNormals => "smooth normals",
             Parameter::Intersection => "intersection",
+            Parameter::SphereTest => "sphere test",
             Parameter::Precision => "precision",
             Parameter::Accelerator => "accelerator",
             Parameter::Split => "split",
@@ -121,8 +125,7 @@ impl Parameter {
         let Called { scene, effects, primitives } = called;
         let quality = scene.quality;
         let mirrors = effects.calls_for(Effect::Mirrors) || effects.calls_for(Effect::Transmission);
-        let hierarchy =
-            matches!(quality.accelerator, Accelerator::Bvh | Accelerator::CachedBvh | Accelerator::PacketBvh);
+        let hierarchy = quality.accelerator.is_hierarchy();
         let needs = |called_for: bool, why: &str| if called_for { Ok(()) } else { Err(why.to_owned()) };
         let ladder = |levels: Vec<(String, Quality)>| {
             let levels = levels.into_iter().map(|(name, quality)| (name, Setting { quality, smooth: true }));
@@ -190,15 +193,22 @@ impl Parameter {
             }
             Parameter::Intersection => {
                 needs(called.shows_triangles(), "there are no triangles")?;
-                let all = [
-                    ("gram", TriangleMethod::Gram),
-                    ("cramer", TriangleMethod::Cramer),
-                    ("watertight", TriangleMethod::Watertight),
-                ];
+                // With the watertight test last: it is the default, and it takes longest.
                 let with = |(name, triangle_method): (&str, _)| {
-                    (name.to_owned(), Quality { triangle_method, ..quality })
+                    (name.replace('_', " "), Quality { triangle_method, ..quality })
                 };
-                vec![ladder(all.into_iter().map(with).collect())]
+                vec![ladder(TriangleMethod::ALL.into_iter().map(with).collect())]
+            }
+            Parameter::SphereTest => {
+                needs(called.shows_spheres(), "there are no spheres")?;
+                needs(
+                    quality.precision == Precision::Single,
+                    "the precision is double, which has one sphere test",
+                )?;
+                let with = |(name, sphere_method): (&str, _)| {
+                    (name.replace('_', " "), Quality { sphere_method, ..quality })
+                };
+                vec![ladder(SphereMethod::ALL.into_iter().map(with).collect())]
             }
             Parameter::Precision => {
                 needs(

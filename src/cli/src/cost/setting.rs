@@ -37,6 +37,7 @@ impl Setting {
             Parameter::MinContribution => quality.min_contribution = from.min_contribution,
             Parameter::SmoothNormals => turned.smooth = to.smooth,
             Parameter::Intersection => quality.triangle_method = from.triangle_method,
+            Parameter::SphereTest => quality.sphere_method = from.sphere_method,
             Parameter::Precision => quality.precision = from.precision,
             Parameter::Accelerator => quality.accelerator = from.accelerator,
             Parameter::Split => quality.split = from.split,

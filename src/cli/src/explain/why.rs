@@ -122,7 +122,7 @@ fn node(scene: &Scene, index: usize) -> String {
     }
     let kind = match &node.shape {
         Some(Shape::Sphere(_)) => "sphere",
-        Some(Shape::Plane(_)) => "plane",
+        Some(Shape::Plane(_) | Shape::PlaneEquation(_)) => "plane",
         Some(Shape::Triangle(_)) => "triangle",
         Some(Shape::Cuboid(_)) => "box",
         Some(Shape::Cylinder(_)) => "cylinder",

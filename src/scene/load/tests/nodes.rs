@@ -3,7 +3,7 @@
 use super::{CAMERA, check_refused_with, scene_with};
 use crate::scene::Node;
 use crate::scene::load::{Limits, Loaded, parse_within};
-use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, Polygon, Shape, Sphere, Triangle};
+use crate::shape::{Cone, Cuboid, Cylinder, Disk, Plane, PlaneEquation, Polygon, Shape, Sphere, Triangle};
 use glam::{Affine3A, Vec3};
 use std::path::Path;
 
@@ -27,6 +27,10 @@ fn shapes_arrive_as_written() {
     assert_eq!(
         shape("plane = { point = [0, 1, 0], normal = [0, 0, 1e-30] }"),
         Shape::Plane(Plane { point: Vec3::Y, normal: Vec3::Z })
+    );
+    assert_eq!(
+        shape("plane = { coefficients = [0, -2, 0, 6] }"),
+        Shape::PlaneEquation(PlaneEquation { normal: -2.0 * Vec3::Y, d: 6.0 })
     );
     assert_eq!(
         shape("triangle = { a = [0, 0, 0], b = [1, 0, 0], c = [0, 1, 0] }"),
@@ -57,6 +61,20 @@ fn shapes_arrive_as_written() {
 #[test]
 fn shapes_that_no_ray_can_hit_are_refused() {
     let shape = |text: &str, message: &str| check_node(&format!("shape = {{ {text} }}"), message);
+    shape(
+        "plane = { coefficients = [0, 0, 0, 1] }",
+        "3:36: the first three of `coefficients` are 0, so they give no plane\nhelp: A x + B y + C z + D = 0: write, for \
+         example, [0, 1, 0, -2]",
+    );
+    shape("plane = { coefficients = [0, 1, 0] }", "3:36: `coefficients` must be four numbers, but has 3");
+    shape(
+        "plane = { coefficients = [0, 1, 0, 2], normal = [0, 1, 0] }",
+        "3:59: `plane` has both `coefficients` and `normal`\nhelp: give `point` and `normal`, or `coefficients` alone",
+    );
+    shape(
+        "plane = { coefficients = [0, 1e-38, 0, 1e30] }",
+        "3:36: the plane is farther away than the largest number, 3.4e38",
+    );
     shape("sphere = { center = [0, 0, 0], radius = -1 }", "3:51: `radius` must be above 0, but is -1");
     shape("sphere = { center = [0, 0, 0], radus = 1 }", "3:42: unknown key `radus`; did you mean `radius`?");
     shape(

@@ -4,7 +4,10 @@ use super::{check_refused, check_refused_with, scene, scene_with};
 use crate::camera::{Lens, Shutter};
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
-use crate::scene::{Accelerator, Encoding, FilmSettings, Precision, Quality, Sampler, Split, TriangleMethod};
+use crate::scene::{
+    Accelerator, ColorPlace, Encoding, FilmSettings, MaterialColor, Precision, Quality, Sampler,
+    SphereMethod, Split, TriangleMethod,
+};
 use glam::Vec3;
 
 #[test]
@@ -31,7 +34,7 @@ fn every_setting_arrives() {
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
          [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\nmax_depth = 0\n\
          min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
-         triangle_method = 'gram'\ngrid_resolution = 3\n\
+         triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
     assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2 });
@@ -53,7 +56,8 @@ fn every_setting_arrives() {
         leaf_size: 1,
         copies: true,
         savings: Savings { skip: false, ..Savings::default() },
-        triangle_method: TriangleMethod::Gram,
+        triangle_method: TriangleMethod::InsideByAreas,
+        sphere_method: SphereMethod::Geometric,
         precision: Precision::Double,
         grid_resolution: 3,
         kd_heuristics: KdHeuristics { stop_at_overlap: false, ..KdHeuristics::default() },
@@ -175,7 +179,7 @@ fn qualities_have_limits() {
     check_refused_with(
         "[quality]\naccelerator = 'magic'",
         "s.toml:3:15: unknown value of `accelerator`: `magic`\nhelp: known names are `brute_force`, \
-         `bounding_boxes`, `bounding_spheres`, `bvh`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, \
+         `bounding_boxes`, `bounding_spheres`, `bvh`, `bvh_both_children`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, \
          `octree_by_cells`, `kd_tree`, `bsp`",
     );
     check_refused_with(
@@ -193,10 +197,71 @@ fn an_environment_has_colours() {
     check_refused_with("[environment]\nambient = -1", "s.toml:3:11: `ambient` must be at least 0, but is -1");
     check_refused_with(
         "[environment]\nbackground = 'blue'",
-        "s.toml:3:14: `background` must be a colour, that is one number or three, but is text",
+        "s.toml:3:14: `background` must be a colour, that is one number, three, or a text such as \"#ff8000\", but is text",
     );
     check_refused_with(
         "[environment]\nindirect_light = 1",
         "s.toml:3:18: `indirect_light` must be true or false, but is 1",
     );
+}
+
+#[test]
+fn the_horizontal_field_of_view_is_that_of_the_wider_side() {
+    let camera = |size: &str, angle: &str| {
+        scene(&format!("[film]\n{size}\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{angle}")).camera
+    };
+    // Twice as wide as high: a horizontal angle of 90 degrees sees half a unit upwards at distance 1.
+    let wide = camera("width = 200\nheight = 100", "horizontal_fov = 90");
+    assert!((wide.half_height - 0.5).abs() < 1e-6, "{}", wide.half_height); // a few roundings
+    let edge = wide.ray(1.0, 0.5).direction;
+    assert!((edge.x + edge.z).abs() < 1e-6, "{edge}"); // 45 degrees from the axis
+    // On a square film both angles are the same.
+    let square = "width = 64\nheight = 64";
+    let (vertical, horizontal) = (camera(square, "vertical_fov = 50"), camera(square, "horizontal_fov = 50"));
+    assert!((vertical.half_height - horizontal.half_height).abs() < 1e-6);
+}
+
+#[test]
+fn a_camera_has_one_field_of_view() {
+    let camera = |rest: &str| format!("[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{rest}");
+    check_refused(
+        &camera("vertical_fov = 40\nhorizontal_fov = 60"),
+        "s.toml:5:18: `camera` has both `vertical_fov` and `horizontal_fov`\nhelp: delete one of the two: it follows \
+         from the other and the film's size",
+    );
+    check_refused(
+        &camera("horizontal_fov = 180"),
+        "s.toml:4:18: `horizontal_fov` must be above 0 and below 180 degrees, but is 180",
+    );
+}
+
+#[test]
+fn colours_as_text_are_decoded() {
+    let rest = "[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[environment]\nbackground = '#ff0080'\n\
+                [materials.paint]\ndiffuse = '#FFFFFF'\nmirror = 0.5";
+    // 128 is 0.2159 of full light by the sRGB curve.
+    let srgb = scene(rest);
+    assert!((srgb.background - Vec3::new(1.0, 0.0, 0.2159)).length() < 1e-4);
+    assert_eq!(srgb.materials[1].ambient, Vec3::ONE);
+    assert!(srgb.gamma2.is_empty());
+    // A frame decodes gamma 2; the loader keeps the bytes, also those of the ambient colour that follows from `diffuse`.
+    let encoded = scene(&format!("color_encoding = 'gamma2'\n{rest}"));
+    assert_eq!(encoded.background, srgb.background);
+    let white = [255; 3];
+    assert_eq!(
+        encoded.gamma2.colors,
+        [
+            (ColorPlace::Background, [255, 0, 128]),
+            (ColorPlace::Material(1, MaterialColor::Diffuse), white),
+            (ColorPlace::Material(1, MaterialColor::Ambient), white),
+        ]
+    );
+    for text in ["#ff00", "ff0080", "#ff008g", "#ff00800", "#+f0080"] {
+        let file =
+            format!("[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n[environment]\nambient = '{text}'");
+        check_refused(
+            &file,
+            "s.toml:5:11: `ambient` must be a colour, that is one number, three, or a text such as \"#ff8000\", but is text",
+        );
+    }
 }

@@ -65,7 +65,7 @@ fn tables_stand_where_they_belong() {
     check_refused_with("fim = { width = 3 }", "s.toml:2:1: unknown key `fim`; did you mean `film`?");
     check_refused_with(
         "weather = 'fine'",
-        "s.toml:2:1: unknown key `weather`\nhelp: known names are `film`, `camera`, `environment`, \
+        "s.toml:2:1: unknown key `weather`\nhelp: known names are `color_encoding`, `film`, `camera`, `environment`, \
          `quality`, `materials`, `textures`, `meshes`, `lights`, `nodes`",
     );
     check_refused_with("film = 3", "s.toml:2:8: `film` must be a table, but is 3");
@@ -96,7 +96,10 @@ fn numbers_are_finite_and_of_single_precision() {
         &format!("0x{}", "f".repeat(40)),
         &format!("`ambient` is 0x{}, which is too large: the largest number is 3.4e38", "f".repeat(40)),
     );
-    ambient("[1, 2]", "`ambient` must be a colour, that is one number or three, but has 2");
+    ambient(
+        "[1, 2]",
+        "`ambient` must be a colour, that is one number, three, or a text such as \"#ff8000\", but has 2",
+    );
     let sound = |number: &str| scene_with(&format!("environment.ambient = {number}")).ambient.x;
     assert_eq!(sound("+1_000"), 1000.0);
     assert_eq!(sound("0xff"), 255.0);

@@ -8,7 +8,7 @@ use raykata::frame::Watch;
 use raykata::kit::*;
 use raykata::mesh::Mesh;
 use raykata::partition::{Bsp, KdTree, Octree};
-use raykata::shape::{Cone, Cylinder, Plane, Sphere, Triangle};
+use raykata::shape::{Cone, Cylinder, Plane, PlaneEquation, Sphere, Triangle};
 
 /// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in its `call`
 /// remain as they are.
@@ -49,8 +49,8 @@ macro_rules! turn_requests {
 impl Transport for TurnedKit<'_> {
     fn call(&self, request: Request, _: &dyn Watch) -> Answer {
         turn_requests! { request, self;
-            SphereAlgebraic SphereGeometric Plane
-            TriangleCramer TriangleGram TriangleChoice VertexNormals
+            SphereAlgebraic SphereGeometric Plane PlaneByCoefficients
+            TriangleCramer TriangleGram TriangleChoice Backfacing VertexNormals
             Slab SplitObjectMedian SplitSpatialMedian SplitSurfaceArea Build ClosestHitBoth ClosestHit AnyHit
             Shade
             Reflect Scatter
@@ -131,6 +131,9 @@ turn! {
     |plane: Plane, symmetry| {
         Plane { point: symmetry.point(plane.point), normal: symmetry.direction(plane.normal) }
     };
+    |plane: PlaneEquation, symmetry| {
+        PlaneEquation { normal: symmetry.direction(plane.normal), d: symmetry.length(plane.d) }
+    };
     |triangle: Triangle, symmetry| {
         let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|corner| symmetry.point(corner));
         Triangle { a, b, c }
@@ -153,6 +156,9 @@ turn! {
     };
     |query: PlaneQuery, symmetry| {
         PlaneQuery { ray: query.ray.turn(symmetry), plane: query.plane.turn(symmetry) }
+    };
+    |query: PlaneEquationQuery, symmetry| {
+        PlaneEquationQuery { ray: query.ray.turn(symmetry), plane: query.plane.turn(symmetry) }
     };
     |query: TriangleQuery, symmetry| {
         TriangleQuery { ray: query.ray.turn(symmetry), triangle: query.triangle.turn(symmetry) }

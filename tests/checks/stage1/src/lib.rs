@@ -1,8 +1,9 @@
 //! Stage 1: spheres and planes.
 //!
-//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers, `sphere_mistakes` names mistakes) · `planes` · `picture`
+//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers, `sphere_mistakes` names mistakes) · `planes` · `plane_equations` · `picture`
 
 mod picture;
+mod plane_equations;
 mod planes;
 mod roots;
 mod sphere_method;
@@ -10,6 +11,10 @@ mod sphere_mistakes;
 mod spheres;
 
 use picture::picture_of_a_sphere_on_a_plane;
+use plane_equations::{
+    plane_by_coefficients_agrees_with_double_precision, plane_by_coefficients_far_from_the_origin,
+    plane_by_coefficients_is_missed_by_rays_along_it, plane_by_coefficients_takes_any_factor,
+};
 use planes::{
     face_forward_turns_the_normal_to_the_ray, plane_agrees_with_double_precision, plane_far_from_the_origin,
     plane_is_missed_by_rays_along_it,
@@ -49,6 +54,10 @@ checks::stage! { ($ crate) 1 [
     plane_agrees_with_double_precision
     plane_is_missed_by_rays_along_it: turned
     plane_far_from_the_origin
+    plane_by_coefficients_agrees_with_double_precision
+    plane_by_coefficients_takes_any_factor
+    plane_by_coefficients_is_missed_by_rays_along_it: turned
+    plane_by_coefficients_far_from_the_origin
     face_forward_turns_the_normal_to_the_ray
     picture_of_a_sphere_on_a_plane: turned
 ] }

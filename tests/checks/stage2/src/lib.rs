@@ -1,9 +1,10 @@
 //! Stage 2: triangles and meshes.
 //!
-//! `meet` (checks for all three methods; `method` judges the answers, `triangle_mistakes` names mistakes) · `gram` · `inside` · `attributes` · `vertex_normals` ·
+//! `meet` (checks for all three methods; `method` judges the answers, `triangle_mistakes` names mistakes) · `gram` · `inside` · `backfaces` · `attributes` · `vertex_normals` ·
 //! `closest` · `golden`
 
 mod attributes;
+mod backfaces;
 mod closest;
 mod golden;
 mod gram;
@@ -14,6 +15,10 @@ mod triangle_mistakes;
 mod vertex_normals;
 
 use attributes::{face_normal_has_unit_length_at_any_size, interpolation_weighs_the_corners};
+use backfaces::{
+    backfacing_has_no_smallest_size, backfacing_is_false_for_what_is_seen_edge_on,
+    backfacing_is_the_sign_of_n_dot_d,
+};
 use closest::brute_force_finds_the_closest_of_all;
 use golden::{hit_table_of_a_fan, picture_of_an_octahedron};
 use gram::gram_scalars_of_thin_triangles_keep_their_sign;
@@ -66,6 +71,9 @@ checks::stage! { ($ crate) 2 [
     inside_by_planes_agrees_with_double_precision
     inside_by_direction_agrees_with_double_precision
     inside_by_areas_gives_barycentric_coordinates
+    backfacing_is_the_sign_of_n_dot_d
+    backfacing_is_false_for_what_is_seen_edge_on: turned
+    backfacing_has_no_smallest_size
     interpolation_weighs_the_corners
     face_normal_has_unit_length_at_any_size
     vertex_normals_average_their_faces

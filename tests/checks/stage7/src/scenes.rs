@@ -63,6 +63,7 @@ pub(super) fn everything() -> Scene {
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
         smooth: true,
+        one_sided: false,
         subdivisions: 0,
         materials: Vec::new(),
     });

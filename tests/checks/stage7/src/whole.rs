@@ -206,6 +206,7 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.meshes.push(SceneMesh {
         mesh: Arc::new(one_triangle()),
         smooth: true,
+        one_sided: false,
         subdivisions: 0,
         materials: Vec::new(),
     });
@@ -217,8 +218,13 @@ pub(super) fn what_is_not_shown_takes_nothing(trial: &Trial<'_>) -> CheckResult 
     scene.materials.extend([glass, Material::default()]);
     scene.material_names.extend(["glass".into(), "paint".into()]);
     let mesh = Mesh { triangles: vec![[0, 1, 2]; 3], face_materials: vec![0, 1, 2], ..one_triangle() };
-    scene.meshes =
-        vec![SceneMesh { mesh: Arc::new(mesh), smooth: false, subdivisions: 0, materials: vec![2, 3, 4] }];
+    scene.meshes = vec![SceneMesh {
+        mesh: Arc::new(mesh),
+        smooth: false,
+        one_sided: false,
+        subdivisions: 0,
+        materials: vec![2, 3, 4],
+    }];
     scene.nodes.push(Node { shape: Some(Shape::Mesh(0)), ..Node::default() });
     scene.roots.push(scene.nodes.len() - 1);
     let lit = expected.materials[1].clone();

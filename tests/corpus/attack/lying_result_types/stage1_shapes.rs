@@ -47,6 +47,10 @@ pub fn plane(_: &Ray, _: Vec3, _: Vec3) -> Liar {
     Liar
 }
 
+pub fn plane_by_coefficients(_: &Ray, _: Vec3, _: f32) -> Liar {
+    Liar
+}
+
 pub fn face_forward(_: Vec3, _: Vec3) -> Liar {
     Liar
 }

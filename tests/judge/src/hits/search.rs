@@ -20,7 +20,9 @@ pub fn bodies(world: &World) -> Vec<Body> {
     let primitives = world.primitives.iter().map(|primitive| match primitive.geometry {
         Geometry::Sphere(sphere) => Body::Sphere(sphere),
         Geometry::Triangle(triangle) => Body::Triangle(triangle),
-        Geometry::Solid(_) | Geometry::Instance(_) => unreachable!("a plain world has neither"),
+        Geometry::OneSided(_) | Geometry::Solid(_) | Geometry::Instance(_) => {
+            unreachable!("a plain world has none of them")
+        }
     });
     primitives.chain(world.planes.iter().map(|plane| Body::Plane(plane.plane))).collect()
 }

@@ -1,0 +1,45 @@
+//! Decodes the colours and images of a scene that are encoded with gamma 2.
+
+use super::written::Written;
+use crate::film::encode_srgb;
+use crate::kit::{Function, RenderJob, StudentFunctions};
+use glam::Vec3;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// The job with the colours and images of [`Scene::gamma2`](crate::scene::Scene::gamma2) decoded by `decode_gamma`; the
+/// same job if there are none, or if that function is not written.
+pub fn decoded<'a, F: StudentFunctions>(job: &'a RenderJob, written: &Written<F>) -> Cow<'a, RenderJob> {
+    let encoded = &job.scene.gamma2;
+    if encoded.is_empty() || !written.has(Function::decode_gamma) {
+        return Cow::Borrowed(job);
+    }
+    let mut decoded = job.clone();
+    // Replace the colours.
+    for (place, bytes) in &encoded.colors {
+        if let Some(color) = decoded.scene.color_mut(*place) {
+            *color = Vec3::from_array(bytes.map(F::decode_gamma));
+        }
+    }
+    // Replace the images: encode each component again, which gives the byte of the file, and decode that.
+    let table: [f32; 256] = std::array::from_fn(|byte| F::decode_gamma(byte as u8));
+    for &index in &encoded.textures {
+        if let Some(texture) = decoded.scene.textures.get_mut(index) {
+            let decode = |pixel: &Vec3| pixel.map(|component| table[usize::from(encode_srgb(component))]);
+            texture.pixels = Arc::new(texture.pixels.iter().map(decode).collect());
+        }
+    }
+    Cow::Owned(decoded)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::encode_srgb;
+
+    #[test]
+    fn the_byte_of_an_srgb_component_can_be_found_again() {
+        // The inverse of the sRGB curve (IEC 61966-2-1), as the loader computes it.
+        let decode = |c: f32| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
+        assert!((0..=255u8).all(|byte| encode_srgb(decode(f32::from(byte) / 255.0)) == byte));
+    }
+}

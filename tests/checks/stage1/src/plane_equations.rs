@@ -1,0 +1,204 @@
+//! Ray-plane intersection with the plane as the equation A x + B y + C z + D = 0.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::double::{self, Expected, Sum, U};
+use checks::generate::{direction, point, rough_point};
+use checks::judge::compare_formulas;
+use checks::nasty;
+use checks::paste::Arguments;
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::kit::PlaneEquationQuery;
+use raykata::ray::Ray;
+use raykata::shape::PlaneEquation;
+
+fn judge_equations(trial: &Trial<'_>, queries: &[PlaneEquationQuery], sum: Sum) -> Vec<CheckResult> {
+    let expected = |query: &PlaneEquationQuery| double::plane_equation(&query.ray, &query.plane, sum);
+    judge_answers(trial, queries, expected, "double precision")
+}
+
+/// Judges the answers to all queries, and names a mistake only if it gives all of them, right ones too.
+fn judge_answers(
+    trial: &Trial<'_>,
+    queries: &[PlaneEquationQuery],
+    expected: impl Fn(&PlaneEquationQuery) -> Expected,
+    source: &'static str,
+) -> Vec<CheckResult> {
+    let judge = |query: &PlaneEquationQuery, yours: Option<f32>| {
+        let expected = expected(query);
+        if expected.accepts(yours) {
+            return Ok(());
+        }
+        let input = query.call("plane_by_coefficients");
+        Err(Broken::with_texts(input, format!("{yours:?}"), expected.words(), source))
+    };
+    let formulas = |query: &PlaneEquationQuery, yours: &Option<f32>| {
+        formulas(query, *yours, expected(query).accepts(*yours))
+    };
+    compare_formulas(queries, trial.kit.plane_by_coefficients(queries), judge, formulas)
+}
+
+/// Fixed limits for `|n·v|`.
+const LIMITS: [f64; 7] = [1e-12, 1e-8, 1.2e-7, 1e-6, 1e-4, 1e-3, 1e-2];
+
+/// Wrong formulas in the same order for every query, each with whether it gives this answer; `is_right` says whether the
+/// answer is accepted.
+fn formulas(query: &PlaneEquationQuery, yours: Option<f32>, is_right: bool) -> Vec<(bool, &'static str)> {
+    let (ray, plane) = (&query.ray, &query.plane);
+    let [o, v, n] = [ray.origin, ray.direction, plane.normal].map(Vec3::as_dvec3);
+    let d = f64::from(plane.d);
+    let (along, slope) = (n.dot(o), n.dot(v));
+    let length = n.length();
+    let t = (-d - along) / slope;
+    // The rounding errors of single precision in any of these formulas.
+    let terms = d.abs() * length.max(1.0).max(length.recip()) + n.abs().dot(o.abs());
+    let slope_error = 8.0 * U * n.abs().dot(v.abs()) / slope.abs();
+    let gives_in = |t: f64, (low, high): (f64, f64)| {
+        let error = 8.0 * U * terms / slope.abs() + 2.0 * slope_error * t.abs();
+        match yours {
+            Some(yours) => f64::from(yours) == t || (f64::from(yours) - t).abs() <= error,
+            None => !(low + error < t && t < high - error),
+        }
+    };
+    let gives = |t: f64| gives_in(t, (f64::from(ray.t_min), f64::from(ray.t_max)));
+    let of_coordinates = 8.0 * U * (d.abs() + n.abs().dot(o.abs())) / slope.abs();
+    let is_lost = yours.is_none();
+    let mut all = vec![
+        (
+            is_right || yours.is_some_and(|t| !t.is_finite()),
+            "n·v = 0 makes t infinite or NaN (as a NaN in the input does), and neither counts: ask ray.contains(t)",
+        ),
+        (
+            is_right || yours.is_some_and(|t| t == ray.t_min || t == ray.t_max),
+            "the range is open: t_min (0 for a ray that starts in the plane) and t_max do not count",
+        ),
+        (
+            is_right
+                || (yours.is_some_and(|t| !ray.contains(t))
+                    && gives_in(t, (f64::NEG_INFINITY, f64::INFINITY))),
+            "you return a t that ray.contains(t) refuses",
+        ),
+        (
+            is_right
+                || yours.is_some_and(|yours| (f64::from(yours) - t).abs() <= of_coordinates)
+                || (is_lost && t.abs() <= of_coordinates),
+            "D and n·o cancel far from the origin: add them in double precision",
+        ),
+        (
+            gives((d - along) / slope),
+            "the sign of D is wrong: the plane is n·p + D = 0, so t = (-D - n·o) / (n·v)",
+        ),
+        (gives(-d / slope), "you leave out n·o: the ray need not start at the origin"),
+        (gives((-d * length - along) / slope), "if you normalize n, divide D by the length of n as well"),
+        (gives(t * length), "n need not be a unit vector: the length of n must cancel in t"),
+        (gives(t * v.length()), "your t counts world units; it must count lengths of direction"),
+        (
+            if slope > 0.0 { is_lost } else { is_right },
+            "the plane can be hit from behind, too: do not demand n·v < 0",
+        ),
+        (
+            if slope < 0.0 { is_lost } else { is_right },
+            "the plane can be hit from its front, too: do not demand n·v > 0",
+        ),
+        (gives(-t), "the sign of t is wrong: t = (-D - n·o) / (n·v)"),
+    ];
+    all.extend(LIMITS.map(|limit| {
+        let text = "you compare n·v with a limit, but a ray is parallel only if n·v = 0";
+        (if slope.abs() < limit { is_lost } else { is_right }, text)
+    }));
+    all
+}
+
+/// The equation of the plane through a point, as exact as single precision allows.
+fn through(point: Vec3, normal: Vec3) -> PlaneEquation {
+    PlaneEquation { normal, d: -normal.as_dvec3().dot(point.as_dvec3()) as f32 }
+}
+
+pub(super) fn plane_by_coefficients_agrees_with_double_precision(trial: &Trial<'_>) -> CheckResult {
+    // Planes of any place and direction, with normals of any length, and rays that are almost parallel to them.
+    let plain = (point(8), direction(), point(8), direction()).prop_map(|(origin, direction, on, normal)| {
+        PlaneEquationQuery { ray: Ray::new(origin, direction), plane: through(on, normal) }
+    });
+    let slanted = (point(8), point(8), nasty::unit(), nasty::tilt(), any::<bool>()).prop_map(
+        |(origin, on, normal, (angle, turn), behind)| {
+            let direction = nasty::tilted(if behind { normal } else { -normal }, angle, turn);
+            PlaneEquationQuery { ray: Ray::new(origin, direction), plane: through(on, normal) }
+        },
+    );
+    let ends = (0..4usize).prop_map(|end| [(0.0, f32::INFINITY), (0.0, 1.0), (2.0, 64.0), (-64.0, 1.0)][end]);
+    let inputs = (prop_oneof![plain, slanted], ends).prop_map(|(query, (t_min, t_max))| PlaneEquationQuery {
+        ray: query.ray.with_range(t_min, t_max),
+        ..query
+    });
+    let ceiling = PlaneEquation { normal: Vec3::Y, d: -2.0 };
+    let drawn = [
+        PlaneEquationQuery { ray: Ray::new(Vec3::ZERO, Vec3::Y), plane: ceiling },
+        PlaneEquationQuery { ray: Ray::new(Vec3::Y, 0.5 * Vec3::Y), plane: ceiling },
+        PlaneEquationQuery { ray: Ray::new(4.0 * Vec3::Y, vec3(1.0, -1.0, 0.0)), plane: ceiling },
+        PlaneEquationQuery { ray: Ray::new(4.0 * Vec3::Y, Vec3::Y), plane: ceiling },
+        PlaneEquationQuery { ray: Ray::new(Vec3::ZERO, Vec3::Y).with_range(0.0, 2.0), plane: ceiling },
+    ];
+    trial.forall_and(&drawn, 3000, inputs, |queries| judge_equations(trial, queries, Sum::Single))
+}
+
+pub(super) fn plane_by_coefficients_takes_any_factor(trial: &Trial<'_>) -> CheckResult {
+    // The same plane with all four coefficients times a factor: a power of two or any number, of either sign.
+    let factor = (nasty::scale(-40..=40), prop_oneof![Just(1.0f32), 0.5..2.0f32], nasty::sign());
+    let scales = (nasty::scale(-20..=20), nasty::scale(-20..=20));
+    let inputs = (point(8), direction(), point(8), nasty::unit(), factor, scales).prop_map(
+        |(origin, direction, on, normal, (power, digits, sign), (size, length))| {
+            let factor = sign * digits * power;
+            let plane = through(on, normal);
+            let plane = PlaneEquation { normal: factor * plane.normal, d: size * factor * plane.d };
+            PlaneEquationQuery { ray: Ray::new(size * origin, length * direction), plane }
+        },
+    );
+    let ray = Ray::new(vec3(1.0, 5.0, -2.0), vec3(0.5, -1.0, 0.25));
+    let with = |factor: f32| {
+        let plane = PlaneEquation { normal: factor * vec3(1.0, 2.0, -1.0), d: factor * -3.0 };
+        PlaneEquationQuery { ray, plane }
+    };
+    let drawn = [with(1.0), with(4.0), with(-1.0), with(2f32.powi(-30)), with(-(2f32.powi(30)))];
+    trial.forall_and(&drawn, 2000, inputs, |queries| judge_equations(trial, queries, Sum::Single))
+}
+
+pub(super) fn plane_by_coefficients_is_missed_by_rays_along_it(trial: &Trial<'_>) -> CheckResult {
+    let floor = PlaneEquation { normal: Vec3::Y, d: 0.0 };
+    let slanted = PlaneEquation { normal: vec3(1.0, 2.0, -1.0), d: -2.0 };
+    let hit = |t| Expected::Hit { t, tolerance: 0.0 };
+    let cases = [
+        (Ray::new(Vec3::Y, Vec3::X), floor, Expected::Miss),
+        (Ray::new(Vec3::ZERO, Vec3::X), floor, Expected::Miss),
+        (Ray::new(Vec3::NEG_Y, Vec3::new(1.0, -0.0, 1.0)), floor, Expected::Miss),
+        (Ray::new(Vec3::ONE, vec3(1.0, 1.0, 3.0)), slanted, Expected::Miss),
+        (Ray::new(Vec3::ZERO, Vec3::NEG_Y), floor, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NAN), floor, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NEG_Y), PlaneEquation { d: f32::NAN, ..floor }, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NEG_Y), PlaneEquation { normal: Vec3::ZERO, d: 1.0 }, Expected::Miss),
+        (Ray::new(Vec3::Y, Vec3::NEG_Y), floor, hit(1.0)),
+        (Ray::new(2.0 * Vec3::NEG_Y, vec3(4.0, 0.5, 0.0)), floor, hit(4.0)),
+        (
+            Ray::new(Vec3::Y, vec3(1.0, 2f32.powi(-20), 0.0)),
+            PlaneEquation { d: -2.0, ..floor },
+            hit(1_048_576.0),
+        ),
+    ];
+    let queries = cases.map(|(ray, plane, _)| PlaneEquationQuery { ray, plane });
+    // Answers are accepted by the definition; a NaN in a query makes it differ from itself, so compare the texts.
+    let expected = |query: &PlaneEquationQuery| {
+        let text = query.call("");
+        let known = queries.iter().zip(&cases).find(|(one, _)| one.call("") == text);
+        known.map_or(Expected::Open, |(_, (.., expected))| *expected)
+    };
+    all_hold(judge_answers(trial, &queries, expected, "the definition"))
+}
+
+pub(super) fn plane_by_coefficients_far_from_the_origin(trial: &Trial<'_>) -> CheckResult {
+    // T12: D and n·o are as large as the coordinates, and their sum is as small as the distance.
+    let inputs = (rough_point(4.0), direction(), direction()).prop_map(|(offset, direction, normal)| {
+        let on = Vec3::new(148_376.0, 1_234.0, -223_423.0);
+        PlaneEquationQuery { ray: Ray::new(on + offset, direction), plane: through(on, normal) }
+    });
+    trial.forall(2000, inputs, |queries| judge_equations(trial, queries, Sum::Double))
+}
