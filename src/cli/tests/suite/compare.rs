@@ -27,6 +27,7 @@ fn structures_are_compared_side_by_side() {
         "bvh, object median",
         "bvh, spatial median",
         "bvh, surface area",
+        "bvh both children",
         "cached bvh",
         "packet bvh",
         "grid",
@@ -68,11 +69,13 @@ fn structures_are_compared_side_by_side() {
 }
 
 #[test]
-fn savings_heuristics_grids_and_instances_have_tables() {
+fn savings_heuristics_grids_methods_and_instances_have_tables() {
     for (of, row) in [
         ("savings", "graph, boxes, skip and sort"),
         ("heuristics", "without stop at 60 %"),
         ("grids", "grid, 256 along"),
+        ("methods", "triangles, inside by direction"),
+        ("methods", "spheres, stable roots"),
         ("instances", "copies"),
     ] {
         let output = raykata(&[
