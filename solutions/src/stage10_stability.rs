@@ -29,6 +29,8 @@ use glam::DVec2;
 /// Pitfall: `-b + √(b² - 4ac)` cancels if b is large: one root of `t² - 10000 t + 1` becomes 0. Add numbers of the same
 /// sign instead, `q = -(b + sign(b) √(b² - 4ac)) / 2`: one root is `q / a`, the other `c / q`.
 ///
+/// Scenes with `sphere_method = "stable_roots"` are rendered with this function.
+///
 /// Slide: "Ray-Sphere Intersection".
 pub fn stable_roots(a: f32, b: f32, c: f32) -> Option<[f32; 2]> {
     // <solution>
@@ -228,6 +230,8 @@ fn sum_of_determinants<const N: usize>(matrices: [[Vec3; 3]; N]) -> f64 {
 /// the bound on its own three rounding errors, and the entry earlier by as much, because a search compares the entry
 /// with the `t` of hits, which are rounded differently. A factor of `1 + 2 γ₃` moves a negative exit the wrong way.
 ///
+/// Your pictures use this function for boxes as soon as it is written; before, they use `slab` of stage 3.
+///
 /// Source: Ize, "Robust BVH Ray Traversal", JCGT 2013.
 pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> Option<(f32, f32)> {
     // <solution>
@@ -248,6 +252,9 @@ pub fn conservative_slab(ray: &Ray, inverse_direction: Vec3, bounds: &Aabb) -> O
 /// Pitfall: any fixed distance is too small in one scene and too large in another. In a scene of size 0.001, a ray that
 /// starts 0.0001 away misses objects that touch the surface.
 ///
+/// In your pictures shadow rays and secondary rays start here as soon as this function is written; before, they start where
+/// `shadow_ray` of stage 4 and `spawn_ray` of stage 5 put them.
+///
 /// Source: Pharr, Jakob and Humphreys, section 6.8.
 pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) -> Vec3 {
     // <solution>
@@ -263,6 +270,8 @@ pub fn offset_origin(point: Vec3, error: Vec3, normal: Vec3, direction: Vec3) ->
 /// Returns `None` for the zero vector (also with -0.0) and for a vector with a coordinate that is NaN or infinite.
 ///
 /// Pitfall: in single precision the square of 1e-30 is 0 and the square of 1e30 is infinite.
+///
+/// Your pictures normalize the directions of rays with this function as soon as it is written.
 ///
 /// Slide: "Numerical precision".
 pub fn safe_normalize(v: Vec3) -> Option<Vec3> {
