@@ -121,14 +121,14 @@ smooth = false
 one_sided = {one_sided}
 [materials.wall]
 diffuse = [1, 0, 0]
-[materials.ball]
+[materials.sphere]
 diffuse = [0, 1, 0]
 [[nodes]]
 material = "wall"
 shape = {{ mesh = "room" }}
 transform = [{transform}]
 [[nodes]]
-material = "ball"
+material = "sphere"
 shape = {{ sphere = {{ center = [0, 1.2, 0], radius = 0.5 }} }}
 "#
     )))
@@ -141,10 +141,10 @@ fn a_one_sided_wall_is_seen_from_its_front_only() {
     for transform in ["", "{ scale = [-1, 1, 1] }", "{ scale = [1, 1, -1] }, { translate = [0, 0.01, 0] }"] {
         let (one, both) = (room(true, transform), room(false, transform));
         let middle = |film: &Film| film.at(20, 20);
-        // From outside the camera sees the lit ball through the back of a wall, or else that wall, which is dark.
+        // From outside the camera sees the lit sphere through the back of a wall, or else that wall, which is dark.
         assert!(middle(&one).y > 0.1 && middle(&one).x == 0.0, "{transform}: {}", middle(&one));
         assert_eq!(middle(&both), Vec3::ZERO, "{transform}");
-        // Beside the ball it sees the front of the wall at the back.
+        // Beside the sphere it sees the front of the wall at the back.
         assert!(one.at(12, 20).x > 0.1, "{transform}: {}", one.at(12, 20));
     }
 }
