@@ -19,5 +19,6 @@ pub mod stage9_coherence;
 pub mod stage9_grid;
 pub mod stage9_kd_tree;
 pub mod stage9_octree;
+pub mod stage9_polygon_bsp;
 
 raykata::student_kit!();

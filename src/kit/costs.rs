@@ -30,6 +30,7 @@ impl Answer {
             | Answer::OctreeSearch(answers)
             | Answer::KdSearch(answers)
             | Answer::BspSearch(answers)
+            | Answer::PolygonBspSearch(answers)
             | Answer::CachedSearch(answers) => answers.iter_mut().map(Costs::Cells).collect(),
             Answer::PacketSearch(answers) => answers.iter_mut().map(Costs::Packet).collect(),
             Answer::Shade(answers) => answers.iter_mut().map(Costs::Shade).collect(),

@@ -8,7 +8,7 @@ use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::frame::Watch;
 use crate::graph::Placement;
 use crate::mesh::Mesh;
-use crate::partition::{Bsp, Grid, KdTree, Octree};
+use crate::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
 use crate::random::Stratum;
 use crate::ray::Ray;
 use crate::scene::{Sampler, Scene, Split};

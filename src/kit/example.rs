@@ -105,6 +105,7 @@ examples! {
     Octree => Octree::empty();
     KdTree => KdTree::new(Aabb::EMPTY);
     Bsp => Bsp::default();
+    PolygonBsp => PolygonBsp::default();
 
     Vec<PrimitiveRef> => [0, 1].map(|id| PrimitiveRef { id, bounds: example(), centroid: Vec3::splat(0.5) }).into();
     Vec<WeightedColor> => Vec::new();

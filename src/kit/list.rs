@@ -559,6 +559,20 @@ macro_rules! student_functions {
                 BspSearch fn bsp_search[P: Cells](bsp: &Bsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_bsp::closest_hit;
                 |q: CellsQuery<Bsp>| -> CellsAnswer { look(q, |probe| F::bsp_search(&q.cells, probe, &q.ray)) }
+                /// A BSP tree whose nodes hold the polygons on their planes. A polygon that crosses a plane is
+                /// split; other primitives are listed in leaves.
+                PolygonBspBuild fn polygon_bsp_build(hulls: &[Vec<Vec3>], leaf_size: usize, max_depth: usize) -> PolygonBsp
+                    = stage9_polygon_bsp::build;
+                |q: BspQuery| -> PolygonBsp {
+                    limited(q.hulls.len(), || F::polygon_bsp_build(&q.hulls, q.leaf_size, q.max_depth))
+                }
+                /// The closest hit in a BSP tree with polygons in its nodes: nearer side of each plane first,
+                /// then the polygons on the plane, then the other side; `None` if nothing is hit.
+                PolygonBspSearch fn polygon_bsp_search[P: Cells](bsp: &PolygonBsp, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
+                    = stage9_polygon_bsp::closest_hit;
+                |q: CellsQuery<PolygonBsp>| -> CellsAnswer {
+                    look(q, |probe| F::polygon_bsp_search(&q.cells, probe, &q.ray))
+                }
                 /// The closest hit by `search`, after a test of the primitive `last` that the previous ray
                 /// hit; `None` if nothing is hit. The result is the same as that of `search` alone.
                 CachedSearch fn cached_search[P: Cells, S: FnOnce(&mut P, &Ray) -> Option<PrimitiveHit>](

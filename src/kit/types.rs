@@ -8,7 +8,7 @@ pub use crate::effects::{Effects, LightEffects, MaterialEffects};
 pub use crate::graph::{Graph, Placement, Savings};
 pub use crate::material::{Light, Material, Texture, Wrap};
 pub use crate::mesh::Mesh;
-pub use crate::partition::{Bsp, Cell, Cells, Grid, KdHeuristics, KdTree, Octree};
+pub use crate::partition::{Bsp, Cell, Cells, Grid, KdHeuristics, KdTree, Octree, PolygonBsp};
 pub use crate::random::Stratum;
 pub use crate::ray::Ray;
 pub use crate::scene::{Quality, Sampler, Scene, Split};

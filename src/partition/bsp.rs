@@ -34,8 +34,11 @@ impl CutPlane {
         [u, v, -u, -v].map(|way| foot + 2.0 * reach * way).to_vec()
     }
 
-    /// The part of a convex polygon that lies in front of the plane for `side` 1, or behind it for `side` -1.
-    fn keep(&self, polygon: &[DVec3], side: f64) -> Vec<DVec3> {
+    /// The part of a convex polygon that lies in front of the plane for `side` 1, or behind it for `side` -1
+    /// (Sutherland and Hodgman, "Reentrant Polygon Clipping", 1974). `polygon` lists the corners in order, in world
+    /// units. The plane belongs to both sides. The part has fewer than three corners if the polygon lies on the
+    /// other side, or touches the plane from there in a corner or an edge.
+    pub fn keep(&self, polygon: &[DVec3], side: f64) -> Vec<DVec3> {
         let height = |point: DVec3| side * (self.normal.dot(point) - self.offset);
         let next = polygon.iter().cycle().skip(1);
         let edges = polygon.iter().zip(next).flat_map(|(&p, &q)| {
@@ -45,6 +48,21 @@ impl CutPlane {
             [(from >= 0.0).then_some(p), crossing]
         });
         edges.flatten().collect()
+    }
+
+    /// The convex polygon to which the box `bounds` and the planes `above` clip this plane, each of which comes with
+    /// the side that is kept: 1 in front, -1 behind. `None` if nothing is left.
+    pub(super) fn clipped(&self, bounds: &Aabb, above: &[(CutPlane, f64)]) -> Option<Vec<DVec3>> {
+        let faces = (0..3).flat_map(|axis| {
+            let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
+            [(CutPlane::across(axis, low), 1.0), (CutPlane::across(axis, high), -1.0)]
+        });
+        let size = (bounds.max - bounds.min).as_dvec3().length();
+        let square = self.square(0.5 * (bounds.min + bounds.max).as_dvec3(), size);
+        let cut = faces
+            .chain(above.iter().copied())
+            .fold(square, |polygon, (plane, side)| plane.keep(&polygon, side));
+        (cut.len() > 2).then_some(cut)
     }
 
     /// The signed distance of `point` from the plane in world units, computed in double precision: positive
@@ -155,16 +173,7 @@ impl Bsp {
             if let BspNode::Inner { plane, .. } = self.nodes[node as usize]
                 && at < depth
             {
-                let faces = (0..3).flat_map(|axis| {
-                    let (low, high) = (f64::from(bounds.min[axis]), f64::from(bounds.max[axis]));
-                    [(CutPlane::across(axis, low), 1.0), (CutPlane::across(axis, high), -1.0)]
-                });
-                let size = (bounds.max - bounds.min).as_dvec3().length();
-                let square = plane.square(0.5 * (bounds.min + bounds.max).as_dvec3(), size);
-                let cut = faces
-                    .chain(above.iter().copied())
-                    .fold(square, |polygon, (plane, side)| plane.keep(&polygon, side));
-                polygons.extend((cut.len() > 2).then_some(cut));
+                polygons.extend(plane.clipped(bounds, above));
             }
         });
         polygons

@@ -31,6 +31,9 @@ pub enum Accelerator {
     KdTree,
     /// A binary space partition (BSP) tree: space is divided by planes of any direction (stage 9).
     Bsp,
+    /// A BSP tree with the polygons in its nodes: each polygon lies on the planes of the tree, and is split by the
+    /// others (stage 9).
+    PolygonBsp,
     /// A bounding volume hierarchy; the primitive that the previous ray hit is tested first (stage 9).
     CachedBvh,
     /// A bounding volume hierarchy that is searched by camera rays in packets of eight (stage 9).
@@ -53,6 +56,7 @@ impl Accelerator {
         Accelerator::OctreeByCells,
         Accelerator::KdTree,
         Accelerator::Bsp,
+        Accelerator::PolygonBsp,
     ];
 
     /// Whether the structure is a bounding volume hierarchy of stage 3, however it is searched.
@@ -78,6 +82,7 @@ impl Accelerator {
             Accelerator::OctreeByCells => "octree_by_cells",
             Accelerator::KdTree => "kd_tree",
             Accelerator::Bsp => "bsp",
+            Accelerator::PolygonBsp => "polygon_bsp",
         }
     }
 }

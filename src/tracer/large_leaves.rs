@@ -1,7 +1,7 @@
 //! A note for trees whose leaves hold far more primitives than the scene asks for.
 
 use super::structure::Structure;
-use crate::partition::{BspNode, KdNode, OctreeNode};
+use crate::partition::{BspNode, KdNode, OctreeNode, PolygonBspNode};
 
 /// A leaf is large if it has more than this many times `leaf_size` primitives. Smaller leaves are common around
 /// the vertices of ordinary meshes, where up to 64 triangles meet.
@@ -31,6 +31,13 @@ pub fn large_leaves(structure: &Structure, leaf_size: usize) -> Option<String> {
                 BspNode::Inner { .. } => 0,
             });
             ("BSP tree", counts.collect())
+        }
+        Structure::PolygonBsp { tree, .. } => {
+            let counts = tree.nodes.iter().map(|node| match node {
+                PolygonBspNode::Leaf { count, .. } => *count as usize,
+                PolygonBspNode::Inner { .. } => 0,
+            });
+            ("BSP tree of polygons", counts.collect())
         }
         _ => return None,
     };

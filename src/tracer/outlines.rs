@@ -6,7 +6,7 @@ use crate::bvh::{Bvh, Contents};
 use crate::graph::Graph;
 use crate::partition::corners;
 use crate::shape::Sphere;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::f32::consts::TAU;
 
 /// Line segments in world space for the boxes, spheres or cells of `structure` at depth `depth`, and for the
@@ -29,15 +29,18 @@ pub fn outlines(structure: &Structure, depth: usize) -> Vec<[Vec3; 2]> {
         Structure::Grid(grid) => edges(grid.cells(depth)),
         Structure::Octree { tree, .. } => edges(tree.cells(depth)),
         Structure::KdTree(tree) => edges(tree.cells(depth)),
-        Structure::Bsp { tree, around } => {
-            let polygons = tree.polygons(around, depth).into_iter();
-            let around = |polygon: Vec<glam::DVec3>| {
-                let corners: Vec<Vec3> = polygon.iter().map(|corner| corner.as_vec3()).collect();
-                (0..corners.len()).map(move |i| [corners[i], corners[(i + 1) % corners.len()]])
-            };
-            polygons.flat_map(around).collect()
-        }
+        Structure::Bsp { tree, around } => sides_of(tree.polygons(around, depth)),
+        Structure::PolygonBsp { tree, around } => sides_of(tree.polygons(around, depth)),
     }
+}
+
+/// The sides of polygons.
+fn sides_of(polygons: Vec<Vec<DVec3>>) -> Vec<[Vec3; 2]> {
+    let sides = |polygon: Vec<DVec3>| {
+        let corners: Vec<Vec3> = polygon.iter().map(|corner| corner.as_vec3()).collect();
+        (0..corners.len()).map(move |i| [corners[i], corners[(i + 1) % corners.len()]])
+    };
+    polygons.into_iter().flat_map(sides).collect()
 }
 
 fn edges_of(bounds: &Aabb) -> Vec<[Vec3; 2]> {

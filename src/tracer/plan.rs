@@ -377,5 +377,8 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
         }
         Accelerator::KdTree => (9, &[Function::cell_span, Function::kd_build, Function::kd_search]),
         Accelerator::Bsp => (9, &[Function::cell_span, Function::bsp_build, Function::bsp_search]),
+        Accelerator::PolygonBsp => {
+            (9, &[Function::cell_span, Function::polygon_bsp_build, Function::polygon_bsp_search])
+        }
     }
 }

@@ -9,7 +9,7 @@ use crate::count::Event;
 use crate::graph::{Graph, Savings};
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::partition::limit::limited;
-use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, corners};
+use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, PolygonBsp, corners};
 use crate::ray::Ray;
 use crate::scene::{Accelerator, Quality};
 use crate::shape::Sphere;
@@ -52,6 +52,13 @@ pub enum Structure {
         /// The bounding box of all primitives.
         around: Aabb,
     },
+    /// A binary space partition with the polygons in its nodes.
+    PolygonBsp {
+        /// The nodes of the BSP tree.
+        tree: PolygonBsp,
+        /// The bounding box of all primitives.
+        around: Aabb,
+    },
 }
 
 /// The bounding volumes of a scene graph, one per node; empty or `None` for a node without primitives at or
@@ -87,7 +94,7 @@ impl Structure {
     /// if it is `None`, because no search is written.
     ///
     /// A shared mesh has no scene graph, and gets a hierarchy in its place. `hull` returns the corners of a
-    /// flat primitive by index, for a BSP tree; other primitives are represented by the corners of their
+    /// flat primitive by index, for BSP trees; other primitives are represented by the corners of their
     /// boxes. If a structure is coarser than the scene asks for, because primitives overlap, `notes` receives a
     /// sentence that says so.
     pub fn build<F: StudentFunctions>(
@@ -102,6 +109,10 @@ impl Structure {
         let octree = |by_cells| Structure::Octree {
             tree: limited(n, || F::octree_build(bounds, leaf_size, DEEPEST_OCTANT)),
             by_cells,
+        };
+        let hulls = || -> Vec<Vec<Vec3>> {
+            let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
+            bounds.iter().enumerate().map(hull).collect()
         };
         let structure = match (accelerator, graph) {
             (None, _) => Structure::Painter,
@@ -125,14 +136,16 @@ impl Structure {
                 Structure::KdTree(limited(n, || F::kd_build(bounds, &quality.kd_heuristics, leaf_size)))
             }
             (Some(Accelerator::Bsp), _) => {
-                let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
-                let hulls: Vec<Vec<Vec3>> = bounds.iter().enumerate().map(hull).collect();
-                let depth = KdTree::most_depth(n);
-                let tree = limited(n, || F::bsp_build(&hulls, leaf_size, depth));
+                let tree = limited(n, || F::bsp_build(&hulls(), leaf_size, KdTree::most_depth(n)));
                 Structure::Bsp { tree, around: around(bounds) }
             }
             (Some(Accelerator::BvhBothChildren), _) => {
                 Structure::BothChildren(F::build(bounds, quality.split, leaf_size))
+            }
+            (Some(Accelerator::PolygonBsp), _) => {
+                let tree =
+                    limited(n, || F::polygon_bsp_build(&hulls(), leaf_size, 2 * KdTree::most_depth(n)));
+                Structure::PolygonBsp { tree, around: around(bounds) }
             }
             (
                 Some(
@@ -171,6 +184,7 @@ impl Structure {
             Structure::Octree { tree, by_cells: false } => F::octree_search(tree, probe, ray),
             Structure::KdTree(tree) => F::kd_search(tree, probe, ray),
             Structure::Bsp { tree, .. } => F::bsp_search(tree, probe, ray),
+            Structure::PolygonBsp { tree, .. } => F::polygon_bsp_search(tree, probe, ray),
             Structure::List => F::brute_force(probe.n_primitives(), probe, ray),
             Structure::Painter => last_hit(probe, ray),
         }
@@ -230,6 +244,7 @@ impl Structure {
             Structure::Octree { tree: octree, .. } => tree(&octree.nodes, octree.depth(), &octree.items),
             Structure::KdTree(kd_tree) => tree(&kd_tree.nodes, kd_tree.depth(), &kd_tree.items),
             Structure::Bsp { tree: bsp, .. } => tree(&bsp.nodes, bsp.depth(), &bsp.items),
+            Structure::PolygonBsp { tree: bsp, .. } => tree(&bsp.nodes, bsp.depth(), &bsp.items),
         };
         let [nodes, levels, references, bytes] = [nodes, levels, references, bytes].map(|n| n as u64);
         Some(StructureSize { nodes, levels, references, bytes })

@@ -7,13 +7,14 @@ use oracle::splitmix::Random;
 use raykata::aabb::Aabb;
 use raykata::bvh::{Bvh, Contents, DEEPEST_SPLIT, PrimitiveHit, Probe};
 use raykata::partition::{
-    Bsp, BspNode, Cells, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree, OctreeNode,
+    Bsp, BspNode, Cells, KdHeuristics, KdNode, KdTree, MOST_REFERENCES, Octree, OctreeNode, PolygonBsp,
 };
 use raykata::ray::Ray;
 use raykata::scene::Split;
 use raykata::shape::Triangle;
 use solutions::{
-    stage2_triangles, stage3_boxes, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree, stage9_octree,
+    stage2_triangles, stage3_boxes, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree,
+    stage9_octree, stage9_polygon_bsp,
 };
 
 /// Triangles per list. `N=50000 cargo test -p solutions --test suite bounds` takes more.
@@ -199,6 +200,23 @@ fn bsp_trees_over_hard_triangles_are_small() {
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_bsp::closest_hit(&bsp, probe, ray);
         let built = Built {
             what: "a BSP tree",
+            n_nodes: bsp.nodes.len(),
+            n_references: bsp.items.len(),
+            search: &search,
+        };
+        judge(&hard, &Bvh::default(), most_nodes(hulls.len(), 2, depth), &built);
+    }
+}
+
+#[test]
+fn polygon_bsp_trees_over_hard_triangles_are_small() {
+    for hard in hard_lists(n_triangles()) {
+        let hulls: Vec<Vec<Vec3>> = hard.triangles.iter().map(|t| vec![t.a, t.b, t.c]).collect();
+        let depth = 2 * KdTree::most_depth(hulls.len());
+        let bsp: PolygonBsp = stage9_polygon_bsp::build(&hulls, LEAF_SIZE, depth);
+        let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_polygon_bsp::closest_hit(&bsp, probe, ray);
+        let built = Built {
+            what: "a BSP tree of polygons",
             n_nodes: bsp.nodes.len(),
             n_references: bsp.items.len(),
             search: &search,

@@ -62,6 +62,7 @@ fn structures_over_hard_triangles_are_small_and_right() {
             Accelerator::OctreeByCells,
             Accelerator::KdTree,
             Accelerator::Bsp,
+            Accelerator::PolygonBsp,
         ] {
             let found = render_by(&scene, accelerator);
             let references = found.structure.map_or(0, |size| size.references);

@@ -24,6 +24,7 @@ fn no_ray_leaks_in_any_structure() {
         Accelerator::OctreeByCells,
         Accelerator::KdTree,
         Accelerator::Bsp,
+        Accelerator::PolygonBsp,
     ];
     let mut leaks = Vec::new();
     for mesh in families() {

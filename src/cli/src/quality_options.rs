@@ -95,6 +95,7 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 12] = [
     ("octree-by-cells", Accelerator::OctreeByCells),
     ("kd-tree", Accelerator::KdTree),
     ("bsp", Accelerator::Bsp),
+    ("polygon-bsp", Accelerator::PolygonBsp),
 ];
 
 const TRIANGLES: [(&str, TriangleMethod); 7] = [

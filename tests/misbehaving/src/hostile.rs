@@ -225,6 +225,10 @@ impl Hostile {
                 let full = self.learn_cells(queries);
                 self.forge_visits(&Request::BspSearch(full));
             }
+            Request::PolygonBspSearch(queries) => {
+                let full = self.learn_cells(queries);
+                self.forge_visits(&Request::PolygonBspSearch(full));
+            }
             Request::CachedSearch(queries) => {
                 let mut full = queries.clone();
                 for (index, query) in full.iter_mut().enumerate() {
@@ -275,7 +279,8 @@ impl Hostile {
         | Answer::OctreeSearch(answers)
         | Answer::OctreeByCells(answers)
         | Answer::KdSearch(answers)
-        | Answer::BspSearch(answers) = &answer
+        | Answer::BspSearch(answers)
+        | Answer::PolygonBspSearch(answers) = &answer
         {
             for (index, one) in answers.iter().enumerate() {
                 self.ask(index, &one.visits, Call::End);

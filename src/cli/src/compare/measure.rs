@@ -150,9 +150,11 @@ impl Bench<'_> {
             | Accelerator::Grid => &[longer, tiny][..],
             // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the
             // forest).
-            Accelerator::Octree | Accelerator::OctreeByCells | Accelerator::KdTree | Accelerator::Bsp => {
-                &[tiny][..]
-            }
+            Accelerator::Octree
+            | Accelerator::OctreeByCells
+            | Accelerator::KdTree
+            | Accelerator::Bsp
+            | Accelerator::PolygonBsp => &[tiny][..],
         };
         // Render smaller pictures first, and extrapolate their numbers of tests.
         for &slice in tried {

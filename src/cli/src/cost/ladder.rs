@@ -224,7 +224,7 @@ impl Parameter {
                     Accelerator::BruteForce | Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
                         MOST_ASKED
                     }
-                    Accelerator::Bsp => MOST_IN_BSP,
+                    Accelerator::Bsp | Accelerator::PolygonBsp => MOST_IN_BSP,
                     _ => u64::MAX,
                 };
                 let name = |one: Accelerator| one.name().replace('_', " ");

@@ -58,6 +58,7 @@ pub fn withheld(request: &Request) -> Option<Request> {
         Request::OctreeSearch(queries) => Request::OctreeSearch(cells(queries)),
         Request::KdSearch(queries) => Request::KdSearch(cells(queries)),
         Request::BspSearch(queries) => Request::BspSearch(cells(queries)),
+        Request::PolygonBspSearch(queries) => Request::PolygonBspSearch(cells(queries)),
         Request::CachedSearch(queries) => {
             let blank = |query: &CachedQuery| CachedQuery {
                 hits: blank(&query.hits),
@@ -106,6 +107,7 @@ impl<'a> Withheld<'a> {
             Request::OctreeByCells(queries) | Request::OctreeSearch(queries) => cells(queries),
             Request::KdSearch(queries) => cells(queries),
             Request::BspSearch(queries) => cells(queries),
+            Request::PolygonBspSearch(queries) => cells(queries),
             Request::CachedSearch(queries) => {
                 queries.iter().map(|query| Kept::Cached(CellsProbe::new(&query.hits), query)).collect()
             }

@@ -35,6 +35,7 @@ fn structures_are_compared_side_by_side() {
         "octree by cells",
         "kd tree",
         "bsp",
+        "polygon bsp",
     ];
     for row in rows {
         let line = said.lines().find(|line| line.starts_with(&format!("{row}  ")));
@@ -53,6 +54,7 @@ fn structures_are_compared_side_by_side() {
     let drawn = |row: &str| out.path().join(format!("cells-{row}.png")).exists();
     assert!(
         drawn("bsp")
+            && drawn("polygon-bsp")
             && drawn("grid")
             && drawn("kd-tree")
             && drawn("bounding-spheres")

@@ -137,6 +137,7 @@ macro_rules! empty {
 empty! {
     Bvh => Bvh::default();
     Bsp => Bsp::default();
+    PolygonBsp => PolygonBsp::default();
     KdTree => KdTree::new(Aabb::EMPTY);
     Octree => Octree::empty();
     Grid => Grid { bounds: Aabb::EMPTY, resolution: UVec3::ONE, starts: vec![0, 0], items: Vec::new() };

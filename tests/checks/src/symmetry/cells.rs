@@ -3,7 +3,9 @@
 
 use super::Symmetry;
 use glam::{UVec3, uvec3};
-use raykata::partition::{Bsp, BspNode, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode};
+use raykata::partition::{
+    Bsp, BspNode, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode,
+};
 
 /// A structure that is turned, and the number of each of its cells before: `numbers[new] = old`.
 pub(super) trait Cells: Sized {
@@ -84,13 +86,32 @@ impl Cells for KdTree {
     }
 }
 
+/// A plane under a symmetry.
+fn turned_plane(plane: CutPlane, symmetry: &Symmetry) -> CutPlane {
+    let normal = symmetry.wide_direction(plane.normal);
+    CutPlane { normal, offset: f64::from(symmetry.scale) * plane.offset }
+}
+
+impl Cells for PolygonBsp {
+    fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>) {
+        let turn = |node: &PolygonBspNode| match *node {
+            PolygonBspNode::Inner { plane, first, count, back, front } => {
+                PolygonBspNode::Inner { plane: turned_plane(plane, symmetry), first, count, back, front }
+            }
+            node => node,
+        };
+        let nodes: Vec<PolygonBspNode> = self.nodes.iter().map(turn).collect();
+        let numbers = same(nodes.len());
+        let room = f64::from(symmetry.scale) * self.room;
+        (PolygonBsp { nodes, items: self.items.clone(), room }, numbers)
+    }
+}
+
 impl Cells for Bsp {
     fn turned(&self, symmetry: &Symmetry) -> (Self, Vec<u32>) {
         let turn = |node: &BspNode| match *node {
-            BspNode::Inner { plane: CutPlane { normal, offset }, back, front } => {
-                let normal = symmetry.wide_direction(normal);
-                let plane = CutPlane { normal, offset: f64::from(symmetry.scale) * offset };
-                BspNode::Inner { plane, back, front }
+            BspNode::Inner { plane, back, front } => {
+                BspNode::Inner { plane: turned_plane(plane, symmetry), back, front }
             }
             node => node,
         };

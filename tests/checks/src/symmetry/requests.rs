@@ -7,7 +7,7 @@ use raykata::bvh::{Bvh, PrimitiveHit, PrimitiveRef};
 use raykata::frame::Watch;
 use raykata::kit::*;
 use raykata::mesh::Mesh;
-use raykata::partition::{Bsp, KdTree, Octree};
+use raykata::partition::{Bsp, KdTree, Octree, PolygonBsp};
 use raykata::shape::{Cone, Cylinder, Plane, PlaneEquation, Sphere, Triangle};
 
 /// A kit that gets turned requests, and whose answers are turned back. Requests that are not listed in its `call`
@@ -55,9 +55,9 @@ impl Transport for TurnedKit<'_> {
             Shade
             Reflect Scatter
             Cylinder Cone
-            GridResolution OctreeBuild KdBuild BspBuild CachedSearch PacketSearch
+            GridResolution OctreeBuild KdBuild BspBuild PolygonBspBuild CachedSearch PacketSearch
             SafeNormalize;
-            GridSearch OctreeByCells OctreeSearch KdSearch BspSearch
+            GridSearch OctreeByCells OctreeSearch KdSearch BspSearch PolygonBspSearch
         }
     }
 }
@@ -239,6 +239,7 @@ turn! {
         BspQuery { hulls: query.hulls.iter().map(turn).collect(), ..query.clone() }
     };
     |bsp: Bsp, symmetry| bsp.turned(symmetry).0;
+    |bsp: PolygonBsp, symmetry| bsp.turned(symmetry).0;
     |answer: CellsAnswer, symmetry| CellsAnswer { hit: answer.hit.turn(symmetry), ..answer.clone() };
     |query: CachedQuery, symmetry| CachedQuery {
         ray: query.ray.turn(symmetry),

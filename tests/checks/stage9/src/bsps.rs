@@ -160,7 +160,7 @@ pub(super) fn bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
 }
 
 /// Thin triangles in all directions through a sphere: each plane has some of them on both sides.
-fn crossing_needles(n: usize) -> Vec<Vec<Vec3>> {
+pub(super) fn crossing_needles(n: usize) -> Vec<Vec<Vec3>> {
     // Points that are spread evenly over the unit sphere (Fibonacci lattice).
     let point = |i: usize| {
         let z = 1.0 - (2 * i + 1) as f32 / n as f32;

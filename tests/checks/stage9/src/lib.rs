@@ -1,7 +1,7 @@
 //! The checks of stage 9: partitions of space.
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
-//! `bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
+//! `bsp_searches` · `polygon_bsps` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
 //! `searches` (calls a search and judges its answer),
 //! `search_mistakes`, `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
 //! lists of cells).
@@ -17,6 +17,7 @@ mod octant_mistakes;
 mod octrees;
 mod parts;
 mod plane_mistakes;
+mod polygon_bsps;
 mod resolutions;
 mod scenes;
 mod search_mistakes;
@@ -52,6 +53,11 @@ use octrees::{
     octree_divides_where_there_is_much, octree_hit_beyond_its_octant_waits,
     octree_lists_what_reaches_into_leaves, octree_search_agrees_with_brute_force,
     octree_sorts_octants_that_are_entered_at_one_t, octree_visits_what_the_ray_enters_before_its_hit,
+};
+use polygon_bsps::{
+    polygon_bsp_build_ends, polygon_bsp_puts_polygons_on_planes, polygon_bsp_search_agrees_with_brute_force,
+    polygon_bsp_splits_few_polygons, polygon_bsp_takes_rays_on_and_along_planes,
+    polygon_bsp_visits_what_the_ray_enters_before_its_hit,
 };
 use resolutions::{
     grid_resolution_makes_cubes, grid_resolution_of_flat_and_empty_boxes,
@@ -97,6 +103,12 @@ checks::stage! { ($ crate) 9 [
     bsp_planes_behind_and_beyond_do_not_end_the_search: turned
     bsp_takes_rays_on_and_along_planes: turned
     bsp_search_visits_what_the_ray_enters_before_its_hit: turned
+    polygon_bsp_puts_polygons_on_planes
+    polygon_bsp_build_ends: turned
+    polygon_bsp_splits_few_polygons: turned
+    polygon_bsp_search_agrees_with_brute_force
+    polygon_bsp_takes_rays_on_and_along_planes: turned
+    polygon_bsp_visits_what_the_ray_enters_before_its_hit: turned
     cached_hit_changes_no_answer
     cached_hit_saves_tests: turned
     packet_finds_what_single_rays_find

@@ -5,7 +5,9 @@ use super::{octant_mistakes, plane_mistakes};
 use checks::double::box_interval;
 use glam::uvec3;
 use raykata::aabb::Aabb;
-use raykata::partition::{Bsp, BspNode, Cell, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode};
+use raykata::partition::{
+    Bsp, BspNode, Cell, CutPlane, Grid, KdNode, KdTree, Octree, OctreeNode, PolygonBsp, PolygonBspNode,
+};
 use raykata::ray::Ray;
 
 /// The interval of a ray in a cell that is widened a little, so that cells that the ray only touches are included.
@@ -157,6 +159,46 @@ impl Structure for Bsp {
     }
 }
 
+impl Structure for PolygonBsp {
+    /// The leaves, and the planes that the ray reaches with the polygons on them.
+    fn leaves(&self, ray: &Ray) -> Vec<Leaf> {
+        let mut leaves = Vec::new();
+        // A side contains the points within the room of its plane.
+        let on_wide_side = |part: (f64, f64), (plane, side): &(CutPlane, f64)| {
+            let wide = CutPlane { offset: plane.offset - side * self.room, ..*plane };
+            on_side(ray, &wide, *side, part, 0.0)
+        };
+        self.walk(|node, above, _| {
+            let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+            let part = above.iter().fold(range, on_wide_side);
+            let ((enter, exit), end, first, count) = match self.nodes[node as usize] {
+                PolygonBspNode::Leaf { first, count } => (part, part.1, first, count),
+                PolygonBspNode::Inner { plane, first, count, .. } => {
+                    let both = [(plane, -1.0), (plane, 1.0)].iter().fold(part, on_wide_side);
+                    // No hit of a polygon lies behind its plane.
+                    (both, f64::INFINITY, first, count)
+                }
+            };
+            if enter <= exit {
+                leaves.push(Leaf { enter, exit: end, ids: self.primitives(first, count).to_vec() });
+            }
+        });
+        in_order(leaves)
+    }
+
+    fn listed(&self, node: u32) -> &[u32] {
+        match self.nodes[node as usize] {
+            PolygonBspNode::Leaf { first, count } | PolygonBspNode::Inner { first, count, .. } => {
+                self.primitives(first, count)
+            }
+        }
+    }
+
+    fn mistakes(&self, ray: &Ray, hits: &[f32], found: Option<(u32, f32)>) -> Vec<(bool, &'static str)> {
+        plane_mistakes::of_polygon_bsp(self, ray, hits, found)
+    }
+}
+
 fn numbered(grid: &Grid) -> impl Iterator<Item = (u32, Cell)> {
     let n = grid.resolution;
     (0..n.element_product()).map(move |i| (i, grid.cell(uvec3(i % n.x, i / n.x % n.y, i / (n.x * n.y)))))
@@ -203,15 +245,45 @@ pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray) -> Parts {
 pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray) -> Parts {
     let mut parts = Vec::new();
     bsp.walk(|node, above, _| {
-        let mut part = (f64::from(ray.t_min), f64::from(ray.t_max));
-        for (plane, side) in above {
-            part = on_side(ray, plane, *side, part, (-16f64).exp2());
-        }
-        if part.0 <= part.1 {
-            parts.push((node, part.0, part.1));
+        let (enter, exit) = part_in(ray, above);
+        if enter <= exit {
+            parts.push((node, enter, exit));
         }
     });
     parts
+}
+
+pub(super) fn of_polygon_bsp(bsp: &PolygonBsp, ray: &Ray) -> Parts {
+    let mut parts = Vec::new();
+    bsp.walk(|node, above, _| {
+        let (enter, exit) = part_in(ray, above);
+        if enter <= exit {
+            parts.push((node, enter, exit));
+        }
+    });
+    parts
+}
+
+/// The inner nodes whose planes the ray reaches, within some room, in the part of it that is in the node.
+pub(super) fn reached_planes(bsp: &PolygonBsp, ray: &Ray) -> Vec<u32> {
+    let mut reached = Vec::new();
+    bsp.walk(|node, above, _| {
+        if let PolygonBspNode::Inner { plane, .. } = bsp.nodes[node as usize] {
+            let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect::<Vec<_>>();
+            let ((enter, exit), (other_enter, other_exit)) =
+                (part_in(ray, &with(1.0)), part_in(ray, &with(-1.0)));
+            if enter <= exit && other_enter <= other_exit {
+                reached.push(node);
+            }
+        }
+    });
+    reached
+}
+
+/// The part of a ray on these sides of planes, with some room.
+fn part_in(ray: &Ray, above: &[(CutPlane, f64)]) -> (f64, f64) {
+    let range = (f64::from(ray.t_min), f64::from(ray.t_max));
+    above.iter().fold(range, |part, (plane, side)| on_side(ray, plane, *side, part, (-16f64).exp2()))
 }
 
 /// The part of an interval on one side of a plane, with `relative` room for rounding.

@@ -2,7 +2,7 @@
 //! student's answer.
 
 use super::search_mistakes::{Hit, ROOM, Wrong};
-use raykata::partition::{Bsp, BspNode, KdNode, KdTree};
+use raykata::partition::{Bsp, BspNode, KdNode, KdTree, PolygonBsp, PolygonBspNode};
 use raykata::ray::Ray;
 
 /// How a search of a binary tree treats a plane.
@@ -30,6 +30,8 @@ enum AtPlane {
     NearOnly,
     /// The lower side is searched only if the ray goes down, and the upper one only if it goes up.
     ByDirection,
+    /// The polygons on the planes are not tested.
+    PolygonsLeftOut,
 }
 
 const AT_PLANES: [(AtPlane, &str); 14] = [
@@ -88,12 +90,15 @@ const AT_PLANES: [(AtPlane, &str); 14] = [
 /// A node of a binary tree, as one ray sees it.
 enum Plane<'a> {
     Leaf(&'a [u32]),
-    /// The height of the ray's origin above the plane, its change per unit of `t`, and the children below and above.
+    /// The height of the ray's origin above the plane, its change per unit of `t`, the children below and above, the
+    /// polygons in the plane, and the height at which a point still counts as in the plane.
     Cut {
         height: f64,
         rate: f64,
         below: u32,
         above: u32,
+        on: &'a [u32],
+        room: f64,
     },
 }
 
@@ -110,16 +115,16 @@ impl Binary<'_> {
         if best.is_some_and(|(_, best)| f64::from(best) * (1.0 + ROOM) < t) {
             return;
         }
-        let (height, rate, below, above) = match (self.plane)(node) {
+        let (height, rate, below, above, on, room) = match (self.plane)(node) {
             Plane::Leaf(ids) => {
                 let kept = Wrong::NoRoom;
                 return kept.keep(best, kept.of_cell(ids, self.hits, self.ray));
             }
-            Plane::Cut { height, rate, below, above } => (height, rate, below, above),
+            Plane::Cut { height, rate, below, above, on, room } => (height, rate, below, above, on, room),
         };
         let crossing = -height / rate;
         let is_crossed = rate != 0.0 && t <= crossing && crossing <= t_end;
-        let in_plane = height == 0.0 && rate == 0.0;
+        let in_plane = height.abs() <= room && rate == 0.0;
         let starts = height == 0.0 && rate != 0.0;
         let (ahead, behind) = if rate > 0.0 { (above, below) } else { (below, above) };
         // The side of the ray at the middle of its part.
@@ -144,6 +149,15 @@ impl Binary<'_> {
             _ if is_crossed => vec![(behind, (t, crossing)), (ahead, (crossing, t_end))],
             _ => vec![(here, whole)],
         };
+        let tests_polygons = (is_crossed || in_plane) && self.wrong != PolygonsLeftOut;
+        let mut sides = sides.into_iter();
+        if let Some((child, part)) = sides.next() {
+            self.search(child, part, best);
+        }
+        if tests_polygons {
+            let kept = Wrong::NoRoom;
+            kept.keep(best, kept.of_cell(on, self.hits, self.ray));
+        }
         for (child, part) in sides {
             self.search(child, part, best);
         }
@@ -162,7 +176,11 @@ fn at_planes<'a>(
         Binary { plane, ray, hits, wrong }.search(0, range, &mut best);
         best == found
     };
-    AT_PLANES.map(|(wrong, text)| (gives(wrong), text)).into()
+    let left_out = (
+        gives(AtPlane::PolygonsLeftOut),
+        "step 2 of the slide is missing: you do not test the polygons on the plane",
+    );
+    AT_PLANES.map(|(wrong, text)| (gives(wrong), text)).into_iter().chain([left_out]).collect()
 }
 
 /// The known mistakes at the planes of a kd-tree, each with whether it finds this hit.
@@ -174,7 +192,14 @@ pub(super) fn of_kd_tree(tree: &KdTree, ray: &Ray, hits: &[f32], found: Hit) -> 
         Some(KdNode::Inner { axis, at, left, right }) => {
             let axis = usize::from(axis);
             let height = f64::from(ray.origin[axis]) - f64::from(at);
-            Plane::Cut { height, rate: f64::from(ray.direction[axis]), below: left, above: right }
+            Plane::Cut {
+                height,
+                rate: f64::from(ray.direction[axis]),
+                below: left,
+                above: right,
+                on: &[],
+                room: 0.0,
+            }
         }
     };
     at_planes(&plane, ray, hits, found)
@@ -188,7 +213,33 @@ pub(super) fn of_bsp(bsp: &Bsp, ray: &Ray, hits: &[f32], found: Hit) -> Vec<(boo
         Some(BspNode::Leaf { first, count }) => Plane::Leaf(bsp.primitives(first, count)),
         Some(BspNode::Inner { plane, back, front }) => {
             let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            Plane::Cut { height, rate, below: back, above: front }
+            Plane::Cut { height, rate, below: back, above: front, on: &[], room: 0.0 }
+        }
+    };
+    at_planes(&plane, ray, hits, found)
+}
+
+/// The known mistakes at the planes of a BSP tree with polygons in its nodes, each with whether it finds this hit.
+pub(super) fn of_polygon_bsp(
+    bsp: &PolygonBsp,
+    ray: &Ray,
+    hits: &[f32],
+    found: Hit,
+) -> Vec<(bool, &'static str)> {
+    let plane = |node: u32| match bsp.nodes.get(node as usize).copied() {
+        // A tree without nodes lists nothing.
+        None => Plane::Leaf(&[]),
+        Some(PolygonBspNode::Leaf { first, count }) => Plane::Leaf(bsp.primitives(first, count)),
+        Some(PolygonBspNode::Inner { plane, first, count, back, front }) => {
+            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
+            Plane::Cut {
+                height,
+                rate,
+                below: back,
+                above: front,
+                on: bsp.primitives(first, count),
+                room: bsp.room,
+            }
         }
     };
     at_planes(&plane, ray, hits, found)

@@ -1,4 +1,4 @@
-//! The laws that the five searches of cells share.
+//! The laws that the six searches of cells share.
 
 use super::parts::Structure;
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
@@ -14,7 +14,7 @@ use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// One of the student's five searches.
+/// One of the student's six searches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Searcher {
     Grid,
@@ -22,6 +22,7 @@ pub(super) enum Searcher {
     Octree,
     KdTree,
     Bsp,
+    PolygonBsp,
 }
 
 impl Searcher {
@@ -33,6 +34,7 @@ impl Searcher {
             Searcher::Octree => "octree",
             Searcher::KdTree => "kd-tree",
             Searcher::Bsp => "BSP tree",
+            Searcher::PolygonBsp => "BSP tree with polygons in its nodes",
         }
     }
 
@@ -41,7 +43,7 @@ impl Searcher {
         match self {
             Searcher::Grid | Searcher::OctreeByCells | Searcher::Octree => 3,
             Searcher::KdTree => 7,
-            Searcher::Bsp => 6,
+            Searcher::Bsp | Searcher::PolygonBsp => 6,
         }
     }
 
@@ -68,6 +70,10 @@ impl Searcher {
             }
             Searcher::Bsp => Asked::over(self, cases, |scene, depth| structures::bsp(&scene.hulls(), depth))
                 .judge_each(|queries| kit.bsp_search(queries)),
+            Searcher::PolygonBsp => {
+                Asked::over(self, cases, |scene, depth| structures::polygon_bsp(&scene.hulls(), depth))
+                    .judge_each(|queries| kit.polygon_bsp_search(queries))
+            }
         }
     }
 }

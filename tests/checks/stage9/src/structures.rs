@@ -8,7 +8,7 @@ use super::scenes::{Scene, closest};
 use checks::tree::around;
 use glam::{DVec3, UVec3, Vec3};
 use raykata::aabb::Aabb;
-use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree};
+use raykata::partition::{Bsp, Cell, CutPlane, Grid, KdTree, Octree, PolygonBsp};
 use raykata::ray::Ray;
 
 /// Numbered boxes with room for rounding. Empty boxes and boxes with NaN are left out.
@@ -175,4 +175,48 @@ pub(super) fn on_sides(hulls: &[Vec<Vec3>], ids: &[u32], plane: &CutPlane) -> [V
         })
     };
     [-1.0, 1.0].map(|side| ids.iter().copied().filter(|&id| reaches(id, side)).collect())
+}
+
+/// A BSP tree with triangles in its nodes, each plane that of a triangle or through a corner of another primitive. It does
+/// not split triangles: one that crosses a plane is passed on whole. Every seventh node is a leaf.
+pub(super) fn polygon_bsp(hulls: &[Vec<Vec3>], max_depth: usize) -> PolygonBsp {
+    let usable = |hull: &[Vec3]| hull.iter().all(|corner| corner.is_finite());
+    let ids: Vec<u32> = (0..hulls.len() as u32).filter(|&id| usable(&hulls[id as usize])).collect();
+    let largest = ids.iter().flat_map(|&id| &hulls[id as usize]).map(|corner| corner.abs().max_element());
+    let room = f64::from(largest.fold(0.0, f32::max)) * (-20f64).exp2();
+    let mut bsp = PolygonBsp { room, ..PolygonBsp::default() };
+    if !ids.is_empty() {
+        add_polygon_node(&mut bsp, hulls, &ids, 0, max_depth);
+    }
+    bsp
+}
+
+fn add_polygon_node(
+    bsp: &mut PolygonBsp,
+    hulls: &[Vec<Vec3>],
+    ids: &[u32],
+    depth: usize,
+    max_depth: usize,
+) -> u32 {
+    let node = bsp.add_node(depth, max_depth);
+    if depth >= max_depth || ids.is_empty() || node % 7 == 6 {
+        bsp.set_leaf(node, &ids.iter().rev().copied().collect::<Vec<u32>>());
+        return node;
+    }
+    let hull: Vec<DVec3> =
+        hulls[ids[ids.len() / 2] as usize].iter().map(|corner| corner.as_dvec3()).collect();
+    let normals = [DVec3::X, DVec3::new(0.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 0.0), DVec3::NEG_Z, DVec3::ONE];
+    let of_triangle = (hull.len() == 3).then(|| (hull[1] - hull[0]).cross(hull[2] - hull[0]).try_normalize());
+    let normal = of_triangle.flatten().unwrap_or(normals[depth % normals.len()].normalize());
+    let plane = CutPlane { normal, offset: normal.dot(hull[0]) };
+    let is_on = |id: &u32| {
+        let hull = &hulls[*id as usize];
+        hull.len() == 3 && hull.iter().all(|corner| plane.distance(*corner).abs() <= bsp.room)
+    };
+    let (on_plane, others): (Vec<u32>, Vec<u32>) = ids.iter().partition(|id| is_on(id));
+    let on_plane: Vec<u32> = on_plane.into_iter().rev().collect();
+    let [back, front] = on_sides(hulls, &others, &plane)
+        .map(|side| add_polygon_node(bsp, hulls, &side, depth + 1, max_depth));
+    bsp.set_children(node, plane, &on_plane, back, front);
+    node
 }

@@ -144,6 +144,7 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
         structures.push((format!("kd-tree, {name}"), quality));
     }
     structures.push(("BSP tree".into(), with(Accelerator::Bsp, 2)));
+    structures.push(("BSP tree of polygons".into(), with(Accelerator::PolygonBsp, 2)));
     structures.push(("hierarchy, last hit first".into(), with(Accelerator::CachedBvh, 2)));
     structures.push(("hierarchy, packets".into(), with(Accelerator::PacketBvh, 2)));
     structures

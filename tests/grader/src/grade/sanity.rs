@@ -4,7 +4,7 @@
 use raykata::bvh::Contents;
 use raykata::count::Counts;
 use raykata::kit::{Answer, SearchAnswer};
-use raykata::partition::{BspNode, Grid, KdNode, OctreeNode};
+use raykata::partition::{BspNode, Grid, KdNode, OctreeNode, PolygonBspNode};
 
 /// Deepest allowed tree, in levels. The checks recurse over trees and print them with one indent per level. The deepest
 /// tree that a check needs has 24 levels. A builder that splits off one primitive per level makes up to 512.
@@ -49,6 +49,23 @@ pub fn fault(answer: &Answer) -> Option<String> {
                 BspNode::Leaf { first, count } => Node::Leaf(first, count),
             };
             fault_of_tree(tree.nodes.len(), tree.items.len(), node)
+        }),
+        Answer::PolygonBspBuild(trees) => trees.iter().find_map(|tree| {
+            let fault = |node: &PolygonBspNode| match *node {
+                // The polygons of an inner node are in `items` like the primitives of a leaf.
+                PolygonBspNode::Inner { first, count, .. } => (first as usize + count as usize
+                    > tree.items.len())
+                .then(|| {
+                    format!("a node of {count} polygons from item {first} on, of {} items", tree.items.len())
+                }),
+                PolygonBspNode::Leaf { .. } => None,
+            };
+            let node = |index: usize| match tree.nodes[index] {
+                PolygonBspNode::Inner { back, front, .. } => Node::Inner(vec![back, front]),
+                PolygonBspNode::Leaf { first, count } => Node::Leaf(first, count),
+            };
+            let of_tree = || fault_of_tree(tree.nodes.len(), tree.items.len(), node);
+            tree.nodes.iter().find_map(fault).or_else(of_tree)
         }),
         Answer::GridBuild(grids) => grids.iter().find_map(fault_of_grid),
         Answer::ClosestHit(searches) | Answer::ClosestHitBoth(searches) => {
