@@ -149,7 +149,11 @@ impl Binary<'_> {
             _ if is_crossed => vec![(behind, (t, crossing)), (ahead, (crossing, t_end))],
             _ => vec![(here, whole)],
         };
-        let tests_polygons = (is_crossed || in_plane) && self.wrong != PolygonsLeftOut;
+        let tests_polygons = match self.wrong {
+            PolygonsLeftOut => false,
+            NotCrossedNone => is_crossed,
+            _ => is_crossed || in_plane,
+        };
         let mut sides = sides.into_iter();
         if let Some((child, part)) = sides.next() {
             self.search(child, part, best);
