@@ -43,7 +43,7 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 12] = [
+    pub const ALL: [Accelerator; 13] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,

@@ -82,7 +82,7 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 12] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 13] = [
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
     ("bounding-spheres", Accelerator::BoundingSpheres),
