@@ -38,7 +38,10 @@ fn every_accelerator_makes_the_same_picture() {
             let frame = by(&scene, accelerator);
             assert_eq!(frame.film, expected.film, "{name}, {accelerator:?}");
             assert_eq!(rays(&frame.counts), rays(&expected.counts), "{name}, {accelerator:?}");
-            assert!(frame.notes.is_empty(), "{name}, {accelerator:?}: {:?}", frame.notes);
+            // Instances and round shapes are no polygons, so this tree may list them all in large leaves.
+            let is_coarse = |note: &String| note.contains("primitives per leaf");
+            let expected = accelerator == Accelerator::PolygonBsp && frame.notes.iter().all(is_coarse);
+            assert!(expected || frame.notes.is_empty(), "{name}, {accelerator:?}: {:?}", frame.notes);
         }
     }
 }

@@ -28,7 +28,7 @@ const COMMANDS: [(&str, &[&str]); 17] = [
     ("export classroom", &["--out", "--stages", "--seed"]),
     ("gauntlet", &["--kit", "--inputs", "--seed", "--rays", "--state", "20000", "out/gauntlet.json"]),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
-    ("attacks", &["[NAME]...", "--table"]),
+    ("attacks", &["[NAME]...", "--against-cargo"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "--against-cargo", "200"]),
     ("cases", &[]),
     ("sync", &["--check", "--force"]),
