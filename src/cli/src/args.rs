@@ -252,7 +252,7 @@ pub fn entry(head: &str, words: &str) -> String {
     }
 }
 
-/// `words` wrapped to lines that end before column [`WIDTH`]; all lines but the first begin at `column`.
+/// `words` wrapped to lines that end before column 80; all lines but the first begin at `column`.
 pub fn wrapped(words: &str, column: usize) -> String {
     let mut text = String::new();
     let mut at = column;
