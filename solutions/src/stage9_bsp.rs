@@ -5,7 +5,10 @@
 //! Given: [`Bsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance` and `across`;
 //! [`Growth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+// <solution>
+use crate::stage9_cells::{look_into, near_and_far, range, settled};
+// <stub> use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+// </solution>
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Bsp, BspNode, Cells, CutPlane, Growth};
@@ -192,16 +195,8 @@ fn search(
     match bsp.nodes[node as usize] {
         BspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
         BspNode::Inner { plane, back, front } => {
-            // Compute the height of the origin above the plane, and its change per unit of t.
-            let origin = ray.origin.as_dvec3();
-            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            // Bound the rounding error of the height, which is a difference of numbers of this size.
-            let digits = plane.normal.abs().dot(origin.abs()) + plane.offset.abs();
-            let room = ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;
             // Find the part of the ray on each side, and search the nearer side first.
-            let before = part_above(height, rate, room, part).map(|part| (front, part));
-            let behind = part_above(-height, -rate, room, part).map(|part| (back, part));
-            let in_order = if rate > 0.0 { [behind, before] } else { [before, behind] };
+            let in_order = near_and_far(&plane, [back, front], 0.0, ray, part);
             for (child, part) in in_order.into_iter().flatten() {
                 search(bsp, child, part, probe, ray, best);
             }

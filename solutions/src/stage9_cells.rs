@@ -17,6 +17,7 @@ use raykata::rounding::UNIT_ROUNDOFF;
 // <solution>
 use crate::stage3_traversal::keep_closest;
 use glam::DVec3;
+use raykata::partition::CutPlane;
 // </solution>
 
 /// The relative room for rounding when the `t` of a hit is compared with the `t` of a cell.
@@ -170,6 +171,30 @@ pub fn settled(best: &Option<PrimitiveHit>, entry: f64) -> bool {
 }
 
 // <solution>
+/// A child of a node, with the part of the ray in it.
+pub type Child = (u32, (f64, f64));
+
+/// Finds the parts of a ray on the two sides of a plane, behind which is the node `back` and in front of which is
+/// `front`. The first result is the side from which the ray comes; `None` if no `t` of `part` is on a side. Both sides
+/// extend beyond the plane by `room`, in world units.
+pub fn near_and_far(
+    plane: &CutPlane,
+    [back, front]: [u32; 2],
+    room: f64,
+    ray: &Ray,
+    part: (f64, f64),
+) -> [Option<Child>; 2] {
+    // Compute the height of the origin above the plane, and its change per unit of t.
+    let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
+    // Bound the rounding error of the height, which is a difference of numbers of this size.
+    let digits = plane.normal.abs().dot(ray.origin.as_dvec3().abs()) + plane.offset.abs();
+    let room = room + ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;
+    // Find the part of the ray on each side.
+    let before = part_above(height, rate, room, part).map(|part| (front, part));
+    let behind = part_above(-height, -rate, room, part).map(|part| (back, part));
+    if rate > 0.0 { [behind, before] } else { [before, behind] }
+}
+
 /// The face through which a ray leaves a cell.
 pub struct Exit {
     /// The axis that the face is across.

@@ -6,7 +6,10 @@
 //! Given: [`PolygonBsp`] with `add_node`, `set_leaf` and `set_children`; [`CutPlane`] with `distance`, `across` and
 //! `keep`, which clips a polygon; [`Growth`].
 
-use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+// <solution>
+use crate::stage9_cells::{look_into, near_and_far, range, settled};
+// <stub> use crate::stage9_cells::{ROUNDING, look_into, part_above, range, settled};
+// </solution>
 use glam::{DVec3, Vec3};
 use raykata::bvh::PrimitiveHit;
 use raykata::partition::{Cells, CutPlane, Growth, PolygonBsp, PolygonBspNode};
@@ -259,17 +262,8 @@ fn search(
     match bsp.nodes[node as usize] {
         PolygonBspNode::Leaf { first, count } => look_into(bsp.primitives(first, count), probe, ray, best),
         PolygonBspNode::Inner { plane, first, count, back, front } => {
-            // Compute the height of the origin above the plane, and its change per unit of t.
-            let origin = ray.origin.as_dvec3();
-            let (height, rate) = (plane.distance(ray.origin), plane.normal.dot(ray.direction.as_dvec3()));
-            // Bound the rounding error of the height, which is a difference of numbers of this size, and add the room
-            // of the tree.
-            let digits = plane.normal.abs().dot(origin.abs()) + plane.offset.abs();
-            let room = bsp.room + ROUNDING * height.abs() + 4.0 * f64::EPSILON * digits;
             // Find the part of the ray on each side.
-            let before = part_above(height, rate, room, part).map(|part| (front, part));
-            let behind = part_above(-height, -rate, room, part).map(|part| (back, part));
-            let (near, far) = if rate > 0.0 { (behind, before) } else { (before, behind) };
+            let [near, far] = near_and_far(&plane, [back, front], bsp.room, ray, part);
             // 1. Search the near side.
             if let Some((child, part)) = near {
                 search(bsp, child, part, probe, ray, best);

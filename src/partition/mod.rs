@@ -1,7 +1,8 @@
 //! Partitions of space as data: cells, each with the numbers of the primitives that overlap it. Building and
 //! searching them are exercises of stage 9.
 //!
-//! `grid` · `octree` · `kd_tree` · `bsp` · `polygon_bsp` (with polygons in its nodes) · `growth` (the bound on references) · `limit` (enforces it)
+//! `grid` · `octree` · `kd_tree` · `bsp` · `polygon_bsp` (with polygons in its nodes) · `planes` (of both BSP trees) ·
+//! `growth` (the bound on references) · `limit` (enforces it)
 
 pub mod bsp;
 pub mod grid;
@@ -9,13 +10,15 @@ pub mod growth;
 pub mod kd_tree;
 pub(crate) mod limit;
 pub mod octree;
+pub mod planes;
 pub mod polygon_bsp;
 
-pub use bsp::{Bsp, BspNode, CutPlane};
+pub use bsp::{Bsp, BspNode};
 pub use grid::{Grid, MOST_CELLS_ALONG};
 pub use growth::{Growth, MOST_REFERENCES};
 pub use kd_tree::{KdHeuristics, KdNode, KdTree};
 pub use octree::{Octree, OctreeNode};
+pub use planes::CutPlane;
 pub use polygon_bsp::{PolygonBsp, PolygonBspNode};
 
 use crate::aabb::Aabb;

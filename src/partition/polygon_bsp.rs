@@ -1,6 +1,7 @@
 //! The BSP tree of the lecture slide as data: its nodes hold the polygons that lie on their planes.
 
-use super::{CutPlane, check_depth, limit, walk};
+use super::planes::{CutPlane, polygons, walk_planes};
+use super::{check_depth, limit};
 use crate::aabb::Aabb;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -119,15 +120,7 @@ impl PolygonBsp {
     ///
     /// If a child's index is out of range.
     pub fn polygons(&self, bounds: &Aabb, depth: usize) -> Vec<Vec<DVec3>> {
-        let mut polygons = Vec::new();
-        self.walk(|node, above, at| {
-            if let PolygonBspNode::Inner { plane, .. } = self.nodes[node as usize]
-                && at < depth
-            {
-                polygons.extend(plane.clipped(bounds, above));
-            }
-        });
-        polygons
+        polygons(self.nodes.len(), |node| self.inner(node), bounds, depth)
     }
 
     /// Calls `each` for all nodes in depth-first order, with the index of the node, the planes above it and
@@ -137,15 +130,14 @@ impl PolygonBsp {
     /// # Panics
     ///
     /// If a child's index is out of range.
-    pub fn walk(&self, mut each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
-        let root = (!self.nodes.is_empty()).then(Vec::new);
-        let below = |node: u32, above: &Vec<(CutPlane, f64)>| match self.nodes[node as usize] {
-            PolygonBspNode::Inner { plane, back, front, .. } => {
-                let with = |side: f64| above.iter().copied().chain([(plane, side)]).collect();
-                vec![(back, with(-1.0)), (front, with(1.0))]
-            }
-            PolygonBspNode::Leaf { .. } => Vec::new(),
-        };
-        walk(root, usize::MAX, below, |node, above, depth| each(node, above, depth))
+    pub fn walk(&self, each: impl FnMut(u32, &[(CutPlane, f64)], usize)) -> usize {
+        walk_planes(self.nodes.len(), |node| self.inner(node), each)
+    }
+    /// The plane of an inner node and its children behind and in front of the plane; `None` for a leaf.
+    fn inner(&self, node: u32) -> Option<(CutPlane, [u32; 2])> {
+        match self.nodes[node as usize] {
+            PolygonBspNode::Inner { plane, back, front, .. } => Some((plane, [back, front])),
+            PolygonBspNode::Leaf { .. } => None,
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The laws of the builder of BSP trees: which primitives each leaf lists.
 
+use super::hulls::{self, usable};
 use super::lists::{Fault, ended, fact, judge_references};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
@@ -11,11 +12,6 @@ use proptest::prelude::*;
 use raykata::aabb::Aabb;
 use raykata::kit::BspQuery;
 use raykata::partition::{Bsp, BspNode, CutPlane, MOST_REFERENCES, corners};
-
-fn describe(query: &BspQuery) -> String {
-    let hulls: Vec<String> = query.hulls.iter().map(checks::paste::list).collect();
-    format!("build(&[{}], {}, {})", hulls.join(", "), query.leaf_size, query.max_depth)
-}
 
 /// A leaf: its number, the planes above it with the side on which it lies, and the primitives that it lists.
 type Leaf = (u32, Vec<(CutPlane, f64)>, Vec<u32>);
@@ -32,29 +28,13 @@ fn leaves(bsp: &Bsp) -> Vec<Leaf> {
 
 const WHAT_MAKES_IT: &str = "the definition of a BSP tree";
 
-fn usable(hull: &[Vec3]) -> bool {
-    !hull.is_empty() && hull.iter().all(|corner| corner.is_finite())
-}
-
 fn judge_tree(query: &BspQuery, yours: &Bsp) -> CheckResult {
-    let nothing = !query.hulls.iter().any(|hull| usable(hull));
-    super::lists::judge_tree(
-        || describe(query),
-        WHAT_MAKES_IT,
-        (nothing, yours.nodes.len()),
-        || fault(query, yours),
-    )
+    hulls::judge_tree(query, WHAT_MAKES_IT, (yours.nodes.len(), yours.depth()), || fault(query, yours))
 }
 
 fn fault(query: &BspQuery, yours: &Bsp) -> Option<Fault> {
-    if yours.depth() > query.max_depth + 1 {
-        let (yours, expected) = (yours.depth() - 1, query.max_depth);
-        let (yours, expected) = (format!("a node at depth {yours}"), format!("at most {expected}"));
-        return Some(fact(yours, expected, "the tree is deeper than max_depth"));
-    }
-    let size = query.hulls.iter().flatten().filter(|p| p.is_finite()).map(|p| p.abs().max_element());
     // A corner within one float of a plane touches it. A corner within a 64th of the size may be counted as touching.
-    let size = f64::from(size.fold(0.0, f32::max));
+    let size = hulls::size(query);
     let (step, room) = (size * (-23f64).exp2(), size / 64.0);
     for (node, above, listed) in leaves(yours) {
         for (id, hull) in query.hulls.iter().enumerate() {
@@ -191,19 +171,14 @@ fn judge_build(
 
 /// Parallel sheets across a diagonal: planes across an axis do not divide them, but their own planes do.
 pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
-    let sheet = |at: f32| {
-        let p = |u: f32, v: f32| vec3(at + u, at - u, v);
-        vec![p(-40.0, -40.0), p(40.0, -40.0), p(40.0, 40.0), p(-40.0, 40.0)]
-    };
     let n = 31;
-    let hulls = (0..n).map(|i| sheet(0.25 * i as f32)).collect();
-    let query = BspQuery { hulls, leaf_size: 2, max_depth: 12 };
+    let query = BspQuery { hulls: hulls::sheets(n), leaf_size: 2, max_depth: 12 };
     let yours = trial.kit.bsp_build(std::slice::from_ref(&query)).remove(0);
     judge_tree(&query, &yours)?;
     let fullest = leaves(&yours).iter().map(|(.., listed)| listed.len()).max().unwrap_or(0);
     // A cut along a sheet lists the sheet on both sides, which makes one more reference per cut.
     let (references, depth) = (yours.items.len(), yours.depth());
-    if fullest <= 2 && references <= 2 * n as usize && depth <= 8 {
+    if fullest <= 2 && references <= 2 * n && depth <= 8 {
         return Ok(());
     }
     let mistakes = [
@@ -213,7 +188,7 @@ pub(super) fn bsp_cuts_along_polygons(trial: &Trial<'_>) -> CheckResult {
             "you do not divide the parallel sheets down to leaf_size: the planes of the polygons are the candidates",
         ),
         (
-            references > 2 * n as usize,
+            references > 2 * n,
             "your planes have many sheets on both sides: the planes of the polygons are the candidates",
         ),
         (

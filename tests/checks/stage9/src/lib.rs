@@ -1,22 +1,24 @@
 //! The checks of stage 9: partitions of space.
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
-//! `bsp_searches` · `polygon_bsps` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
-//! `searches` (calls a search and judges its answer),
-//! `search_mistakes`, `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
-//! lists of cells).
+//! `bsp_searches` · `polygon_bsps` · `polygon_bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays),
+//! `structures` (simple builders), `searches` (calls a search and judges its answer), `search_mistakes`,
+//! `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each
+//! node), `lists` (judges the lists of cells), `hulls` (judges trees over hulls).
 
 mod bsp_searches;
 mod bsps;
 mod coherence;
 mod grids;
 mod heuristics;
+mod hulls;
 mod kd_trees;
 mod lists;
 mod octant_mistakes;
 mod octrees;
 mod parts;
 mod plane_mistakes;
+mod polygon_bsp_searches;
 mod polygon_bsps;
 mod resolutions;
 mod scenes;
@@ -54,10 +56,12 @@ use octrees::{
     octree_lists_what_reaches_into_leaves, octree_search_agrees_with_brute_force,
     octree_sorts_octants_that_are_entered_at_one_t, octree_visits_what_the_ray_enters_before_its_hit,
 };
-use polygon_bsps::{
-    polygon_bsp_build_ends, polygon_bsp_puts_polygons_on_planes, polygon_bsp_search_agrees_with_brute_force,
-    polygon_bsp_splits_few_polygons, polygon_bsp_takes_rays_on_and_along_planes,
+use polygon_bsp_searches::{
+    polygon_bsp_search_agrees_with_brute_force, polygon_bsp_takes_rays_on_and_along_planes,
     polygon_bsp_visits_what_the_ray_enters_before_its_hit,
+};
+use polygon_bsps::{
+    polygon_bsp_build_ends, polygon_bsp_puts_polygons_on_planes, polygon_bsp_splits_few_polygons,
 };
 use resolutions::{
     grid_resolution_makes_cubes, grid_resolution_of_flat_and_empty_boxes,
