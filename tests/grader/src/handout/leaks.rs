@@ -2,6 +2,7 @@
 
 use super::FOLDERS;
 use crate::sync::{self, Block};
+use aho_corasick::AhoCorasick;
 use anyhow::{Context, Result};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -24,7 +25,7 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         public.extend(texts(&root.join(known))?.into_iter().map(|(_, text)| text));
     }
     public += &super::text(root, "tests/rubric.toml")?;
-    // Keep the lines of each answer that do not occur there.
+    // Collect the long lines of each answer.
     let mut answers = BTreeMap::new();
     for exercise in &exercises {
         let name = exercise.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -34,31 +35,55 @@ pub fn answers(root: &Path) -> Result<BTreeMap<String, BTreeSet<String>>> {
         for block in sync::blocks(&text, &path)? {
             if let Block::Answer(answer, _) = block {
                 let answer = answer.into_iter().filter(|line| !line.trim_start().starts_with("// <"));
-                let tells = |line: &String| !public.contains(line.as_str()) && !line.contains(CANARY);
-                known.extend(answer.flat_map(lines).filter(tells));
+                known.extend(answer.flat_map(lines).filter(|line| !line.contains(CANARY)));
             }
         }
-        if !known.is_empty() {
-            answers.insert(name, known);
-        }
+        answers.insert(name, known);
     }
+    // Leave out those that occur in public text.
+    let known: BTreeSet<&str> = answers.values().flatten().map(String::as_str).collect();
+    let public: BTreeSet<String> = Search::new(known)?.in_text(&public).map(str::to_owned).collect();
+    for known in answers.values_mut() {
+        known.retain(|line| !public.contains(line));
+    }
+    answers.retain(|_, known| !known.is_empty());
     Ok(answers)
 }
 
 /// Returns the lines of answers, and the marker, that occur in the files of a folder.
 pub fn leaks(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let answers = answers(root)?;
+    let search = Search::new(answers.values().flatten().map(String::as_str).collect())?;
     let mut leaks = Vec::new();
     for (file, text) in texts(folder)? {
         if text.contains(CANARY) {
             leaks.push(format!("{file}: the canary"));
         }
+        let held: BTreeSet<&str> = search.in_text(&text).collect();
         for (solution, lines) in &answers {
-            let held = lines.iter().filter(|line| text.contains(line.as_str()));
+            let held = lines.iter().filter(|line| held.contains(line.as_str()));
             leaks.extend(held.map(|line| format!("{file}: `{line}` of solutions/src/{solution}")));
         }
     }
     Ok(leaks)
+}
+
+/// A search for many lines at once.
+struct Search<'a> {
+    lines: Vec<&'a str>,
+    automaton: AhoCorasick,
+}
+
+impl<'a> Search<'a> {
+    fn new(lines: BTreeSet<&'a str>) -> Result<Self> {
+        let lines: Vec<&str> = lines.into_iter().collect();
+        Ok(Search { automaton: AhoCorasick::new(&lines)?, lines })
+    }
+
+    /// The lines that occur in `text`, also as parts of longer lines; some more than once.
+    fn in_text<'b>(&'b self, text: &'b str) -> impl Iterator<Item = &'a str> + 'b {
+        self.automaton.find_overlapping_iter(text).map(|found| self.lines[found.pattern()])
+    }
 }
 
 fn lines(text: &str) -> impl Iterator<Item = String> {
