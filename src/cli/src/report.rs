@@ -76,6 +76,17 @@ pub fn load_scene(file: &Path, limits: Limits) -> Result<Scene> {
     Ok(scene)
 }
 
+/// The scene with at most `pixels` pixels, at least 1, in nearly the same shape. Commands that measure render many pictures of
+/// this size.
+pub fn with_at_most(pixels: f64, scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
+    let share = (pixels / (width * height)).sqrt().min(1.0);
+    scene.film.width = ((width * share) as u32).max(1);
+    scene.film.height = ((height * share) as u32).max(1);
+    scene
+}
+
 /// The error with the line that is wrong, in the style of the compiler.
 pub fn draw(error: &LoadError) -> String {
     draw_as(Level::ERROR, error)

@@ -26,7 +26,7 @@ mod table;
 
 use crate::kits::{Need, Source, root};
 use crate::quality_options::arguments;
-use crate::report::{FrameBar, load_scene, make_folder};
+use crate::report::{FrameBar, load_scene, make_folder, with_at_most};
 use advice::{Advice, Goal};
 use anyhow::{Context, Result, bail};
 use called::Called;
@@ -45,9 +45,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-
-/// The most pixels of a measured picture, unless a size is given, because some hundred pictures are rendered.
-const MOST_PIXELS: f64 = 10_000.0;
 
 /// The contents of the report.
 #[derive(Serialize)]
@@ -129,7 +126,8 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let mut full = load_scene(file, options.quality.limits())?;
     let as_written = full.quality;
     options.quality.apply(&mut full)?;
-    let small = if options.quality.names_a_size() { full.clone() } else { shrunk(&full) };
+    let pixels = options.pixels();
+    let small = if options.quality.names_a_size() { full.clone() } else { with_at_most(pixels, &full) };
     let name = file.file_stem().context("the scene has no name")?.to_string_lossy().into_owned();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
@@ -140,9 +138,12 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     }
     // Render the reference, or continue it.
     println!(
-        "the reference: {} samples per pixel, {} × {} pixels",
-        options.reference, small.film.width, small.film.height
+        "the reference: {} samples per pixel, {} × {} pixels, {} rounds",
+        options.reference, small.film.width, small.film.height, options.rounds
     );
+    if !options.full {
+        println!("`--full` measures larger pictures, more rounds and a better reference");
+    }
     let code = fingerprint(&source)?;
     let cache = Path::new("out").join("references");
     let Some(right) = reference::reference(&bench, &small, options.reference, &cache, &code)? else {
@@ -277,16 +278,6 @@ fn slopes(measured: &Measured) -> Vec<(String, Slope)> {
     let of_samples =
         |series: &&measure::Series| matches!(series.parameter, Parameter::Samples | Parameter::Sampler);
     measured.series.iter().filter(of_samples).filter_map(of_series).collect()
-}
-
-/// The same scene with fewer pixels.
-fn shrunk(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    let (width, height) = (f64::from(scene.film.width), f64::from(scene.film.height));
-    let share = (MOST_PIXELS / (width * height)).sqrt().min(1.0);
-    scene.film.width = ((width * share) as u32).max(1);
-    scene.film.height = ((height * share) as u32).max(1);
-    scene
 }
 
 /// A name for the code that renders, because each code has its own reference.

@@ -7,13 +7,13 @@ mod why;
 use crate::args::{Argument, Given, Misuse, Opt, Spec, wrapped};
 use crate::kits::{Choice, Need, Source, root};
 use crate::quality_options::QualityOptions;
-use crate::report::{Thousands, bar_of_steps, load_scene, quartiles};
+use crate::report::{Thousands, bar_of_steps, load_scene, quartiles, with_at_most};
 use anyhow::{Context, Result};
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
 use raykata::frame::Unwatched;
 use raykata::kit::{BoundQuery, Kit, RenderJob, View, kit_error};
-use raykata::scene::{FilmSettings, Scene};
+use raykata::scene::Scene;
 use std::path::PathBuf;
 
 /// `raykata explain`.
@@ -56,7 +56,7 @@ const MEASURED_SAMPLES: u32 = 4;
 
 /// The most samples of a picture that is measured, without `--full`. With five rounds and ten effects, the scene of the README
 /// then takes about 15 s on two cores.
-const MEASURED_WORK: u64 = 300_000;
+const MEASURED_WORK: f64 = 300_000.0;
 
 impl Options {
     /// Reads the arguments and options.
@@ -124,17 +124,9 @@ fn size(scene: &Scene) -> String {
 
 /// The scene with at most [`MEASURED_SAMPLES`] per pixel, and with as many pixels as [`MEASURED_WORK`] allows.
 fn smaller(scene: &Scene) -> Scene {
-    let mut small = scene.clone();
     let samples = scene.quality.samples_per_pixel.min(MEASURED_SAMPLES);
+    let mut small = with_at_most(MEASURED_WORK / f64::from(samples), scene);
     small.quality.samples_per_pixel = samples;
-    // Divide both sides by the smallest number that is enough.
-    let work = |film: &FilmSettings| u64::from(film.width) * u64::from(film.height) * u64::from(samples);
-    let mut divisor = 1;
-    while work(&small.film) > MEASURED_WORK {
-        divisor += 1;
-        small.film.width = scene.film.width.div_ceil(divisor);
-        small.film.height = scene.film.height.div_ceil(divisor);
-    }
     small
 }
 
