@@ -1,6 +1,7 @@
 //! Pictures: the boxes or cells of a structure over the scene, and the cost of each pixel.
 
 use super::measure::Measured;
+use crate::args::wrapped;
 use crate::report::Thousands;
 use anyhow::{Context, Result};
 use glam::{Vec2, Vec3};
@@ -38,11 +39,12 @@ pub fn write(out: &Path, kit: &dyn Kit, scene: &Scene, rows: &[Measured], depth:
         heat.pixels = film.pixels.iter().map(|pixel| heat_color(pixel.element_sum(), most)).collect();
         save(&heat, file)?;
     }
-    println!(
-        "\ntests-*.png: visits, box tests and primitive tests of all rays of a pixel; black is 1, white is \
-         {}, and the scale is logarithmic; the work of a packet is counted at one of its pixels",
+    let scale = format!(
+        "tests-*.png: visits, box tests and primitive tests of all rays of a pixel; black is 1, white is {}, \
+         and the scale is logarithmic; the work of a packet is counted at one of its pixels",
         Thousands(most as u64)
     );
+    println!("\n{}", wrapped(&scale, 2));
     Ok(())
 }
 

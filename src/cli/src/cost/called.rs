@@ -10,6 +10,8 @@ pub struct Called<'a> {
     pub effects: &'a Effects,
     /// The number of primitives that rays are tested against.
     pub primitives: u64,
+    /// The number of samples that ladders reach at least.
+    pub most_samples: u32,
 }
 
 impl Called<'_> {
@@ -56,7 +58,7 @@ mod tests {
         let scene = parse(Path::new("test.toml"), &text).unwrap_or_else(|error| panic!("{error}"));
         for (motion, expected) in [(false, still), (true, moving)] {
             let effects = Effects { motion, ..Effects::default() };
-            let called = Called { scene: &scene, effects: &effects, primitives: 1 };
+            let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
             assert_eq!((called.shows_triangles(), called.shows_spheres()), expected, "{shape}");
         }
     }

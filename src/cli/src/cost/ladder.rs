@@ -52,9 +52,6 @@ pub struct Ladder {
     pub left_out: Vec<String>,
 }
 
-/// The number of samples that ladders reach at least.
-const MOST_SAMPLES: u32 = 64;
-
 /// Structures that test most primitives with each ray are measured up to this number of primitives. Above it, one
 /// measurement takes minutes.
 const MOST_ASKED: u64 = 2_000;
@@ -122,7 +119,7 @@ impl Parameter {
 
     /// The ladders of the parameter for this scene, or the reason why it changes nothing there.
     pub fn ladders(self, called: &Called<'_>) -> Result<Vec<Ladder>, String> {
-        let Called { scene, effects, primitives } = called;
+        let Called { scene, effects, primitives, most_samples } = called;
         let quality = scene.quality;
         let mirrors = effects.calls_for(Effect::Mirrors) || effects.calls_for(Effect::Transmission);
         let hierarchy = quality.accelerator.is_hierarchy();
@@ -146,14 +143,14 @@ impl Parameter {
         };
         let ladders = match self {
             Parameter::Samples => {
-                numbers(doubling(quality.samples_per_pixel, MOST_SAMPLES), |q, n| q.samples_per_pixel = n)
+                numbers(doubling(quality.samples_per_pixel, *most_samples), |q, n| q.samples_per_pixel = n)
             }
             Parameter::Sampler => {
                 let of = |(sampler, name): (Sampler, &str)| {
                     let with = |samples_per_pixel: u32| {
                         (samples_per_pixel.to_string(), Quality { sampler, samples_per_pixel, ..quality })
                     };
-                    let counts = doubling(quality.samples_per_pixel, MOST_SAMPLES);
+                    let counts = doubling(quality.samples_per_pixel, *most_samples);
                     Ladder { name: name.into(), ..ladder(counts.into_iter().map(with).collect()) }
                 };
                 SAMPLERS.into_iter().map(of).collect()
@@ -310,7 +307,7 @@ mod tests {
             crate::report::load_scene(std::path::Path::new("../../scenes/stage1.toml"), Default::default())
                 .unwrap();
         let effects = Effects::default();
-        let called = Called { scene: &scene, effects: &effects, primitives: 1 };
+        let called = Called { scene: &scene, effects: &effects, primitives: 1, most_samples: 64 };
         let offered = |parameter: Parameter| parameter.ladders(&called).is_ok();
         for parameter in [
             Parameter::Samples,

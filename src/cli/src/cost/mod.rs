@@ -24,6 +24,7 @@ mod setting;
 mod slope;
 mod table;
 
+use crate::args::wrapped;
 use crate::kits::{Need, Source, root};
 use crate::quality_options::arguments;
 use crate::report::{FrameBar, load_scene, make_folder, with_at_most};
@@ -132,9 +133,9 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-cost")));
 
     // Choose the values to measure.
-    let (ladders, not_offered) = ladders(kit, &bench, &small, &options.turned)?;
+    let (ladders, not_offered) = ladders(kit, &bench, &small, options)?;
     for (parameter, why) in &not_offered {
-        println!("{}: not offered, because {why}", parameter.name());
+        println!("{}", wrapped(&format!("{}: not offered, because {why}", parameter.name()), 2));
     }
     // Render the reference, or continue it.
     println!(
@@ -208,8 +209,9 @@ fn ladders(
     kit: &dyn Kit,
     bench: &Bench<'_>,
     scene: &Scene,
-    turned: &[Parameter],
+    options: &Options,
 ) -> Result<(Vec<Ladder>, NotOffered)> {
+    let turned = &options.turned;
     let effects = match kit_error::catch(|| kit.effects(std::slice::from_ref(scene))) {
         Ok(mut effects) => effects.remove(0),
         Err(KitError::NotWritten { place, .. }) => {
@@ -224,7 +226,7 @@ fn ladders(
     let frame = bench.render(&bench.job(&pixel, 0, true), None, Some(&bar))?;
     bar.finish();
     let primitives = frame.map_or(0, |frame| frame.primitives);
-    let called = Called { scene, effects: &effects, primitives };
+    let called = Called { scene, effects: &effects, primitives, most_samples: options.most_samples() };
     let (mut ladders, mut not_offered) = (Vec::new(), Vec::new());
     for (_, parameter) in Parameter::NAMES {
         match parameter.ladders(&called) {

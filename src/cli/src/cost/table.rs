@@ -5,43 +5,36 @@ use super::advice::{Advice, Goal};
 use super::files::expected_slope;
 use super::ladder::Parameter;
 use super::measure::Series;
+use crate::args::wrapped;
 use crate::report::Thousands;
 
 /// Prints the report.
 pub fn print(report: &Report<'_>) {
+    let rounds = if report.measured.rounds == 1 { "round" } else { "rounds" };
     println!(
-        "{}: {} × {} pixels, {} {}; times are medians ± half the distance between the quartiles\n",
-        report.scene,
-        report.width,
-        report.height,
-        report.measured.rounds,
-        if report.measured.rounds == 1 { "round" } else { "rounds" }
+        "{}: {} × {} pixels, {} {rounds}; times are medians in milliseconds ±\nhalf the distance between the \
+         quartiles; rays are per pixel, tests per ray\n",
+        report.scene, report.width, report.height, report.measured.rounds,
     );
     println!(
-        "{:<32}{:>10}{:>11}{:>12}{:>18}{:>12}{:>12}{:>12}{:>8}",
-        "",
-        "RMSE",
-        "rel. MSE",
-        "similarity",
-        "ms per picture",
-        "rays/pixel",
-        "tests/ray",
-        "wrong hits",
-        "leaks"
+        "{:<25}{:>8}{:>8}{:>14}{:>6}{:>7}{:>6}{:>6}",
+        "", "RMSE", "similar", "ms", "rays", "tests", "wrong", "leaks"
     );
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
-        println!("{}{}", heading(series), slope(report, series));
+        println!("{}", heading(series));
+        if let Some(slope) = slope(report, series) {
+            println!("  {slope}");
+        }
         for (name, index) in &series.levels {
             let point = &report.measured.points[*index];
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             let hits = point.hits.filter(|_| series.parameter.is_geometric());
             println!(
-                "  {:<28}{}{:>11.5}{:>11.2e}{:>12.4}{:>18}{:>12.2}{:>12.1}{:>12}{:>8}",
-                named(report, name, *index),
+                "  {name:<21}{}{}{:>8.5}{:>8.4}{:>14}{:>6.2}{:>7.1}{:>6}{:>6}",
+                if report.own == Some(*index) { "*" } else { " " },
                 if report.pareto_front.contains(index) { "•" } else { " " },
                 point.error(),
-                point.errors.relative_mse,
                 point.errors.similarity,
                 format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
                 rays as f64 / (f64::from(report.width) * f64::from(report.height)),
@@ -51,20 +44,21 @@ pub fn print(report: &Report<'_>) {
             );
         }
         if let Some(waste) = waste(report, series) {
-            println!("    {waste}");
+            println!("  {}", wrapped(&waste, 2));
         }
     }
+    println!("\n* the scene's own value");
     println!(
-        "  • Pareto front: no other setting is both faster and more accurate; settings that leak are left out"
+        "• no other value is both faster and more accurate (Pareto front); values that\n  leak are left out"
     );
     if let Some(hits) = about_hits(report) {
-        println!("  wrong hits and leaks: {hits}");
+        println!("{}", wrapped(&format!("wrong and leaks: {hits}"), 2));
     }
     for left_out in &report.measured.left_out {
-        println!("  left out: {left_out}");
+        println!("{}", wrapped(&format!("left out: {left_out}"), 2));
     }
     for lacking in &report.measured.lacking {
-        println!("  note: {lacking}");
+        println!("{}", wrapped(&format!("note: {lacking}"), 2));
     }
     numerics(report);
     if let Some(advice) = &report.advice {
@@ -98,15 +92,10 @@ fn heading(series: &Series) -> String {
     }
 }
 
-fn slope(report: &Report<'_>, series: &Series) -> String {
-    let Some((name, slope)) = report.slopes.iter().find(|(name, _)| *name == series.name) else {
-        return String::new();
-    };
+fn slope(report: &Report<'_>, series: &Series) -> Option<String> {
+    let (name, slope) = report.slopes.iter().find(|(name, _)| *name == series.name)?;
     let theory = expected_slope(report, name).map_or(String::new(), |slope| format!(", in theory {slope}"));
-    format!(
-        ": the error is proportional to samples to the power {:.2} ± {:.2}{theory}",
-        slope.mean, slope.half_interval
-    )
+    Some(format!("error ~ samples to the power {:.2} ± {:.2}{theory}", slope.mean, slope.half_interval))
 }
 
 /// The relative difference below which errors count as the same.
@@ -137,12 +126,12 @@ fn numerics(report: &Report<'_>) {
         return;
     }
     println!(
-        "\n{:<36}{:>10}{:>22}{:>22}",
+        "\n{:<36}{:>8}{:>18}{:>18}",
         "ray/triangle tests, judged exactly", "ns", "wrong per million", "leaks per million"
     );
     for one in numerics {
         println!(
-            "  {:<34}{:>10.1}{:>22}{:>22}",
+            "  {:<34}{:>8.1}{:>18}{:>18}",
             one.name,
             one.nanoseconds,
             Thousands(one.wrong_per_million.round() as u64).to_string(),
@@ -150,7 +139,7 @@ fn numerics(report: &Report<'_>) {
         );
     }
     if let Some(warning) = about_kit_times(report) {
-        println!("  {warning}");
+        println!("  {}", wrapped(warning, 2));
     }
 }
 

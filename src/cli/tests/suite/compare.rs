@@ -38,9 +38,7 @@ fn structures_are_compared_side_by_side() {
         "polygon bsp",
     ];
     for row in rows {
-        let line = said.lines().find(|line| line.starts_with(&format!("{row}  ")));
-        let line = line.unwrap_or_else(|| panic!("no line for {row}:\n{said}"));
-        assert!(line.trim_end().ends_with(" 0"), "pixels are off: {line}");
+        assert!(said.lines().any(|line| line.starts_with(&format!("{row}  "))), "no line for {row}:\n{said}");
         let picture = out.path().join(format!("tests-{}.png", row.replace(", ", "-").replace(' ', "-")));
         assert!(
             std::fs::read(&picture).is_ok_and(|png| png.starts_with(b"\x89PNG")),
@@ -48,6 +46,8 @@ fn structures_are_compared_side_by_side() {
             picture.display()
         );
     }
+    assert!(said.contains("\nall pictures are the same, bit by bit\n"), "{said}");
+    assert!(said.lines().all(|line| line.starts_with("pictures,") || line.chars().count() <= 80), "{said}");
     // Each column in which smaller is better has a mark.
     assert!(said.matches('*').count() > 4, "{said}");
     // Structures with cells or boxes are drawn; brute force has none.

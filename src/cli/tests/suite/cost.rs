@@ -20,7 +20,7 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr[..]].concat()).into_owned()
 }
 
-const QUICK: [&str; 4] = ["--size", "16x12", "--rounds", "2"];
+const QUICK: [&str; 5] = ["--full", "--size", "16x12", "--rounds", "2"];
 
 /// The report without measured times.
 fn without_times(folder: &Path) -> (Value, Vec<String>) {
@@ -54,10 +54,12 @@ fn two_runs_have_the_same_errors_and_counts() {
     assert_eq!(one, other);
     assert_eq!(one.1, ["cost.csv", "cost.json", "cost.svg", "index.html", "samplers.svg"]);
     assert!(
-        text.contains("glossy samples: not offered, because no rough surface reflects or transmits light"),
+        text.contains("glossy samples: not offered, because no rough surface reflects or transmits\n  light"),
         "{text}"
     );
-    assert!(text.contains("(the scene's)"), "{text}");
+    assert!(text.contains("* the scene's own value"), "{text}");
+    let report = text.lines().take_while(|line| !line.starts_with("the report: "));
+    assert!(report.into_iter().all(|line| line.chars().count() <= 80), "{text}");
 
     let points = one.0["points"].as_array().unwrap();
     let errors: Vec<f64> = points.iter().map(|point| point["rmse"][0].as_f64().unwrap()).collect();
