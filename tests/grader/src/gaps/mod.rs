@@ -1,7 +1,13 @@
 //! `grader gaps`: shows, for each function of the exercises, what pictures lack while that function is not written yet.
 //!
 //! The renderer must make a picture from the functions that are written, and name what is left out and why. The reference
-//! has no unwritten functions, so this command removes each function in turn.
+//! has no unwritten functions, so this command removes each function in turn. With `--subsets` it removes random sets of
+//! functions, and all functions from a stage on: a picture must be made, and it must say what it lacks.
+//!
+//! `switch` (one build for all sets of functions) · `subsets` (the random sets)
+
+mod subsets;
+mod switch;
 
 use crate::corpus::verdict::without_lines;
 use crate::corpus::workshop::{Built, Workshop};
@@ -14,7 +20,8 @@ use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::{Context, Result};
 use raykata::kit::Door;
 use raykata_cli::args::{Given, Misuse, Opt, Spec};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use switch::Switchable;
 
 /// `grader gaps`.
 pub static SPEC: Spec = Spec {
@@ -24,6 +31,12 @@ pub static SPEC: Spec = Spec {
     options: &[&[
         Opt::flag("--check", "Compare with tests/corpus/gaps.txt."),
         Opt::flag("--bless", "Write tests/corpus/gaps.txt."),
+        Opt::value(
+            "--subsets",
+            "N",
+            "Instead: leave out N random sets of functions, and all functions from each stage on.",
+        ),
+        Opt::value("--seed", "N", "Picks the sets [default: 1]."),
     ]],
 };
 
@@ -31,13 +44,22 @@ pub static SPEC: Spec = Spec {
 pub struct Options {
     check: bool,
     bless: bool,
+    subsets: Option<u64>,
+    seed: u64,
 }
 
 impl Options {
     /// Reads the options from the command line.
     pub fn read(given: &Given) -> Result<Options, Misuse> {
         given.exclude("--bless", "--check")?;
-        Ok(Options { check: given.has("--check"), bless: given.has("--bless") })
+        given.exclude("--subsets", "--check")?;
+        given.exclude("--subsets", "--bless")?;
+        Ok(Options {
+            check: given.has("--check"),
+            bless: given.has("--bless"),
+            subsets: given.number("--subsets", 1..=1_000_000)?,
+            seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
+        })
     }
 }
 
@@ -70,8 +92,12 @@ pub fn run(options: &Options) -> Result<bool> {
     let reference = Source::prepare(&root, Which::Solutions, Need::Frames)?.fresh();
     let scenes = Scenes::read(&root, &*reference)?.of_gaps();
     let whole = scenes.shown_by(&*reference);
-    let workshops = Workshop::open_all(&root, queue::cores(), Need::Frames)?;
-    let text = text(&workshops, &gaps, &scenes, &whole)?;
+    let workshops = Workshop::open_all(&root, 1, Need::Frames)?;
+    let switchable = Switchable::build(&workshops[0], &root, &gaps)?;
+    if let Some(n) = options.subsets {
+        return subsets::run(&switchable, &gaps, &scenes, &whole, (n, options.seed));
+    }
+    let text = text(&switchable, &gaps, &scenes, &whole)?;
     let text: String =
         gaps.iter().zip(text).map(|(gap, text)| format!("{}\n{text}\n", gap.title())).collect();
     let file = root.join(RECORD);
@@ -91,11 +117,13 @@ pub fn run(options: &Options) -> Result<bool> {
 }
 
 /// Returns for each of these functions what pictures lack without it.
-fn text(workshops: &[Workshop], gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
+fn text(switchable: &Switchable, gaps: &[Gap], scenes: &Scenes, whole: &[Shown]) -> Result<Vec<String>> {
     let bar = bar_of_steps(gaps.len());
-    let text = queue::run(workshops, gaps, |workshop, gap| {
-        bar.set_message(gap.title());
-        let text = lacks(workshop, &[(&gap.file, &gap.text)], scenes, whole)?;
+    let numbers: Vec<usize> = (0..gaps.len()).collect();
+    let text = queue::run(&queue::one_a_core(), &numbers, |(), &number| {
+        bar.set_message(gaps[number].title());
+        let worker = switchable.without(&format!("without_{number}"), &[number])?;
+        let text = differences(worker, scenes, whole);
         bar.inc(1);
         Ok(text)
     });
@@ -110,10 +138,14 @@ pub fn lacks(
     scenes: &Scenes,
     whole: &[Shown],
 ) -> Result<String> {
-    let worker = match workshop.build_with(changes)? {
-        Built::Worker(worker) => worker,
-        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => return Ok(format!("  {error}\n")),
-    };
+    Ok(match workshop.build_with(changes)? {
+        Built::Worker(worker) => differences(worker, scenes, whole),
+        Built::DoesNotApply(error) | Built::DoesNotCompile(error) => format!("  {error}\n"),
+    })
+}
+
+/// Returns how the pictures of a worker differ from those of the unchanged solutions.
+fn differences(worker: PathBuf, scenes: &Scenes, whole: &[Shown]) -> String {
     // Each note, with the scenes that have it and the hashes of their pictures.
     let mut said: Vec<(String, Vec<String>)> = Vec::new();
     for (one, whole) in scenes.shown_by(&Door(Worker::hasty(worker, CALL_PATIENCE))).iter().zip(whole) {
@@ -128,12 +160,12 @@ pub fn lacks(
         }
     }
     if said.is_empty() {
-        return Ok(format!("  {NOTHING}\n"));
+        return format!("  {NOTHING}\n");
     }
     let line = |(words, scenes): &(String, Vec<String>)| {
         format!("  {}\n    {}\n", if words.is_empty() { "(no note)" } else { words }, scenes.join(", "))
     };
-    Ok(said.iter().map(line).collect())
+    said.iter().map(line).collect()
 }
 
 /// Returns the gaps with which a picture is still made but differs, and what each lacks. These are computed and not read
@@ -145,7 +177,8 @@ pub fn that_show(
     whole: &[Shown],
 ) -> Result<Vec<(Gap, String)>> {
     let gaps = all(root)?;
-    let text = text(workshops, &gaps, scenes, whole)?;
+    let switchable = Switchable::build(&workshops[0], root, &gaps)?;
+    let text = text(&switchable, &gaps, scenes, whole)?;
     let shows = |text: &str| !text.contains(NOTHING) && !text.contains("not written yet: solutions/");
     let mut gaps: Vec<_> = gaps.into_iter().zip(text).filter(|(_, text)| shows(text)).collect();
     // Pictures without a hierarchy take longest, so they come last.
@@ -180,8 +213,8 @@ fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
                     function = head.split(['(', '<']).next().unwrap_or_default();
                 }
             }
-            // A helper belongs to no exercise.
-            Block::Answer(_, stub) if stub.is_empty() => {}
+            // A helper or an import belongs to no exercise.
+            Block::Answer(_, stub) if !is_function(stub) => {}
             Block::Answer(..) => {
                 gaps.push(Gap {
                     file: file.into(),
@@ -192,6 +225,11 @@ fn in_file(file: &str, text: &str) -> Result<Vec<Gap>> {
         }
     }
     Ok(gaps)
+}
+
+/// Whether this stub of an answer is that of a function.
+fn is_function(stub: &[String]) -> bool {
+    stub.iter().any(|line| line.trim_start().starts_with("todo!("))
 }
 
 /// Returns the whole text with the answer in block `gap` replaced by its stub.
