@@ -1,9 +1,10 @@
 //! Measures ray/triangle tests on distributions of hard inputs and on closed meshes, against exact arithmetic.
 
 use crate::leak_table;
+use crate::table::Table;
 use anyhow::Result;
 use glam::Vec3;
-use oracle::gauntlet::distributions::DISTRIBUTIONS;
+use oracle::gauntlet::distributions::{DISTRIBUTIONS, Distribution};
 use oracle::gauntlet::table::{Cell, Judged, compare, judge, nanoseconds};
 use raykata::kit::{Kit, TriangleHit, TriangleQuery, kit_error};
 use raykata::ray::Ray;
@@ -83,8 +84,8 @@ pub fn summary(rows: Vec<Row<'_>>) -> Vec<Summary> {
     summaries
 }
 
-/// Prints how often each row is wrong on each distribution and by how much, and how often it leaks.
-pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<()> {
+/// How often each row is wrong on each distribution and by how much, and how often it leaks.
+pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<Vec<Table>> {
     let bar = bar_of_steps(DISTRIBUTIONS.len() + rows.len());
     let judged: Vec<Judged> = DISTRIBUTIONS
         .iter()
@@ -104,38 +105,35 @@ pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<()> {
     }
     bar.finish_and_clear();
 
-    let heads: Vec<&str> = DISTRIBUTIONS.iter().map(|distribution| distribution.name).collect();
-    print_table("wrong %", &rows, &heads, |row, column| percent(cells[row][column].wrong), Some(&times));
-    print_table("worst μ", &rows, &heads, |row, column| short(cells[row][column].margin), None);
-    print_table("t, ulps", &rows, &heads, |row, column| short(cells[row][column].ulps), None);
-    println!(
-        "wrong %: wrong verdicts; ns: time per call, with the answer stored (distribution `interior`).\n\
-         worst μ: the margin of the worst wrong verdict, in roundings; a stable method stays below 64.\n\
-         t, ulps: the error of t that 99 of 100 hits stay below.\n\n\
-         The distributions:"
+    let table = |title: &str, note: &str, cell: &dyn Fn(&Cell) -> String| Table {
+        title: title.into(),
+        heads: DISTRIBUTIONS.iter().map(|distribution| distribution.name.to_owned()).collect(),
+        rows: rows
+            .iter()
+            .zip(&cells)
+            .map(|(row, of)| (row.name.clone(), of.iter().map(cell).collect()))
+            .collect(),
+        notes: vec![note.to_owned()],
+    };
+    let mut wrong = table("wrong %: wrong verdicts", "ns: time per call, with the answer stored.", &|cell| {
+        percent(cell.wrong)
+    });
+    wrong.heads.push("ns".into());
+    for ((_, cells), time) in wrong.rows.iter_mut().zip(times) {
+        cells.push(format!("{time:.1}"));
+    }
+    let margins = table(
+        "worst μ: the margin of the worst wrong verdict, in roundings",
+        "A stable method stays below 64.",
+        &|cell| short(cell.margin),
     );
-    for distribution in &DISTRIBUTIONS {
-        println!("  {:<9} {}", distribution.name, distribution.what);
-    }
-    println!();
-    leak_table::table(&rows, seed, n_inputs)
-}
-
-fn print_table(
-    title: &str,
-    rows: &[Row<'_>],
-    heads: &[&str],
-    cell: impl Fn(usize, usize) -> String,
-    times: Option<&[f64]>,
-) {
-    let columns: String = heads.iter().map(|head| format!("{head:>9}")).collect();
-    println!("{title:<36}{columns}{}", if times.is_some() { "       ns" } else { "" });
-    for (index, row) in rows.iter().enumerate() {
-        let cells: String = (0..heads.len()).map(|column| format!("{:>9}", cell(index, column))).collect();
-        let time = times.map_or(String::new(), |times| format!("{:>9.1}", times[index]));
-        println!("{:<36}{cells}{time}", row.name);
-    }
-    println!();
+    let mut ulps =
+        table("t, ulps: the error of t that 99 of 100 hits stay below", "The distributions:", &|cell| {
+            short(cell.ulps)
+        });
+    let described = |one: &Distribution| format!("  {:<9} {}", one.name, one.what);
+    ulps.notes.extend(DISTRIBUTIONS.iter().map(described));
+    Ok(vec![wrong, margins, ulps, leak_table::table(&rows, seed, n_inputs)?])
 }
 
 fn percent(share: f64) -> String {

@@ -1,6 +1,7 @@
 //! Counts the leaks of closed meshes.
 
 use crate::gauntlet::{Answers, Input, Row};
+use crate::table::Table;
 use anyhow::Result;
 use oracle::gauntlet::leaks::{self, Aim, aimed};
 use oracle::gauntlet::meshes::{Closed, closed};
@@ -8,23 +9,24 @@ use oracle::splitmix::Random;
 use raykata::ray::Ray;
 use raykata_cli::queue;
 
-/// Prints how many rays leak, by row and mesh. Methods are counted first, one per thread, then the functions
-/// of the kit.
-pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<()> {
+/// How many rays leak, by row and mesh. Methods are counted first, one per thread, then the functions of the kit.
+pub fn table(rows: &[Row<'_>], seed: u64, rays: u64) -> Result<Table> {
     let meshes = closed();
     let of_method = |(): &(), row: &Row<'_>| {
         let count = |method| line(&meshes, |mesh, aim| leaks::count(mesh, aim, seed, rays, method));
         Ok(row.method.map(count))
     };
     let counted = queue::run(&queue::one_a_core(), rows, of_method)?;
-    println!("leaks of {rays} rays at edges / at vertices, from inside closed meshes");
-    let heads: String = meshes.iter().map(|mesh| format!("{:>15}", mesh.name)).collect();
-    println!("{:<36}{heads}", "");
-    for (row, counted) in rows.iter().zip(counted) {
+    let cells = |(row, counted): (&Row<'_>, Option<Vec<String>>)| {
         let in_batches = |mesh: &Closed, aim| in_batches(mesh, aim, seed, rays, &row.answer);
-        println!("{:<36}{}", row.name, counted.unwrap_or_else(|| line(&meshes, in_batches)));
-    }
-    Ok(())
+        (row.name.clone(), counted.unwrap_or_else(|| line(&meshes, in_batches)))
+    };
+    Ok(Table {
+        title: format!("leaks of {rays} rays at edges / at vertices, from inside closed meshes"),
+        heads: meshes.iter().map(|mesh| mesh.name.to_owned()).collect(),
+        rows: rows.iter().zip(counted).map(cells).collect(),
+        notes: Vec::new(),
+    })
 }
 
 /// Leaks of one row per million rays, over all meshes and both aims.
@@ -35,10 +37,10 @@ pub fn per_million(row: &Row<'_>, seed: u64, rays: u64) -> f64 {
     1e6 * leaks as f64 / (rays * pairs().count() as u64) as f64
 }
 
-fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> String {
+fn line(meshes: &[Closed], count: impl Fn(&Closed, Aim) -> u64) -> Vec<String> {
     let cell = |mesh: &Closed| {
         let [edges, vertices] = Aim::ALL.map(|aim| count(mesh, aim));
-        format!("{:>15}", format!("{edges}/{vertices}"))
+        format!("{edges}/{vertices}")
     };
     meshes.iter().map(cell).collect()
 }

@@ -11,3 +11,4 @@ pub mod gauntlet;
 pub mod hits;
 pub mod leak_table;
 pub mod scorecard;
+pub mod table;

@@ -29,7 +29,10 @@ fn run() -> Result<bool> {
         ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),
         ["gauntlet", _, worker, inputs, seed] => {
             let kit = source(worker).fresh();
-            gauntlet::tables(gauntlet::rows_of_kit(&*kit), inputs.parse()?, seed.parse()?).map(|()| true)
+            for table in gauntlet::tables(gauntlet::rows_of_kit(&*kit), inputs.parse()?, seed.parse()?)? {
+                raykata_cli::report::say(format_args!("{}\n", table.text()));
+            }
+            Ok(true)
         }
         ["hits"] => hits::serve(std::io::stdin().lock(), std::io::stdout().lock()).map(|()| true),
         _ => bail!("this is the judge: `raykata check` starts it. It is not started by hand"),

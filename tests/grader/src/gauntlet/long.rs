@@ -9,6 +9,7 @@ use crate::worker::Worker;
 use anyhow::{Context, Result, bail};
 use judge::gauntlet::Input;
 use judge::leak_table::leaks_of;
+use judge::table::Table;
 use oracle::exact::aabb::overlap;
 use oracle::gauntlet::boxes::{at_a_corner, of_any_size};
 use oracle::gauntlet::families::families;
@@ -162,8 +163,8 @@ impl Trial {
     }
 }
 
-/// Runs until `rays` rays of each kind are done. Returns whether no ray failed.
-pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool> {
+/// Runs until `rays` rays of each kind are done. Returns the numbers, and whether no ray failed.
+pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Table, bool)> {
     let mut state = read(file)?;
     if state.seed != seed && !state.done.is_empty() {
         bail!(
@@ -206,20 +207,20 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<bool
     bar.finish_and_clear();
     let (state, _) = state.into_inner().unwrap_or_else(|broken| broken.into_inner());
     write(&state, file)?;
-    Ok(tell(&state, meshes.len()))
+    let succeeded = state.done.values().all(|done| done.failures == 0);
+    Ok((table(&state, meshes.len()), succeeded))
 }
 
-fn tell(state: &State, meshes: usize) -> bool {
-    println!("{meshes} closed meshes, seed {}", state.seed);
-    println!("{:<32}{:>16}{:>12}", "", "rays", "failed");
-    for (name, done) in &state.done {
-        println!(
-            "{name:<32}{:>16}{:>12}",
-            Thousands(done.rays).to_string(),
-            Thousands(done.failures).to_string()
-        );
+fn table(state: &State, meshes: usize) -> Table {
+    let row = |(name, done): (&String, &Done)| {
+        (name.clone(), [done.rays, done.failures].map(|n| Thousands(n).to_string()).to_vec())
+    };
+    Table {
+        title: format!("{meshes} closed meshes, seed {}", state.seed),
+        heads: ["rays", "failed"].map(str::to_owned).to_vec(),
+        rows: state.done.iter().map(row).collect(),
+        notes: Vec::new(),
     }
-    state.done.values().all(|done| done.failures == 0)
 }
 
 fn read(file: &Path) -> Result<State> {

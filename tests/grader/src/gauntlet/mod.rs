@@ -1,7 +1,11 @@
 //! `grader gauntlet`: shows what accuracy costs. It runs intersection methods on distributions of hard inputs and judges
 //! them by exact arithmetic. With `--rays` it starts the long run, which searches for leaks in the reference.
+//!
+//! `agreement` (searches) · `long` (the long run) · `methods` and `printed` (triangle tests) · `secondary_rays` · `files`
+//! (the tables as a page)
 
 pub mod agreement;
+mod files;
 mod long;
 mod methods;
 mod printed;
@@ -12,6 +16,7 @@ use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
+use judge::table::Table;
 use methods::METHODS;
 use raykata::kit::Kit;
 use raykata_cli::args::{Given, Misuse, Opt, Spec, names};
@@ -47,6 +52,8 @@ pub static SPEC: Spec = Spec {
             "FILE",
             "The file for the progress of the long run [default: out/gauntlet.json].",
         ),
+        Opt::value("--out", "FOLDER", "Also write the tables to this folder: index.html and gauntlet.csv.")
+            .short("-o"),
     ]],
 };
 
@@ -65,6 +72,7 @@ pub struct Options {
     seed: u64,
     rays: Option<u64>,
     state: PathBuf,
+    out: Option<PathBuf>,
 }
 
 impl Options {
@@ -76,6 +84,7 @@ impl Options {
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(1),
             rays: given.number("--rays", 0..=u64::MAX)?,
             state: given.path("--state").unwrap_or_else(|| "out/gauntlet.json".into()),
+            out: given.path("--out"),
         })
     }
 }
@@ -88,14 +97,28 @@ pub fn cost(options: &cost::Options) -> Result<bool> {
 /// Runs the gauntlet. Returns whether no ray leaked.
 pub fn run(root: &Path, options: &Options) -> Result<bool> {
     let reference = Source::prepare(root, Which::Solutions, Need::Frames)?;
-    if let Some(rays) = options.rays {
-        return long::run(&reference, rays, options.seed, &options.state);
+    let (tables, succeeded) = match options.rays {
+        Some(rays) => {
+            let (table, succeeded) = long::run(&reference, rays, options.seed, &options.state)?;
+            (vec![table], succeeded)
+        }
+        None => {
+            let source = Source::prepare(root, options.kit, Need::Checks)?;
+            let kit = source.fresh();
+            let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
+            let (table, succeeded) = agreement_table(&reference, options)?;
+            tables.push(table);
+            (tables, succeeded)
+        }
+    };
+    for table in &tables {
+        println!("{}", table.text());
     }
-    let source = Source::prepare(root, options.kit, Need::Checks)?;
-    let kit = source.fresh();
-    tables(rows(&*kit), options.inputs, options.seed)?;
-    println!();
-    agreement_table(&reference, options)
+    if let Some(out) = &options.out {
+        files::write(out, "gauntlet", &tables)?;
+        println!("the tables: {}", out.join("index.html").display());
+    }
+    Ok(succeeded)
 }
 
 /// Returns the rows of all methods and of the kit's functions.
@@ -114,24 +137,23 @@ pub fn summary(kit: &dyn Kit) -> Vec<Summary> {
     judge::gauntlet::summary(rows(kit))
 }
 
-/// Prints the results of the reference's searches on scenes that are hard to search. Returns whether all answers are right.
-fn agreement_table(reference: &Source, options: &Options) -> Result<bool> {
+/// The results of the reference's searches on scenes that are hard to search, and whether all answers are right.
+fn agreement_table(reference: &Source, options: &Options) -> Result<(Table, bool)> {
     let all = agreement::all(reference, options.seed, (options.inputs / 20).max(100))?;
-    println!(
-        "searches compared with exact tests of all triangles (brute force and 18 other searches per scene)"
-    );
-    println!("{:<30}{:>10}{:>10}{:>10}{:>8}", "", "answers", "hits", "ties", "wrong");
-    for scene in all.chunk_by(|one, next| one.scene == next.scene) {
+    let row = |scene: &[Agreement]| {
         let sum = |what: fn(&Agreement) -> u64| Thousands(scene.iter().map(what).sum()).to_string();
-        println!(
-            "{:<30}{:>10}{:>10}{:>10}{:>8}",
-            scene[0].scene,
-            sum(|one| one.rays),
-            sum(|one| one.hits),
-            sum(|one| one.ties),
-            sum(|one| one.mismatches)
-        );
-    }
-    println!("wrong: not a triangle that is met first by exact arithmetic, or not the hit of brute force.");
-    Ok(all.iter().all(|one| one.mismatches == 0))
+        let cells =
+            [sum(|one| one.rays), sum(|one| one.hits), sum(|one| one.ties), sum(|one| one.mismatches)];
+        (scene[0].scene.to_owned(), cells.to_vec())
+    };
+    let table = Table {
+        title: "searches compared with exact tests of all triangles".into(),
+        heads: ["answers", "hits", "ties", "wrong"].map(str::to_owned).to_vec(),
+        rows: all.chunk_by(|one, next| one.scene == next.scene).map(row).collect(),
+        notes: vec![
+            "Brute force and the other searches of the reference in each scene. wrong: not a".into(),
+            "triangle that is met first by exact arithmetic, or not the hit of brute force.".into(),
+        ],
+    };
+    Ok((table, all.iter().all(|one| one.mismatches == 0)))
 }

@@ -26,7 +26,10 @@ const COMMANDS: [(&str, &[&str]); 17] = [
     ("handout", &["FOLDER"]),
     ("export gradescope", &["--out", "--stages", "--seed", "autograder.zip"]),
     ("export classroom", &["--out", "--stages", "--seed"]),
-    ("gauntlet", &["--kit", "--inputs", "--seed", "--rays", "--state", "20000", "out/gauntlet.json"]),
+    (
+        "gauntlet",
+        &["--kit", "--inputs", "--seed", "--rays", "--state", "--out", "20000", "out/gauntlet.json"],
+    ),
     ("cost", &["[SCENE]", "--headline", "--rounds", "--sampler"]),
     ("attacks", &["[NAME]...", "--against-cargo"]),
     ("rehearse", &["--students", "--out", "--jobs", "--honest", "--against-cargo", "200"]),
