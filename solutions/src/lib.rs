@@ -12,6 +12,7 @@ pub mod stage6_distribution;
 pub mod stage7_effects;
 pub mod stage8_scene_graph;
 pub mod stage8_solids;
+pub mod stage8_splines;
 pub mod stage8_surfaces;
 pub mod stage9_bsp;
 pub mod stage9_cells;

@@ -491,6 +491,15 @@ macro_rules! student_functions {
                 BezierPoint fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3
                     = stage8_surfaces::bezier_point;
                 |q: PatchQuery| -> Vec3 { F::bezier_point(&q.patch, q.uv) }
+                /// The value at `u` of the B-spline basis function with this index and degree, by the recursion
+                /// of Cox and de Boor.
+                BsplineBasis fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32
+                    = stage8_splines::bspline_basis;
+                |q: BasisQuery| -> f32 { F::bspline_basis(&q.knots, q.degree, q.index, q.u) }
+                /// The point of a NURBS surface at the parameters `uv`, each within the domain of its knots.
+                NurbsPoint fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3
+                    = stage8_splines::nurbs_point;
+                |q: NurbsQuery| -> Vec3 { F::nurbs_point(&q.patch, q.uv) }
                 /// A mesh after one step of Loop subdivision, with four triangles for each one (Loop, "Smooth
                 /// Subdivision Surfaces Based on Triangles", 1987).
                 LoopSubdivide fn loop_subdivide(mesh: &Mesh) -> Mesh

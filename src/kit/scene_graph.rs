@@ -4,7 +4,7 @@ use super::{SearchAnswer, Table};
 use crate::aabb::Aabb;
 use crate::graph::{Graph, Savings};
 use crate::ray::Ray;
-use crate::shape::{BezierPatch, Sphere};
+use crate::shape::{BezierPatch, NurbsPatch, Sphere};
 use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -94,5 +94,27 @@ pub struct PatchQuery {
     /// The control net of the patch.
     pub patch: BezierPatch,
     /// The parameters `u` along the rows and `v` along the columns of the net, `0..=1` each.
+    pub uv: Vec2,
+}
+
+/// Asks for the value of a B-spline basis function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BasisQuery {
+    /// The knots, which never descend.
+    pub knots: Vec<f32>,
+    /// The degree of the function.
+    pub degree: usize,
+    /// The number of the function: its support begins at `knots[index]` and ends at `knots[index + degree + 1]`.
+    pub index: usize,
+    /// The parameter, within the domain of the knots.
+    pub u: f32,
+}
+
+/// Asks which point of a NURBS surface has the parameters `uv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NurbsQuery {
+    /// The surface.
+    pub patch: NurbsPatch,
+    /// The parameters `u` along the rows and `v` along the columns of the net, within the domains of the knots.
     pub uv: Vec2,
 }

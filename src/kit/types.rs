@@ -12,5 +12,5 @@ pub use crate::partition::{Bsp, Cell, Cells, Grid, KdHeuristics, KdTree, Octree,
 pub use crate::random::Stratum;
 pub use crate::ray::Ray;
 pub use crate::scene::{Quality, Sampler, Scene, Split};
-pub use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, Polygon, Sphere, Triangle};
+pub use crate::shape::{BezierPatch, Cone, Cuboid, Cylinder, Disk, NurbsPatch, Polygon, Sphere, Triangle};
 pub use glam::{Affine3A, UVec3, Vec2, Vec3};

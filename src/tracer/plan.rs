@@ -129,8 +129,10 @@ impl Plan {
         if let Some(missing) = functions.iter().find(|&&function| !written.has(function)) {
             self.world.triangles = false;
             let in_triangles = |shape: &Shape| {
-                matches!(shape, Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. })
-                    || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
+                matches!(
+                    shape,
+                    Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
+                ) || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
             };
             let shown = shows(scene, in_triangles);
             self.note_if(shown, &format!("triangles and meshes are left out: {missing} is not written yet"));
@@ -252,6 +254,10 @@ impl Plan {
         self.note_if(
             self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
             "curved surfaces are left out: `bezier_point` of stage 8 is not written yet",
+        );
+        self.note_if(
+            self.world.nurbs_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Nurbs { .. })),
+            "B-spline and NURBS surfaces are left out: `nurbs_point` or `bspline_basis` of stage 8 is not written yet",
         );
     }
 

@@ -123,13 +123,14 @@ impl Flattener<'_> {
                 _ if self.functions.planes => self.plane(&equation.to_plane(), None, way, material),
                 _ => {}
             },
-            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } if !self.functions.triangles => {}
+            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
+                if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
                 self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
             }
-            Shape::Mesh(_) | Shape::Bezier { .. } => {
-                // `None` for a Bézier patch if `bezier_point` is not written.
+            Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. } => {
+                // `None` for a curved surface whose function is not written.
                 if let Some(ready) = ready {
                     self.mesh(ready, way, material);
                 }

@@ -2,7 +2,7 @@
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
 //! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
-//! their formulas) · `surfaces` (patches) · `subdivision` (meshes; `quarters`: their triangles)
+//! their formulas) · `surfaces` (patches) · `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod bounding_spheres;
 mod boxes;
@@ -14,6 +14,7 @@ mod quarters;
 mod solid;
 mod solids;
 mod spaces;
+mod splines;
 mod subdivision;
 mod surfaces;
 
@@ -41,6 +42,10 @@ use spaces::{
     normals_are_at_right_angles_to_the_surface, normals_stay_outside_in_a_mirror,
     placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone,
     rays_keep_their_t_in_every_space, rays_pass_the_same_points_in_every_space,
+};
+use splines::{
+    bspline_basis_follows_the_recursion, bspline_basis_sums_to_one, nurbs_arcs_are_exact,
+    nurbs_point_is_the_weighted_mean_of_its_net,
 };
 use subdivision::{
     loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
@@ -87,6 +92,10 @@ checks::stage! { ($ crate) 8 [
     polygon_at_edges_and_corners
     bezier_starts_and_ends_at_its_corners
     bezier_point_is_the_mean_of_its_net
+    bspline_basis_follows_the_recursion
+    bspline_basis_sums_to_one
+    nurbs_point_is_the_weighted_mean_of_its_net
+    nurbs_arcs_are_exact
     loop_makes_four_triangles_of_each
     loop_places_vertices_by_the_rule
     loop_borders_depend_on_borders
