@@ -19,6 +19,7 @@ pub mod stage9_cells;
 pub mod stage9_coherence;
 pub mod stage9_grid;
 pub mod stage9_kd_tree;
+pub mod stage9_neighbours;
 pub mod stage9_octree;
 pub mod stage9_polygon_bsp;
 

@@ -27,6 +27,7 @@ impl Answer {
             Answer::GraphHit(answers) => answers.iter_mut().map(Costs::Graph).collect(),
             Answer::GridSearch(answers)
             | Answer::OctreeByCells(answers)
+            | Answer::OctreeByNeighbours(answers)
             | Answer::OctreeSearch(answers)
             | Answer::KdSearch(answers)
             | Answer::BspSearch(answers)

@@ -541,6 +541,13 @@ macro_rules! student_functions {
                 OctreeByCells fn octree_by_cells[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit_by_cells;
                 |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_by_cells(&q.cells, probe, &q.ray)) }
+                /// The closest hit in an octree, from leaf to leaf along the ray without a return to the root;
+                /// `None` if nothing is hit.
+                OctreeByNeighbours fn octree_by_neighbours[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
+                    = stage9_neighbours::closest_hit_by_neighbours;
+                |q: CellsQuery<Octree>| -> CellsAnswer {
+                    look(q, |probe| F::octree_by_neighbours(&q.cells, probe, &q.ray))
+                }
                 /// The closest hit in an octree, from the root down and nearest octant first; `None` if
                 /// nothing is hit.
                 OctreeSearch fn octree_search[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>

@@ -27,6 +27,8 @@ pub enum Accelerator {
     Octree,
     /// An octree that is searched from cell to cell along the ray, and not from the root down (stage 9).
     OctreeByCells,
+    /// The octree of stage 9, searched from leaf to leaf along the ray without a return to the root.
+    OctreeByNeighbours,
     /// A kd-tree: space is divided by planes across the axes (stage 9).
     KdTree,
     /// A binary space partition (BSP) tree: space is divided by planes of any direction (stage 9).
@@ -43,7 +45,7 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 13] = [
+    pub const ALL: [Accelerator; 14] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
@@ -54,6 +56,7 @@ impl Accelerator {
         Accelerator::Grid,
         Accelerator::Octree,
         Accelerator::OctreeByCells,
+        Accelerator::OctreeByNeighbours,
         Accelerator::KdTree,
         Accelerator::Bsp,
         Accelerator::PolygonBsp,
@@ -80,6 +83,7 @@ impl Accelerator {
             Accelerator::Grid => "grid",
             Accelerator::Octree => "octree",
             Accelerator::OctreeByCells => "octree_by_cells",
+            Accelerator::OctreeByNeighbours => "octree_by_neighbours",
             Accelerator::KdTree => "kd_tree",
             Accelerator::Bsp => "bsp",
             Accelerator::PolygonBsp => "polygon_bsp",

@@ -378,6 +378,9 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
             &[Function::cell_span, Function::grid_resolution, Function::grid_build, Function::grid_search],
         ),
         Accelerator::Octree => (9, &[Function::cell_span, Function::octree_build, Function::octree_search]),
+        Accelerator::OctreeByNeighbours => {
+            (9, &[Function::cell_span, Function::octree_build, Function::octree_by_neighbours])
+        }
         Accelerator::OctreeByCells => {
             (9, &[Function::cell_span, Function::octree_build, Function::octree_by_cells])
         }

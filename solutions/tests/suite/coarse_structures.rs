@@ -60,6 +60,7 @@ fn structures_over_hard_triangles_are_small_and_right() {
             Accelerator::Grid,
             Accelerator::Octree,
             Accelerator::OctreeByCells,
+            Accelerator::OctreeByNeighbours,
             Accelerator::KdTree,
             Accelerator::Bsp,
             Accelerator::PolygonBsp,

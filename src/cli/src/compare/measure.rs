@@ -152,6 +152,7 @@ impl Bench<'_> {
             // forest).
             Accelerator::Octree
             | Accelerator::OctreeByCells
+            | Accelerator::OctreeByNeighbours
             | Accelerator::KdTree
             | Accelerator::Bsp
             | Accelerator::PolygonBsp => &[tiny][..],

@@ -55,6 +55,7 @@ pub fn withheld(request: &Request) -> Option<Request> {
         }
         Request::GridSearch(queries) => Request::GridSearch(cells(queries)),
         Request::OctreeByCells(queries) => Request::OctreeByCells(cells(queries)),
+        Request::OctreeByNeighbours(queries) => Request::OctreeByNeighbours(cells(queries)),
         Request::OctreeSearch(queries) => Request::OctreeSearch(cells(queries)),
         Request::KdSearch(queries) => Request::KdSearch(cells(queries)),
         Request::BspSearch(queries) => Request::BspSearch(cells(queries)),
@@ -104,7 +105,9 @@ impl<'a> Withheld<'a> {
                 queries.iter().map(|query| probe(&query.table)).collect()
             }
             Request::GridSearch(queries) => cells(queries),
-            Request::OctreeByCells(queries) | Request::OctreeSearch(queries) => cells(queries),
+            Request::OctreeByCells(queries)
+            | Request::OctreeByNeighbours(queries)
+            | Request::OctreeSearch(queries) => cells(queries),
             Request::KdSearch(queries) => cells(queries),
             Request::BspSearch(queries) => cells(queries),
             Request::PolygonBspSearch(queries) => cells(queries),

@@ -180,7 +180,7 @@ fn qualities_have_limits() {
         "[quality]\naccelerator = 'magic'",
         "s.toml:3:15: unknown value of `accelerator`: `magic`\nhelp: known names are `brute_force`, \
          `bounding_boxes`, `bounding_spheres`, `bvh`, `bvh_both_children`, `cached_bvh`, `packet_bvh`, `grid`, `octree`, \
-         `octree_by_cells`, `kd_tree`, `bsp`, `polygon_bsp`",
+         `octree_by_cells`, `octree_by_neighbours`, `kd_tree`, `bsp`, `polygon_bsp`",
     );
     check_refused_with(
         "[quality]\nmax_deph = 3",
