@@ -10,6 +10,7 @@ pub mod stage4_shading;
 pub mod stage5_recursion;
 pub mod stage6_distribution;
 pub mod stage7_effects;
+pub mod stage8_child_cache;
 pub mod stage8_scene_graph;
 pub mod stage8_solids;
 pub mod stage8_splines;

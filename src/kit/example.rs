@@ -181,6 +181,7 @@ examples! {
         savings: Savings::default(),
         table: Table::default(),
     };
+    CachedGraphQuery => CachedGraphQuery { search: example(), cache: ChildCache::default() };
     BasisQuery => BasisQuery { knots: vec![0.0, 0.0, 1.0, 1.0], degree: 1, index: 0, u: 0.5 };
     NurbsQuery => NurbsQuery { patch: example(), uv: Vec2::ZERO };
     PatchQuery => PatchQuery { patch: example(), uv: Vec2::ZERO };

@@ -461,6 +461,20 @@ macro_rules! student_functions {
                     let hit = F::closest_hit_in_graph(&q.graph, &mut probe, &q.ray, q.savings);
                     GraphAnswer { search: probe.answer(hit), asked: probe.asked }
                 }
+                /// The closest hit in a scene graph, as without a cache; in each node the child in which the
+                /// previous ray had its closest hit is visited first.
+                CachedGraphHit fn closest_hit_with_child_cache[P: Probe](
+                    graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings, cache: &mut ChildCache
+                ) -> Option<PrimitiveHit>
+                    = stage8_child_cache::closest_hit_with_child_cache;
+                |q: CachedGraphQuery| -> CachedGraphAnswer {
+                    let (query, mut cache) = (&q.search, q.cache.clone());
+                    let mut probe = TableProbe::without_hierarchy(&query.table);
+                    let hit = F::closest_hit_with_child_cache(
+                        &query.graph, &mut probe, &query.ray, query.savings, &mut cache
+                    );
+                    CachedGraphAnswer { found: GraphAnswer { search: probe.answer(hit), asked: probe.asked }, cache }
+                }
                 /// The nearest hit with the surface of a solid box in the range of the ray, with the outward
                 /// normal; `None` if there is none.
                 Cuboid fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit>

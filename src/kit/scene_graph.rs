@@ -2,7 +2,7 @@
 
 use super::{SearchAnswer, Table};
 use crate::aabb::Aabb;
-use crate::graph::{Graph, Savings};
+use crate::graph::{ChildCache, Graph, Savings};
 use crate::ray::Ray;
 use crate::shape::{BezierPatch, NurbsPatch, Sphere};
 use glam::{Affine3A, Vec2, Vec3};
@@ -86,6 +86,24 @@ pub struct GraphAnswer {
     pub search: SearchAnswer,
     /// The numbers of the primitives that were tested, in order.
     pub asked: Vec<u32>,
+}
+
+/// Asks for the closest hit in a scene graph with a cache in each node. The answer is a [`CachedGraphAnswer`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CachedGraphQuery {
+    /// The graph, the ray and the answers to all calls of the search.
+    pub search: GraphQuery,
+    /// The cache before the search. Each entry is a child of its node.
+    pub cache: ChildCache,
+}
+
+/// The result of a search of a scene graph with a cache in each node.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CachedGraphAnswer {
+    /// The hit, the cost and the order of the primitive tests.
+    pub found: GraphAnswer,
+    /// The cache after the search.
+    pub cache: ChildCache,
 }
 
 /// Asks which point of a Bézier patch has the parameters `uv`.

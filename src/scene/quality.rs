@@ -14,6 +14,9 @@ pub enum Accelerator {
     BoundingBoxes,
     /// The scene graph itself, with a bounding sphere around each of its nodes (stage 8).
     BoundingSpheres,
+    /// The scene graph with a bounding box around each node, where each node remembers the child that the previous ray hit
+    /// and searches it first (stage 8).
+    CachedBoundingBoxes,
     /// A bounding volume hierarchy (stage 3).
     #[default]
     Bvh,
@@ -45,10 +48,11 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 14] = [
+    pub const ALL: [Accelerator; 15] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
+        Accelerator::CachedBoundingBoxes,
         Accelerator::Bvh,
         Accelerator::BvhBothChildren,
         Accelerator::CachedBvh,
@@ -76,6 +80,7 @@ impl Accelerator {
             Accelerator::BruteForce => "brute_force",
             Accelerator::BoundingBoxes => "bounding_boxes",
             Accelerator::BoundingSpheres => "bounding_spheres",
+            Accelerator::CachedBoundingBoxes => "cached_bounding_boxes",
             Accelerator::Bvh => "bvh",
             Accelerator::BvhBothChildren => "bvh_both_children",
             Accelerator::CachedBvh => "cached_bvh",

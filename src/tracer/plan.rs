@@ -371,6 +371,9 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
         Accelerator::BoundingSpheres => {
             (8, &[Function::closest_hit_in_graph, Function::bounding_sphere, Function::enter_bounding_sphere])
         }
+        Accelerator::CachedBoundingBoxes => {
+            (8, &[Function::closest_hit_in_graph, Function::closest_hit_with_child_cache])
+        }
         Accelerator::CachedBvh => (9, &[Function::cached_search]),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),
         Accelerator::Grid => (

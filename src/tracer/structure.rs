@@ -6,7 +6,7 @@ use super::large_leaves::large_leaves;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use crate::count::Event;
-use crate::graph::{Graph, Savings};
+use crate::graph::{ChildCache, Graph, Savings};
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::partition::limit::limited;
 use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, PolygonBsp, corners};
@@ -128,7 +128,7 @@ impl Structure {
         let structure = match (accelerator, graph) {
             (None, _) => Structure::Painter,
             (Some(Accelerator::BruteForce), _) => Structure::List,
-            (Some(Accelerator::BoundingBoxes), Some(graph)) => {
+            (Some(Accelerator::BoundingBoxes | Accelerator::CachedBoundingBoxes), Some(graph)) => {
                 let volumes = Volumes::Boxes(boxes::<F>(&graph, bounds));
                 Structure::Graph { graph, volumes }
             }
@@ -165,7 +165,8 @@ impl Structure {
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh
                     | Accelerator::BoundingBoxes
-                    | Accelerator::BoundingSpheres,
+                    | Accelerator::BoundingSpheres
+                    | Accelerator::CachedBoundingBoxes,
                 ),
                 _,
             ) => Structure::Hierarchy(F::build(bounds, quality.split, leaf_size)),
@@ -202,6 +203,24 @@ impl Structure {
             Structure::PolygonBsp { tree, .. } => F::polygon_bsp_search(tree, probe, ray),
             Structure::List => F::brute_force(probe.n_primitives(), probe, ray),
             Structure::Painter => last_hit(probe, ray),
+        }
+    }
+
+    /// The same for a scene graph with a cache in each node, which is updated; other structures have no such cache.
+    #[inline(always)]
+    pub fn closest_hit_with_cache<F: StudentFunctions, P: Primitives>(
+        &self,
+        probe: &mut P,
+        ray: &Ray,
+        savings: Savings,
+        cache: &mut ChildCache,
+    ) -> Option<PrimitiveHit> {
+        match self {
+            Structure::Graph { graph, volumes } => {
+                let mut probe = GraphProbe::<F, P> { probe, volumes, functions: PhantomData };
+                F::closest_hit_with_child_cache(graph, &mut probe, ray, savings, cache)
+            }
+            other => other.closest_hit::<F, P>(probe, ray, savings),
         }
     }
 

@@ -18,8 +18,10 @@ use std::ops::Range;
 /// Traverses `scene` from its roots and returns its primitives in world space; see [`World::new`].
 pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
     let mut meshes = Meshes::new(scene, effects, functions);
-    let searched =
-        matches!(scene.quality.accelerator, Accelerator::BoundingBoxes | Accelerator::BoundingSpheres);
+    let searched = matches!(
+        scene.quality.accelerator,
+        Accelerator::BoundingBoxes | Accelerator::BoundingSpheres | Accelerator::CachedBoundingBoxes
+    );
     let mut flattener = Flattener {
         scene,
         effects,

@@ -57,6 +57,7 @@ fn structures_over_hard_triangles_are_small_and_right() {
             Accelerator::PacketBvh,
             Accelerator::BoundingBoxes,
             Accelerator::BoundingSpheres,
+            Accelerator::CachedBoundingBoxes,
             Accelerator::Grid,
             Accelerator::Octree,
             Accelerator::OctreeByCells,

@@ -82,10 +82,11 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 14] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 15] = [
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
     ("bounding-spheres", Accelerator::BoundingSpheres),
+    ("cached-bounding-boxes", Accelerator::CachedBoundingBoxes),
     ("bvh", Accelerator::Bvh),
     ("bvh-both-children", Accelerator::BvhBothChildren),
     ("cached-bvh", Accelerator::CachedBvh),

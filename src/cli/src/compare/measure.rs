@@ -147,6 +147,7 @@ impl Bench<'_> {
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes
             | Accelerator::BoundingSpheres
+            | Accelerator::CachedBoundingBoxes
             | Accelerator::Grid => &[longer, tiny][..],
             // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the
             // forest).

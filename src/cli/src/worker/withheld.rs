@@ -53,6 +53,11 @@ pub fn withheld(request: &Request) -> Option<Request> {
             queries.iter_mut().for_each(|query| query.table = query.table.withheld());
             Request::GraphHit(queries)
         }
+        Request::CachedGraphHit(queries) => {
+            let mut queries = queries.clone();
+            queries.iter_mut().for_each(|query| query.search.table = query.search.table.withheld());
+            Request::CachedGraphHit(queries)
+        }
         Request::GridSearch(queries) => Request::GridSearch(cells(queries)),
         Request::OctreeByCells(queries) => Request::OctreeByCells(cells(queries)),
         Request::OctreeByNeighbours(queries) => Request::OctreeByNeighbours(cells(queries)),
@@ -103,6 +108,10 @@ impl<'a> Withheld<'a> {
             Request::GraphHit(queries) => {
                 let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
                 queries.iter().map(|query| probe(&query.table)).collect()
+            }
+            Request::CachedGraphHit(queries) => {
+                let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
+                queries.iter().map(|query| probe(&query.search.table)).collect()
             }
             Request::GridSearch(queries) => cells(queries),
             Request::OctreeByCells(queries)

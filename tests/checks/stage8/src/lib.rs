@@ -1,11 +1,12 @@
 //! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
-//! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
+//! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
 //! their formulas) · `surfaces` (patches) · `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod bounding_spheres;
 mod boxes;
+mod child_cache;
 mod flat;
 mod graph;
 mod hard;
@@ -23,6 +24,9 @@ use bounding_spheres::{
     sphere_holds_all_points, sphere_is_small,
 };
 use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
+use child_cache::{
+    child_cache_changes_no_answer, child_cache_goes_first, child_cache_stores_the_way_to_the_hit,
+};
 use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};
 use graph::{
     graph_asks_for_everything_without_savings, graph_asks_for_volumes_first, graph_finds_the_closest_hit,
@@ -70,6 +74,9 @@ checks::stage! { ($ crate) 8 [
     graph_asks_for_volumes_first
     graph_skips_what_begins_beyond_the_hit
     graph_looks_into_the_nearest_first
+    child_cache_changes_no_answer
+    child_cache_goes_first
+    child_cache_stores_the_way_to_the_hit
     cuboid_agrees_with_exact_arithmetic
     cuboid_normals_point_outwards
     cuboid_keeps_to_the_rules

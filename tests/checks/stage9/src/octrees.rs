@@ -230,7 +230,7 @@ fn overlapping_two_octants(name: &str) -> Asked<Octree> {
             let mut control = Octree::new(cells.bounds);
             control.divide(0, 1, 1);
             control.set_leaf(near, &[0, 1, 2]);
-            asked.control(format!("octree, {name}"), control, ray, (1.0, 5.0));
+            asked.control(&format!("octree, {name}"), control, ray, (1.0, 5.0));
         }
     }
     asked
