@@ -67,3 +67,25 @@ impl Default for Savings {
         Savings { volumes: true, skip: true, sort: true }
     }
 }
+
+/// For each node of a scene graph the child in which the previous ray had its closest hit.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChildCache {
+    /// The entries, by node. A node beyond the end has none.
+    pub children: Vec<Option<u32>>,
+}
+
+impl ChildCache {
+    /// The child that is stored for `node`; `None` if there is none.
+    pub fn get(&self, node: u32) -> Option<u32> {
+        self.children.get(node as usize).copied().flatten()
+    }
+
+    /// Stores `child` for `node`.
+    pub fn set(&mut self, node: u32, child: u32) {
+        if self.children.len() <= node as usize {
+            self.children.resize(node as usize + 1, None);
+        }
+        self.children[node as usize] = Some(child);
+    }
+}

@@ -116,6 +116,36 @@ pub struct BezierPatch {
     pub rows: [[Vec3; 4]; 4],
 }
 
+/// A NURBS surface: a control net of any size with a weight for each point, and a degree and knots along both directions.
+/// With equal weights it is a B-spline surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NurbsPatch {
+    /// The degrees along `u` and along `v`, each at least 1.
+    pub degrees: [usize; 2],
+    /// The knots along `u` and along `v`, which never descend: as many as there are control points in this direction, plus
+    /// the degree, plus 1.
+    pub knots: [Vec<f32>; 2],
+    /// The control net, in world units: `u` runs along a row and `v` from row to row. All rows have the same length, and
+    /// there are more points in each direction than its degree.
+    pub rows: Vec<Vec<Vec3>>,
+    /// The weight of each control point, above 0, in rows like those of the net.
+    pub weights: Vec<Vec<f32>>,
+}
+
+impl NurbsPatch {
+    /// The spans that are not empty between the knots of the domain, each with its ends, in ascending order: along `u` for
+    /// `axis` 0 and along `v` for `axis` 1.
+    ///
+    /// # Panics
+    ///
+    /// If `axis` is above 1, or if there are too few knots for the degree.
+    pub fn spans(&self, axis: usize) -> Vec<[f32; 2]> {
+        let (knots, degree) = (&self.knots[axis], self.degrees[axis]);
+        let domain = &knots[degree..knots.len() - degree];
+        domain.windows(2).map(|ends| [ends[0], ends[1]]).filter(|ends| ends[0] < ends[1]).collect()
+    }
+}
+
 /// A shape of a scene, in the space of the node that contains it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
@@ -142,6 +172,14 @@ pub enum Shape {
         /// The patch itself.
         patch: Box<BezierPatch>,
         /// The number of squares along each side, at least 1; each square becomes two triangles.
+        steps: u32,
+    },
+    /// A B-spline or NURBS surface, which is divided into triangles before rendering.
+    Nurbs {
+        /// The surface itself.
+        patch: Box<NurbsPatch>,
+        /// The number of squares along each side of a span between two knots, at least 1; each square becomes two
+        /// triangles.
         steps: u32,
     },
     /// An instance of the mesh with this index in [`crate::scene::Scene::meshes`].
@@ -173,6 +211,7 @@ impl Shape {
             Shape::Polygon(p) => bounds_of_points(&p.corners),
             // Each point of the surface is a weighted mean of the control points.
             Shape::Bezier { patch, .. } => bounds_of_points(patch.rows.as_flattened()),
+            Shape::Nurbs { patch, .. } => bounds_of_points(&patch.rows.concat()),
             Shape::Mesh(index) => meshes[*index].mesh.bounds(),
         })
     }

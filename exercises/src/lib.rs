@@ -10,14 +10,17 @@ pub mod stage4_shading;
 pub mod stage5_recursion;
 pub mod stage6_distribution;
 pub mod stage7_effects;
+pub mod stage8_child_cache;
 pub mod stage8_scene_graph;
 pub mod stage8_solids;
+pub mod stage8_splines;
 pub mod stage8_surfaces;
 pub mod stage9_bsp;
 pub mod stage9_cells;
 pub mod stage9_coherence;
 pub mod stage9_grid;
 pub mod stage9_kd_tree;
+pub mod stage9_neighbours;
 pub mod stage9_octree;
 pub mod stage9_polygon_bsp;
 

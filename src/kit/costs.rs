@@ -25,8 +25,12 @@ impl Answer {
             }
             Answer::AnyHit(answers) => answers.iter_mut().map(|(_, answer)| Costs::Search(answer)).collect(),
             Answer::GraphHit(answers) => answers.iter_mut().map(Costs::Graph).collect(),
+            Answer::CachedGraphHit(answers) => {
+                answers.iter_mut().map(|answer| Costs::Graph(&mut answer.found)).collect()
+            }
             Answer::GridSearch(answers)
             | Answer::OctreeByCells(answers)
+            | Answer::OctreeByNeighbours(answers)
             | Answer::OctreeSearch(answers)
             | Answer::KdSearch(answers)
             | Answer::BspSearch(answers)

@@ -78,6 +78,12 @@ examples! {
     Disk => Disk { center: Vec3::ZERO, normal: Vec3::Y, radius: 1.0 };
     Polygon => Polygon { corners: vec![Vec3::ZERO, Vec3::X, Vec3::Y] };
     BezierPatch => BezierPatch { rows: [[Vec3::ZERO; 4]; 4] };
+    NurbsPatch => NurbsPatch {
+        degrees: [1, 1],
+        knots: [0, 1].map(|_| vec![0.0, 0.0, 1.0, 1.0]),
+        rows: vec![vec![Vec3::ZERO; 2]; 2],
+        weights: vec![vec![1.0; 2]; 2],
+    };
     Mesh => Mesh::default();
     Material => Material::default();
     Quality => Quality::default();
@@ -175,6 +181,9 @@ examples! {
         savings: Savings::default(),
         table: Table::default(),
     };
+    CachedGraphQuery => CachedGraphQuery { search: example(), cache: ChildCache::default() };
+    BasisQuery => BasisQuery { knots: vec![0.0, 0.0, 1.0, 1.0], degree: 1, index: 0, u: 0.5 };
+    NurbsQuery => NurbsQuery { patch: example(), uv: Vec2::ZERO };
     PatchQuery => PatchQuery { patch: example(), uv: Vec2::ZERO };
     ResolutionQuery => ResolutionQuery { bounds: Aabb::EMPTY, n_primitives: 0, density: 1.0 };
     GridQuery => GridQuery { bounds: Vec::new(), resolution: UVec3::ONE };

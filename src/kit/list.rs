@@ -461,6 +461,20 @@ macro_rules! student_functions {
                     let hit = F::closest_hit_in_graph(&q.graph, &mut probe, &q.ray, q.savings);
                     GraphAnswer { search: probe.answer(hit), asked: probe.asked }
                 }
+                /// The closest hit in a scene graph, as without a cache; in each node the child in which the
+                /// previous ray had its closest hit is visited first.
+                CachedGraphHit fn closest_hit_with_child_cache[P: Probe](
+                    graph: &Graph, probe: &mut P, ray: &Ray, savings: Savings, cache: &mut ChildCache
+                ) -> Option<PrimitiveHit>
+                    = stage8_child_cache::closest_hit_with_child_cache;
+                |q: CachedGraphQuery| -> CachedGraphAnswer {
+                    let (query, mut cache) = (&q.search, q.cache.clone());
+                    let mut probe = TableProbe::without_hierarchy(&query.table);
+                    let hit = F::closest_hit_with_child_cache(
+                        &query.graph, &mut probe, &query.ray, query.savings, &mut cache
+                    );
+                    CachedGraphAnswer { found: GraphAnswer { search: probe.answer(hit), asked: probe.asked }, cache }
+                }
                 /// The nearest hit with the surface of a solid box in the range of the ray, with the outward
                 /// normal; `None` if there is none.
                 Cuboid fn cuboid(ray: &Ray, cuboid: &Cuboid) -> Option<SolidHit>
@@ -491,6 +505,15 @@ macro_rules! student_functions {
                 BezierPoint fn bezier_point(patch: &BezierPatch, uv: Vec2) -> Vec3
                     = stage8_surfaces::bezier_point;
                 |q: PatchQuery| -> Vec3 { F::bezier_point(&q.patch, q.uv) }
+                /// The value at `u` of the B-spline basis function with this index and degree, by the recursion
+                /// of Cox and de Boor.
+                BsplineBasis fn bspline_basis(knots: &[f32], degree: usize, index: usize, u: f32) -> f32
+                    = stage8_splines::bspline_basis;
+                |q: BasisQuery| -> f32 { F::bspline_basis(&q.knots, q.degree, q.index, q.u) }
+                /// The point of a NURBS surface at the parameters `uv`, each within the domain of its knots.
+                NurbsPoint fn nurbs_point(patch: &NurbsPatch, uv: Vec2) -> Vec3
+                    = stage8_splines::nurbs_point;
+                |q: NurbsQuery| -> Vec3 { F::nurbs_point(&q.patch, q.uv) }
                 /// A mesh after one step of Loop subdivision, with four triangles for each one (Loop, "Smooth
                 /// Subdivision Surfaces Based on Triangles", 1987).
                 LoopSubdivide fn loop_subdivide(mesh: &Mesh) -> Mesh
@@ -532,6 +555,13 @@ macro_rules! student_functions {
                 OctreeByCells fn octree_by_cells[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
                     = stage9_octree::closest_hit_by_cells;
                 |q: CellsQuery<Octree>| -> CellsAnswer { look(q, |probe| F::octree_by_cells(&q.cells, probe, &q.ray)) }
+                /// The closest hit in an octree, from leaf to leaf along the ray without a return to the root;
+                /// `None` if nothing is hit.
+                OctreeByNeighbours fn octree_by_neighbours[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>
+                    = stage9_neighbours::closest_hit_by_neighbours;
+                |q: CellsQuery<Octree>| -> CellsAnswer {
+                    look(q, |probe| F::octree_by_neighbours(&q.cells, probe, &q.ray))
+                }
                 /// The closest hit in an octree, from the root down and nearest octant first; `None` if
                 /// nothing is hit.
                 OctreeSearch fn octree_search[P: Cells](octree: &Octree, probe: &mut P, ray: &Ray) -> Option<PrimitiveHit>

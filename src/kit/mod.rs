@@ -49,8 +49,8 @@ pub use partitions::{
 };
 pub use recursion::{Bounce, FresnelQuery, Limits, RefractQuery, ScatterQuery, SecondaryRay};
 pub use scene_graph::{
-    BoundingSphereQuery, BoundsQuery, GraphAnswer, GraphQuery, NormalQuery, ObjectRayQuery, PatchQuery,
-    SolidHit, SolidQuery,
+    BasisQuery, BoundingSphereQuery, BoundsQuery, CachedGraphAnswer, CachedGraphQuery, GraphAnswer,
+    GraphQuery, NormalQuery, NurbsQuery, ObjectRayQuery, PatchQuery, SolidHit, SolidQuery,
 };
 pub use shading::{LightSample, ShadeAnswer, ShadeQuery, ShadowProbe, ShadowQuery, Surface, TermQuery};
 pub use shapes::{PlaneEquationQuery, PlaneQuery, RootQuery, SphereQuery};

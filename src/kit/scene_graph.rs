@@ -2,9 +2,9 @@
 
 use super::{SearchAnswer, Table};
 use crate::aabb::Aabb;
-use crate::graph::{Graph, Savings};
+use crate::graph::{ChildCache, Graph, Savings};
 use crate::ray::Ray;
-use crate::shape::{BezierPatch, Sphere};
+use crate::shape::{BezierPatch, NurbsPatch, Sphere};
 use glam::{Affine3A, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -88,11 +88,51 @@ pub struct GraphAnswer {
     pub asked: Vec<u32>,
 }
 
+/// Asks for the closest hit in a scene graph with a cache in each node. The answer is a [`CachedGraphAnswer`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CachedGraphQuery {
+    /// The graph, the ray and the answers to all calls of the search.
+    pub search: GraphQuery,
+    /// The cache before the search. Each entry is a child of its node.
+    pub cache: ChildCache,
+}
+
+/// The result of a search of a scene graph with a cache in each node.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CachedGraphAnswer {
+    /// The hit, the cost and the order of the primitive tests.
+    pub found: GraphAnswer,
+    /// The cache after the search.
+    pub cache: ChildCache,
+}
+
 /// Asks which point of a Bézier patch has the parameters `uv`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PatchQuery {
     /// The control net of the patch.
     pub patch: BezierPatch,
     /// The parameters `u` along the rows and `v` along the columns of the net, `0..=1` each.
+    pub uv: Vec2,
+}
+
+/// Asks for the value of a B-spline basis function.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BasisQuery {
+    /// The knots, which never descend.
+    pub knots: Vec<f32>,
+    /// The degree of the function.
+    pub degree: usize,
+    /// The number of the function: its support begins at `knots[index]` and ends at `knots[index + degree + 1]`.
+    pub index: usize,
+    /// The parameter, within the domain of the knots.
+    pub u: f32,
+}
+
+/// Asks which point of a NURBS surface has the parameters `uv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NurbsQuery {
+    /// The surface.
+    pub patch: NurbsPatch,
+    /// The parameters `u` along the rows and `v` along the columns of the net, within the domains of the knots.
     pub uv: Vec2,
 }

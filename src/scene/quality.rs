@@ -14,6 +14,9 @@ pub enum Accelerator {
     BoundingBoxes,
     /// The scene graph itself, with a bounding sphere around each of its nodes (stage 8).
     BoundingSpheres,
+    /// The scene graph with a bounding box around each node, where each node remembers the child that the previous ray hit
+    /// and searches it first (stage 8).
+    CachedBoundingBoxes,
     /// A bounding volume hierarchy (stage 3).
     #[default]
     Bvh,
@@ -27,6 +30,8 @@ pub enum Accelerator {
     Octree,
     /// An octree that is searched from cell to cell along the ray, and not from the root down (stage 9).
     OctreeByCells,
+    /// The octree of stage 9, searched from leaf to leaf along the ray without a return to the root.
+    OctreeByNeighbours,
     /// A kd-tree: space is divided by planes across the axes (stage 9).
     KdTree,
     /// A binary space partition (BSP) tree: space is divided by planes of any direction (stage 9).
@@ -43,10 +48,11 @@ pub enum Accelerator {
 impl Accelerator {
     /// Every accelerator once: brute force, the volumes of the scene graph, the hierarchies, then the
     /// structures that divide space.
-    pub const ALL: [Accelerator; 13] = [
+    pub const ALL: [Accelerator; 15] = [
         Accelerator::BruteForce,
         Accelerator::BoundingBoxes,
         Accelerator::BoundingSpheres,
+        Accelerator::CachedBoundingBoxes,
         Accelerator::Bvh,
         Accelerator::BvhBothChildren,
         Accelerator::CachedBvh,
@@ -54,6 +60,7 @@ impl Accelerator {
         Accelerator::Grid,
         Accelerator::Octree,
         Accelerator::OctreeByCells,
+        Accelerator::OctreeByNeighbours,
         Accelerator::KdTree,
         Accelerator::Bsp,
         Accelerator::PolygonBsp,
@@ -73,6 +80,7 @@ impl Accelerator {
             Accelerator::BruteForce => "brute_force",
             Accelerator::BoundingBoxes => "bounding_boxes",
             Accelerator::BoundingSpheres => "bounding_spheres",
+            Accelerator::CachedBoundingBoxes => "cached_bounding_boxes",
             Accelerator::Bvh => "bvh",
             Accelerator::BvhBothChildren => "bvh_both_children",
             Accelerator::CachedBvh => "cached_bvh",
@@ -80,6 +88,7 @@ impl Accelerator {
             Accelerator::Grid => "grid",
             Accelerator::Octree => "octree",
             Accelerator::OctreeByCells => "octree_by_cells",
+            Accelerator::OctreeByNeighbours => "octree_by_neighbours",
             Accelerator::KdTree => "kd_tree",
             Accelerator::Bsp => "bsp",
             Accelerator::PolygonBsp => "polygon_bsp",

@@ -4,6 +4,7 @@
 use super::frame::Frame;
 use super::hit::Hit;
 use super::interaction::{SurfaceInteraction, texture_coordinates};
+use super::intersector::Cache;
 use super::packets::Packets;
 use super::random_choices::{area_of, sample_area_light, sample_rough_surface};
 use super::record::Record;
@@ -48,8 +49,8 @@ pub struct Scratch<T> {
     /// For each of `lights`, whether it casts shadows.
     shadows: Vec<bool>,
     waiting: Vec<Path>,
-    /// The primitive that the previous ray hit.
-    last: Option<u32>,
+    /// What accelerators with a cache keep from the previous ray.
+    cache: Cache,
     /// The hits of camera rays that were traced ahead in packets.
     pub packets: Packets,
 }
@@ -95,7 +96,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     /// The closest hit of `ray` within its range, or `None`; counted in `scratch`.
     #[inline(always)]
     pub fn closest_hit<T: Tally>(&self, ray: &Ray, scratch: &mut Scratch<T>) -> Option<Hit> {
-        self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.last)
+        self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.cache)
     }
 
     /// The light that the surface at `hit` sends back along the path; its secondary rays are added to the

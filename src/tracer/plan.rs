@@ -129,8 +129,10 @@ impl Plan {
         if let Some(missing) = functions.iter().find(|&&function| !written.has(function)) {
             self.world.triangles = false;
             let in_triangles = |shape: &Shape| {
-                matches!(shape, Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. })
-                    || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
+                matches!(
+                    shape,
+                    Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
+                ) || (self.world.placement.is_none() && !is_sphere(shape) && !is_plane(shape))
             };
             let shown = shows(scene, in_triangles);
             self.note_if(shown, &format!("triangles and meshes are left out: {missing} is not written yet"));
@@ -253,6 +255,10 @@ impl Plan {
             self.world.bezier_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Bezier { .. })),
             "curved surfaces are left out: `bezier_point` of stage 8 is not written yet",
         );
+        self.note_if(
+            self.world.nurbs_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Nurbs { .. })),
+            "B-spline and NURBS surfaces are left out: `nurbs_point` or `bspline_basis` of stage 8 is not written yet",
+        );
     }
 
     fn note_if(&mut self, missing: bool, what: &str) {
@@ -365,6 +371,9 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
         Accelerator::BoundingSpheres => {
             (8, &[Function::closest_hit_in_graph, Function::bounding_sphere, Function::enter_bounding_sphere])
         }
+        Accelerator::CachedBoundingBoxes => {
+            (8, &[Function::closest_hit_in_graph, Function::closest_hit_with_child_cache])
+        }
         Accelerator::CachedBvh => (9, &[Function::cached_search]),
         Accelerator::PacketBvh => (9, &[Function::packet_search]),
         Accelerator::Grid => (
@@ -372,6 +381,9 @@ fn own_functions(accelerator: Accelerator) -> (u8, &'static [Function]) {
             &[Function::cell_span, Function::grid_resolution, Function::grid_build, Function::grid_search],
         ),
         Accelerator::Octree => (9, &[Function::cell_span, Function::octree_build, Function::octree_search]),
+        Accelerator::OctreeByNeighbours => {
+            (9, &[Function::cell_span, Function::octree_build, Function::octree_by_neighbours])
+        }
         Accelerator::OctreeByCells => {
             (9, &[Function::cell_span, Function::octree_build, Function::octree_by_cells])
         }

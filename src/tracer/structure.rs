@@ -6,7 +6,7 @@ use super::large_leaves::large_leaves;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, Contents, Node, PrimitiveHit, Probe};
 use crate::count::Event;
-use crate::graph::{Graph, Savings};
+use crate::graph::{ChildCache, Graph, Savings};
 use crate::kit::{StructureSize, StudentFunctions};
 use crate::partition::limit::limited;
 use crate::partition::{Bsp, Cells, Grid, KdTree, Octree, PolygonBsp, corners};
@@ -40,8 +40,8 @@ pub enum Structure {
     Octree {
         /// The nodes of the octree.
         tree: Octree,
-        /// Whether it is searched from cell to cell along the ray, and not from the root down.
-        by_cells: bool,
+        /// How it is searched.
+        search: OctreeSearch,
     },
     /// A kd-tree, divided by planes across the axes.
     KdTree(KdTree),
@@ -59,6 +59,17 @@ pub enum Structure {
         /// The bounding box of all primitives.
         around: Aabb,
     },
+}
+
+/// The three searches of an octree.
+#[derive(Clone, Copy, Debug)]
+pub enum OctreeSearch {
+    /// From the root down, nearest octant first.
+    FromTheRoot,
+    /// From leaf to leaf along the ray, each time from the root.
+    ByCells,
+    /// From leaf to leaf along the ray, up only as far as needed.
+    ByNeighbours,
 }
 
 /// The bounding volumes of a scene graph, one per node; empty or `None` for a node without primitives at or
@@ -106,9 +117,9 @@ impl Structure {
         notes: &mut Vec<String>,
     ) -> Structure {
         let (n, leaf_size) = (bounds.len(), quality.leaf_size as usize);
-        let octree = |by_cells| Structure::Octree {
+        let octree = |search| Structure::Octree {
             tree: limited(n, || F::octree_build(bounds, leaf_size, DEEPEST_OCTANT)),
-            by_cells,
+            search,
         };
         let hulls = || -> Vec<Vec<Vec3>> {
             let hull = |(index, bounds): (usize, &Aabb)| hull(index).unwrap_or_else(|| corners(bounds));
@@ -117,7 +128,7 @@ impl Structure {
         let structure = match (accelerator, graph) {
             (None, _) => Structure::Painter,
             (Some(Accelerator::BruteForce), _) => Structure::List,
-            (Some(Accelerator::BoundingBoxes), Some(graph)) => {
+            (Some(Accelerator::BoundingBoxes | Accelerator::CachedBoundingBoxes), Some(graph)) => {
                 let volumes = Volumes::Boxes(boxes::<F>(&graph, bounds));
                 Structure::Graph { graph, volumes }
             }
@@ -130,8 +141,9 @@ impl Structure {
                 let resolution = grid_resolution::<F>(bounds, &around(bounds), quality, notes);
                 Structure::Grid(F::grid_build(bounds, resolution))
             }
-            (Some(Accelerator::Octree), _) => octree(false),
-            (Some(Accelerator::OctreeByCells), _) => octree(true),
+            (Some(Accelerator::Octree), _) => octree(OctreeSearch::FromTheRoot),
+            (Some(Accelerator::OctreeByCells), _) => octree(OctreeSearch::ByCells),
+            (Some(Accelerator::OctreeByNeighbours), _) => octree(OctreeSearch::ByNeighbours),
             (Some(Accelerator::KdTree), _) => {
                 Structure::KdTree(limited(n, || F::kd_build(bounds, &quality.kd_heuristics, leaf_size)))
             }
@@ -153,7 +165,8 @@ impl Structure {
                     | Accelerator::CachedBvh
                     | Accelerator::PacketBvh
                     | Accelerator::BoundingBoxes
-                    | Accelerator::BoundingSpheres,
+                    | Accelerator::BoundingSpheres
+                    | Accelerator::CachedBoundingBoxes,
                 ),
                 _,
             ) => Structure::Hierarchy(F::build(bounds, quality.split, leaf_size)),
@@ -180,13 +193,34 @@ impl Structure {
                 F::closest_hit_in_graph(graph, &mut probe, ray, savings)
             }
             Structure::Grid(grid) => F::grid_search(grid, probe, ray),
-            Structure::Octree { tree, by_cells: true } => F::octree_by_cells(tree, probe, ray),
-            Structure::Octree { tree, by_cells: false } => F::octree_search(tree, probe, ray),
+            Structure::Octree { tree, search } => match search {
+                OctreeSearch::FromTheRoot => F::octree_search(tree, probe, ray),
+                OctreeSearch::ByCells => F::octree_by_cells(tree, probe, ray),
+                OctreeSearch::ByNeighbours => F::octree_by_neighbours(tree, probe, ray),
+            },
             Structure::KdTree(tree) => F::kd_search(tree, probe, ray),
             Structure::Bsp { tree, .. } => F::bsp_search(tree, probe, ray),
             Structure::PolygonBsp { tree, .. } => F::polygon_bsp_search(tree, probe, ray),
             Structure::List => F::brute_force(probe.n_primitives(), probe, ray),
             Structure::Painter => last_hit(probe, ray),
+        }
+    }
+
+    /// The same for a scene graph with a cache in each node, which is updated; other structures have no such cache.
+    #[inline(always)]
+    pub fn closest_hit_with_cache<F: StudentFunctions, P: Primitives>(
+        &self,
+        probe: &mut P,
+        ray: &Ray,
+        savings: Savings,
+        cache: &mut ChildCache,
+    ) -> Option<PrimitiveHit> {
+        match self {
+            Structure::Graph { graph, volumes } => {
+                let mut probe = GraphProbe::<F, P> { probe, volumes, functions: PhantomData };
+                F::closest_hit_with_child_cache(graph, &mut probe, ray, savings, cache)
+            }
+            other => other.closest_hit::<F, P>(probe, ray, savings),
         }
     }
 

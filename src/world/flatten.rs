@@ -18,8 +18,10 @@ use std::ops::Range;
 /// Traverses `scene` from its roots and returns its primitives in world space; see [`World::new`].
 pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> World {
     let mut meshes = Meshes::new(scene, effects, functions);
-    let searched =
-        matches!(scene.quality.accelerator, Accelerator::BoundingBoxes | Accelerator::BoundingSpheres);
+    let searched = matches!(
+        scene.quality.accelerator,
+        Accelerator::BoundingBoxes | Accelerator::BoundingSpheres | Accelerator::CachedBoundingBoxes
+    );
     let mut flattener = Flattener {
         scene,
         effects,
@@ -123,13 +125,14 @@ impl Flattener<'_> {
                 _ if self.functions.planes => self.plane(&equation.to_plane(), None, way, material),
                 _ => {}
             },
-            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } if !self.functions.triangles => {}
+            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. }
+                if !self.functions.triangles => {}
             Shape::Triangle(t) => {
                 let uvs = Some([Vec2::ZERO, Vec2::X, Vec2::Y]);
                 self.facets(&[Facet { corners: [t.a, t.b, t.c], normals: None, uvs }], way, material);
             }
-            Shape::Mesh(_) | Shape::Bezier { .. } => {
-                // `None` for a Bézier patch if `bezier_point` is not written.
+            Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. } => {
+                // `None` for a curved surface whose function is not written.
                 if let Some(ready) = ready {
                     self.mesh(ready, way, material);
                 }

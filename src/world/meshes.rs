@@ -1,4 +1,4 @@
-//! Meshes before they are placed: subdivided, with their normals, and Bézier patches made of triangles. The
+//! Meshes before they are placed: subdivided, with their normals, and curved surfaces made of triangles. The
 //! number of instances of each mesh is counted here as well.
 
 use super::WorldFunctions;
@@ -6,7 +6,7 @@ use super::facets::Facet;
 use crate::effects::Effects;
 use crate::mesh::Mesh;
 use crate::scene::{Node, Scene, SceneMesh};
-use crate::shape::{BezierPatch, Shape};
+use crate::shape::Shape;
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -28,17 +28,17 @@ pub(super) struct Ready {
     pub shared_mesh: Option<u32>,
 }
 
-/// All shapes that are meshes of triangles: the meshes of the scene, and its Bézier patches.
+/// All shapes that are meshes of triangles: the meshes of the scene, and its curved surfaces.
 pub(super) struct Meshes {
     /// The meshes of the scene, with the indices that they have there.
     pub of_scene: Vec<Ready>,
-    /// The Bézier patches, by the index of the node that shows the patch.
+    /// The curved surfaces, by the index of the node that shows the surface.
     pub of_nodes: HashMap<usize, Ready>,
 }
 
 impl Meshes {
     /// Subdivides the meshes of `scene`, computes normals where `effects` asks for smooth meshes, and divides
-    /// Bézier patches into triangles, each as far as `functions` has the function for it.
+    /// curved surfaces into triangles, each as far as `functions` has the function for it.
     pub fn new(scene: &Scene, effects: &Effects, functions: &WorldFunctions) -> Meshes {
         let places = Places::count(scene);
         let shared = |places: u64| places > 1 && !scene.quality.copies && functions.placement.is_some();
@@ -54,9 +54,20 @@ impl Meshes {
                 shared_mesh: None,
             }
         });
-        let patch = |(index, node): (usize, &Node)| {
-            let Some(Shape::Bezier { patch, steps }) = &node.shape else { return None };
-            let mesh = patch_mesh(patch, *steps, functions.bezier_point?);
+        let surface = |(index, node): (usize, &Node)| {
+            let mesh = match &node.shape {
+                Some(Shape::Bezier { patch, steps }) => {
+                    let parameters = spread(&[[0.0, 1.0]], *steps);
+                    let point = functions.bezier_point?;
+                    surface_mesh([&parameters, &parameters], |uv| point(patch, uv))
+                }
+                Some(Shape::Nurbs { patch, steps }) => {
+                    let [across, along] = [0, 1].map(|axis| spread(&patch.spans(axis), *steps));
+                    let point = functions.nurbs_point?;
+                    surface_mesh([&across, &along], |uv| point(patch, uv))
+                }
+                _ => return None,
+            };
             let ready = Ready {
                 normals: normals_of(&mesh, true, functions),
                 mesh: Arc::new(mesh),
@@ -69,7 +80,7 @@ impl Meshes {
         };
         Meshes {
             of_scene: of_scene.collect(),
-            of_nodes: scene.nodes.iter().enumerate().filter_map(patch).collect(),
+            of_nodes: scene.nodes.iter().enumerate().filter_map(surface).collect(),
         }
     }
 }
@@ -98,20 +109,36 @@ fn normals_of(mesh: &Mesh, is_new: bool, functions: &WorldFunctions) -> Vec<Vec3
     }
 }
 
-/// A Bézier patch as `steps` by `steps` squares of two triangles, anticlockwise where `∂u × ∂v` points to the
-/// viewer.
-fn patch_mesh(patch: &BezierPatch, steps: u32, point: fn(&BezierPatch, Vec2) -> Vec3) -> Mesh {
-    let side = steps + 1;
-    let at = |row: u32, column: u32| Vec2::new(column as f32, row as f32) / steps as f32;
-    let grid = || (0..side).flat_map(move |row| (0..side).map(move |column| at(row, column)));
+/// The parameters that divide each of the `spans`, of which each begins where the one before ends, into `steps` equal parts.
+/// The ends of the spans are among them exactly.
+fn spread(spans: &[[f32; 2]], steps: u32) -> Vec<f32> {
+    let within = |&[start, end]: &[f32; 2]| {
+        (0..steps).map(move |step| {
+            let t = step as f32 / steps as f32;
+            ((1.0 - t) * start + t * end).clamp(start, end)
+        })
+    };
+    spans.iter().flat_map(within).chain(spans.last().map(|span| span[1])).collect()
+}
+
+/// A curved surface as squares of two triangles between its points at the `parameters` along `u` and along `v`, of which
+/// there are two or more each. The triangles are anticlockwise where `∂u × ∂v` points to the viewer. The texture coordinates
+/// run from 0 to 1 over the parameters.
+fn surface_mesh(parameters: [&[f32]; 2], point: impl Fn(Vec2) -> Vec3) -> Mesh {
+    let [columns, rows] = parameters.map(|list| list.len() as u32);
+    let grid = || parameters[1].iter().flat_map(|&v| parameters[0].iter().map(move |&u| Vec2::new(u, v)));
+    let [start, end] = [0, 1].map(|last: usize| {
+        let at = |list: &[f32]| if last == 1 { list[list.len() - 1] } else { list[0] };
+        Vec2::new(at(parameters[0]), at(parameters[1]))
+    });
     let square = |row: u32, column: u32| {
-        let [a, b] = [row * side + column, (row + 1) * side + column];
+        let [a, b] = [row * columns + column, (row + 1) * columns + column];
         [[a, a + 1, b + 1], [a, b + 1, b]]
     };
-    let squares = (0..steps).flat_map(|row| (0..steps).flat_map(move |column| square(row, column)));
+    let squares = (0..rows - 1).flat_map(|row| (0..columns - 1).flat_map(move |column| square(row, column)));
     Mesh {
-        positions: grid().map(|uv| point(patch, uv)).collect(),
-        uvs: grid().collect(),
+        positions: grid().map(point).collect(),
+        uvs: grid().map(|uv| (uv - start) / (end - start)).collect(),
         triangles: squares.collect(),
         ..Mesh::default()
     }

@@ -21,7 +21,7 @@ use crate::kit::{Function, StudentFunctions};
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::scene::Scene;
-use crate::shape::{BezierPatch, Plane, PlaneEquation, Sphere, Triangle};
+use crate::shape::{BezierPatch, NurbsPatch, Plane, PlaneEquation, Sphere, Triangle};
 use glam::{Affine3A, Mat3, Vec2, Vec3};
 
 /// The shape of a primitive: what a ray can be tested against.
@@ -179,6 +179,9 @@ pub struct WorldFunctions {
     pub placement: Option<PlacementFunction>,
     /// The point of a Bézier patch at `(u, v)`, both in `0..=1`. Without it, patches are left out.
     pub bezier_point: Option<fn(&BezierPatch, Vec2) -> Vec3>,
+    /// The point of a NURBS surface at `(u, v)`, both within the domain of the knots. Without it, B-spline and NURBS
+    /// surfaces are left out.
+    pub nurbs_point: Option<fn(&NurbsPatch, Vec2) -> Vec3>,
     /// Divides each triangle of a mesh into four. Without it, meshes are not subdivided.
     pub subdivide: Option<fn(&Mesh) -> Mesh>,
     /// Whether spheres are shown; otherwise they are left out.
@@ -200,6 +203,7 @@ impl Default for WorldFunctions {
             vertex_normals: None,
             placement: None,
             bezier_point: None,
+            nurbs_point: None,
             subdivide: None,
             spheres: true,
             planes: true,
@@ -232,6 +236,10 @@ impl WorldFunctions {
             vertex_normals: written(Function::vertex_normals).then_some(F::vertex_normals),
             placement: in_spaces.into_iter().all(written).then_some(F::placement),
             bezier_point: written(Function::bezier_point).then_some(F::bezier_point),
+            nurbs_point: [Function::nurbs_point, Function::bspline_basis]
+                .into_iter()
+                .all(written)
+                .then_some(F::nurbs_point),
             subdivide: written(Function::loop_subdivide).then_some(F::loop_subdivide),
             equations: written(Function::plane_by_coefficients),
             one_sided: written(Function::backfacing),
@@ -256,7 +264,7 @@ impl World {
     }
 
     /// The scene as triangles, spheres and infinite planes alone, standing where it is when the shutter
-    /// opens, with no student function used; Bézier patches are left out. Searches and tests of different
+    /// opens, with no student function used; curved surfaces are left out. Searches and tests of different
     /// kits can be compared on it.
     ///
     /// # Panics

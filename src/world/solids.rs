@@ -33,7 +33,7 @@ pub enum SolidShape {
 }
 
 impl SolidShape {
-    /// The solid of `shape`; `None` for infinite planes, triangles, meshes and Bézier patches.
+    /// The solid of `shape`; `None` for infinite planes, triangles, meshes and curved surfaces.
     pub(super) fn of(shape: &Shape) -> Option<SolidShape> {
         Some(match shape {
             Shape::Sphere(sphere) => SolidShape::Sphere(*sphere),
@@ -46,7 +46,8 @@ impl SolidShape {
             | Shape::PlaneEquation(_)
             | Shape::Triangle(_)
             | Shape::Mesh(_)
-            | Shape::Bezier { .. } => return None,
+            | Shape::Bezier { .. }
+            | Shape::Nurbs { .. } => return None,
         })
     }
 

@@ -14,7 +14,7 @@ use raykata::scene::Split;
 use raykata::shape::Triangle;
 use solutions::{
     stage2_triangles, stage3_boxes, stage3_build, stage3_traversal, stage9_bsp, stage9_kd_tree,
-    stage9_octree, stage9_polygon_bsp,
+    stage9_neighbours, stage9_octree, stage9_polygon_bsp,
 };
 
 /// Triangles per list. `N=50000 cargo test -p solutions --test suite bounds` takes more.
@@ -147,6 +147,13 @@ fn octrees_over_hard_triangles_are_small() {
         let search = |probe: &mut Counting<'_>, ray: &Ray| stage9_octree::closest_hit(&octree, probe, ray);
         let built = Built { what: "an octree", n_nodes, n_references, search: &search };
         let most = most_nodes(hard.triangles.len(), 8, OCTREE_DEPTH);
+        judge(&hard, &Bvh::default(), most, &built);
+        // The search by neighbours visits each node at most once.
+        let by_neighbours = |probe: &mut Counting<'_>, ray: &Ray| {
+            stage9_neighbours::closest_hit_by_neighbours(&octree, probe, ray)
+        };
+        let built =
+            Built { what: "an octree, by neighbours,", n_nodes, n_references, search: &by_neighbours };
         judge(&hard, &Bvh::default(), most, &built);
         // The search by cells visits the nodes above a leaf again for each leaf.
         let leaves = octree.nodes.iter().filter(|node| matches!(node, OctreeNode::Leaf { .. })).count();

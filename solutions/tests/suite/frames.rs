@@ -66,6 +66,21 @@ fn every_search_and_every_number_of_threads_makes_the_same_picture() {
     }
 }
 
+#[test]
+fn caches_make_the_same_picture_with_the_same_counts_on_any_number_of_threads() {
+    let mut scene = scene(VASES);
+    let expected = render(&scene);
+    for accelerator in [Accelerator::CachedBvh, Accelerator::CachedBoundingBoxes] {
+        scene.quality.accelerator = accelerator;
+        let one = render(&scene);
+        assert_eq!(one.film, expected.film, "{accelerator:?}");
+        for threads in [2, 5] {
+            let many = render_with(&scene, threads, true);
+            assert_eq!((many.film, many.counts), (one.film.clone(), one.counts), "{accelerator:?}");
+        }
+    }
+}
+
 fn rays(counts: &Counts) -> (u64, u64) {
     (counts.primary, counts.shadow)
 }

@@ -22,6 +22,7 @@ fn no_ray_leaks_in_any_structure() {
         Accelerator::Grid,
         Accelerator::Octree,
         Accelerator::OctreeByCells,
+        Accelerator::OctreeByNeighbours,
         Accelerator::KdTree,
         Accelerator::Bsp,
         Accelerator::PolygonBsp,

@@ -11,7 +11,7 @@ use raykata::scene::Split;
 use raykata::shape::{Sphere, Triangle};
 use solutions::{
     stage1_shapes, stage2_triangles, stage3_boxes, stage3_build, stage9_bsp, stage9_cells, stage9_coherence,
-    stage9_grid, stage9_kd_tree, stage9_octree,
+    stage9_grid, stage9_kd_tree, stage9_neighbours, stage9_octree,
 };
 
 /// The number of rays per scene. `RAYS=1000000 cargo test --release -p solutions --test suite partitions --
@@ -165,6 +165,9 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
             };
         judge(0, "grid", &|probe| stage9_grid::closest_hit(&grid, probe, &ray));
         judge(1, "octree by cells", &|probe| stage9_octree::closest_hit_by_cells(&octree, probe, &ray));
+        judge(7, "octree by neighbours", &|probe| {
+            stage9_neighbours::closest_hit_by_neighbours(&octree, probe, &ray)
+        });
         judge(2, "octree", &|probe| stage9_octree::closest_hit(&octree, probe, &ray));
         judge(3, "kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[0], probe, &ray));
         judge(4, "plain kd-tree", &|probe| stage9_kd_tree::closest_hit(&trees[1], probe, &ray));
@@ -180,12 +183,13 @@ fn check(seed: u64, n: usize, size: f32, at: Vec3) {
     }
     let a_ray = |index: usize| visits[index] as f64 / n_rays() as f64;
     println!(
-        "size {size}, {} primitives, {} rays; visits per ray: grid {:.1}, octree by cells {:.1}, octree \
-         {:.1}, kd-tree {:.1}, plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
+        "size {size}, {} primitives, {} rays; visits per ray: grid {:.1}, octree by cells {:.1}, by \
+         neighbours {:.1}, from the root {:.1}, kd-tree {:.1}, plain kd-tree {:.1}, BSP tree {:.1}; references: {}, {}, {}, {}, {}",
         boxes.len(),
         n_rays(),
         a_ray(0),
         a_ray(1),
+        a_ray(7),
         a_ray(2),
         a_ray(3),
         a_ray(4),

@@ -82,10 +82,11 @@ const SPLITS: [(&str, Split); 3] = [
     ("surface-area", Split::SurfaceArea),
 ];
 
-pub(crate) const ACCELERATORS: [(&str, Accelerator); 13] = [
+pub(crate) const ACCELERATORS: [(&str, Accelerator); 15] = [
     ("brute-force", Accelerator::BruteForce),
     ("bounding-boxes", Accelerator::BoundingBoxes),
     ("bounding-spheres", Accelerator::BoundingSpheres),
+    ("cached-bounding-boxes", Accelerator::CachedBoundingBoxes),
     ("bvh", Accelerator::Bvh),
     ("bvh-both-children", Accelerator::BvhBothChildren),
     ("cached-bvh", Accelerator::CachedBvh),
@@ -93,6 +94,7 @@ pub(crate) const ACCELERATORS: [(&str, Accelerator); 13] = [
     ("grid", Accelerator::Grid),
     ("octree", Accelerator::Octree),
     ("octree-by-cells", Accelerator::OctreeByCells),
+    ("octree-by-neighbours", Accelerator::OctreeByNeighbours),
     ("kd-tree", Accelerator::KdTree),
     ("bsp", Accelerator::Bsp),
     ("polygon-bsp", Accelerator::PolygonBsp),

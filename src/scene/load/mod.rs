@@ -9,6 +9,7 @@ mod meshes;
 mod names;
 mod nodes;
 mod numbers;
+mod nurbs;
 mod polygon;
 mod reader;
 mod settings;

@@ -1,8 +1,8 @@
 //! Reads `shape = { … }` of a node. Shapes that no ray can hit are refused, because they are mistakes.
 
 use super::names::Names;
-use super::polygon;
 use super::reader::{Table, Value};
+use super::{nurbs, polygon};
 use crate::mesh::Mesh;
 use crate::scene::SceneMesh;
 use crate::scene::error::LoadError;
@@ -14,8 +14,10 @@ use glam::Vec3;
 use std::sync::Arc;
 
 /// All kinds of shapes: exactly one of these keys must stand in `shape`.
-pub(super) const KINDS: [&str; 10] =
-    ["sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "bezier", "mesh"];
+pub(super) const KINDS: [&str; 12] = [
+    "sphere", "plane", "triangle", "box", "cylinder", "cone", "disk", "polygon", "bezier", "bspline",
+    "nurbs", "mesh",
+];
 
 /// The shape of a node in the space of the node; `meshes` are the names that `mesh` may refer to. Fails if a
 /// value is missing or out of range, or if the shape is degenerate or exceeds the range of `f32`.
@@ -37,6 +39,7 @@ pub(super) fn shape(
         "cone" => Shape::Cone(cone(kind)?),
         "disk" => Shape::Disk(disk(kind)?),
         "bezier" => bezier(kind)?,
+        "bspline" | "nurbs" => nurbs::nurbs(kind)?,
         "polygon" => match polygon(kind, all_meshes)? {
             mesh @ Shape::Mesh(_) => return Ok(mesh),
             convex => convex,

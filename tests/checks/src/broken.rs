@@ -88,7 +88,7 @@ impl Broken {
     }
 
     /// Adds mistakes before those that are known already, with other texts.
-    pub(crate) fn explained_first_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
+    pub fn explained_first_by(self, mistakes: impl IntoIterator<Item = (bool, &'static str)>) -> Self {
         let later = self.mistakes.as_ref().map_or_else(Vec::new, |mistakes| mistakes.0.clone());
         let mut broken = self.explained_by(mistakes);
         if let Some(mistakes) = &mut broken.mistakes {

@@ -217,6 +217,10 @@ impl Hostile {
                 let full = self.learn_cells(queries);
                 self.forge_visits(&Request::OctreeByCells(full));
             }
+            Request::OctreeByNeighbours(queries) => {
+                let full = self.learn_cells(queries);
+                self.forge_visits(&Request::OctreeByNeighbours(full));
+            }
             Request::KdSearch(queries) => {
                 let full = self.learn_cells(queries);
                 self.forge_visits(&Request::KdSearch(full));
@@ -278,6 +282,7 @@ impl Hostile {
         if let Answer::GridSearch(answers)
         | Answer::OctreeSearch(answers)
         | Answer::OctreeByCells(answers)
+        | Answer::OctreeByNeighbours(answers)
         | Answer::KdSearch(answers)
         | Answer::BspSearch(answers)
         | Answer::PolygonBspSearch(answers) = &answer

@@ -147,11 +147,13 @@ impl Bench<'_> {
             Accelerator::BruteForce
             | Accelerator::BoundingBoxes
             | Accelerator::BoundingSpheres
+            | Accelerator::CachedBoundingBoxes
             | Accelerator::Grid => &[longer, tiny][..],
             // Each has a scene on which it is slow; at worst a ray tests some ten thousand (a BSP tree in the
             // forest).
             Accelerator::Octree
             | Accelerator::OctreeByCells
+            | Accelerator::OctreeByNeighbours
             | Accelerator::KdTree
             | Accelerator::Bsp
             | Accelerator::PolygonBsp => &[tiny][..],

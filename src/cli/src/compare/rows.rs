@@ -77,12 +77,16 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             let none = Savings { volumes: false, skip: false, sort: false };
             let boxes = Accelerator::BoundingBoxes;
             let spheres = Accelerator::BoundingSpheres;
+            let cached = Accelerator::CachedBoundingBoxes;
+            let unsorted = Savings { sort: false, ..Savings::default() };
             vec![
                 graph("graph, nothing saved", boxes, none),
                 graph("graph, boxes first", boxes, Savings { volumes: true, ..none }),
-                graph("graph, boxes, skip", boxes, Savings { sort: false, ..Savings::default() }),
+                graph("graph, boxes, skip", boxes, unsorted),
+                graph("graph, boxes, skip, cached child", cached, unsorted),
                 graph("graph, boxes, sort", boxes, Savings { skip: false, ..Savings::default() }),
                 graph("graph, boxes, skip and sort", boxes, Savings::default()),
+                graph("graph, boxes, skip, sort, cached child", cached, Savings::default()),
                 graph("graph, spheres, skip and sort", spheres, Savings::default()),
                 with("bvh, both children", &|quality| quality.accelerator = Accelerator::BvhBothChildren),
                 with("bvh", &|quality| quality.accelerator = Accelerator::Bvh),
@@ -91,7 +95,7 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
             ]
         }
         Of::Heuristics => {
-            let all = KdHeuristics::default();
+            let (all, easy) = (KdHeuristics::default(), KdHeuristics::NONE);
             let tree = |name: &str, heuristics: KdHeuristics| {
                 with(name, &|quality| {
                     (quality.accelerator, quality.kd_heuristics) = (Accelerator::KdTree, heuristics);
@@ -104,7 +108,12 @@ pub fn rows(of: Of, only: &[Accelerator], scene: &Scene) -> Vec<Row> {
                 tree("without few straddlers", KdHeuristics { few_straddlers: false, ..all }),
                 tree("without empty space cut off", KdHeuristics { cut_off_empty_space: false, ..all }),
                 tree("without stop at 60 %", KdHeuristics { stop_at_overlap: false, ..all }),
-                tree("none of them", KdHeuristics::NONE),
+                tree("easy way", easy),
+                tree("easy, longest axis", KdHeuristics { longest_axis: true, ..easy }),
+                tree("easy, balanced counts", KdHeuristics { balanced_counts: true, ..easy }),
+                tree("easy, few straddlers", KdHeuristics { few_straddlers: true, ..easy }),
+                tree("easy, empty cut off", KdHeuristics { cut_off_empty_space: true, ..easy }),
+                tree("easy, stop at 60 %", KdHeuristics { stop_at_overlap: true, ..easy }),
             ]
         }
         Of::Grids => {

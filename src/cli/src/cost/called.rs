@@ -18,7 +18,7 @@ impl Called<'_> {
     /// Whether rays are tested against triangles.
     pub fn shows_triangles(&self) -> bool {
         self.shows(|shape, moves| match shape {
-            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } => true,
+            Shape::Triangle(_) | Shape::Mesh(_) | Shape::Bezier { .. } | Shape::Nurbs { .. } => true,
             Shape::Sphere(_) | Shape::Plane(_) | Shape::PlaneEquation(_) => false,
             // A moving shape has no object space of its own and is made of triangles.
             _ => moves,

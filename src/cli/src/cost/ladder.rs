@@ -218,9 +218,10 @@ impl Parameter {
             }
             Parameter::Accelerator => {
                 let most = |one: Accelerator| match one {
-                    Accelerator::BruteForce | Accelerator::BoundingBoxes | Accelerator::BoundingSpheres => {
-                        MOST_ASKED
-                    }
+                    Accelerator::BruteForce
+                    | Accelerator::BoundingBoxes
+                    | Accelerator::BoundingSpheres
+                    | Accelerator::CachedBoundingBoxes => MOST_ASKED,
                     Accelerator::Bsp | Accelerator::PolygonBsp => MOST_IN_BSP,
                     _ => u64::MAX,
                 };

@@ -129,7 +129,7 @@ fn node(scene: &Scene, index: usize) -> String {
         Some(Shape::Cone(_)) => "cone",
         Some(Shape::Disk(_)) => "disk",
         Some(Shape::Polygon(_)) => "polygon",
-        Some(Shape::Bezier { .. }) => "curved surface",
+        Some(Shape::Bezier { .. } | Shape::Nurbs { .. }) => "curved surface",
         Some(Shape::Mesh(_)) => "mesh",
         None => "nothing",
     };

@@ -53,8 +53,14 @@ pub fn withheld(request: &Request) -> Option<Request> {
             queries.iter_mut().for_each(|query| query.table = query.table.withheld());
             Request::GraphHit(queries)
         }
+        Request::CachedGraphHit(queries) => {
+            let mut queries = queries.clone();
+            queries.iter_mut().for_each(|query| query.search.table = query.search.table.withheld());
+            Request::CachedGraphHit(queries)
+        }
         Request::GridSearch(queries) => Request::GridSearch(cells(queries)),
         Request::OctreeByCells(queries) => Request::OctreeByCells(cells(queries)),
+        Request::OctreeByNeighbours(queries) => Request::OctreeByNeighbours(cells(queries)),
         Request::OctreeSearch(queries) => Request::OctreeSearch(cells(queries)),
         Request::KdSearch(queries) => Request::KdSearch(cells(queries)),
         Request::BspSearch(queries) => Request::BspSearch(cells(queries)),
@@ -103,8 +109,14 @@ impl<'a> Withheld<'a> {
                 let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
                 queries.iter().map(|query| probe(&query.table)).collect()
             }
+            Request::CachedGraphHit(queries) => {
+                let probe = |table| Kept::Table(TableProbe::without_hierarchy(table));
+                queries.iter().map(|query| probe(&query.search.table)).collect()
+            }
             Request::GridSearch(queries) => cells(queries),
-            Request::OctreeByCells(queries) | Request::OctreeSearch(queries) => cells(queries),
+            Request::OctreeByCells(queries)
+            | Request::OctreeByNeighbours(queries)
+            | Request::OctreeSearch(queries) => cells(queries),
             Request::KdSearch(queries) => cells(queries),
             Request::BspSearch(queries) => cells(queries),
             Request::PolygonBspSearch(queries) => cells(queries),

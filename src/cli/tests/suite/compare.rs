@@ -75,6 +75,8 @@ fn savings_heuristics_grids_methods_and_instances_have_tables() {
     for (of, row) in [
         ("savings", "graph, boxes, skip and sort"),
         ("heuristics", "without stop at 60 %"),
+        ("heuristics", "easy, few straddlers"),
+        ("savings", "graph, boxes, skip, cached child"),
         ("grids", "grid, 256 along"),
         ("methods", "triangles, inside by direction"),
         ("methods", "spheres, stable roots"),

@@ -255,6 +255,12 @@ fn memory_is_bounded_before_it_is_allocated() {
     let (place, message, _) = refused(&patch.repeat(100));
     assert_eq!(place.map(|(line, _)| line), Some(62), "{message}");
     assert!(message.starts_with("a surface of 5000 triangles takes about"), "{message}");
+    // Two spans of 200 squares along u, one along v.
+    let net = "rows = [[[0,0,0],[1,0,0],[2,0,0]],[[0,1,0],[1,1,0],[2,1,0]]], degree = 1";
+    let (place, message, _) =
+        refused(&format!("[[nodes]]\nshape = {{ bspline = {{ {net}, steps = 200 }} }}\n"));
+    assert_eq!(place.map(|(line, _)| line), Some(4), "{message}");
+    assert!(message.starts_with("a surface of 160000 triangles takes about"), "{message}");
     folder.write("m.ply", PLY);
     let (place, ..) = refused("[meshes.m]\nfile = 'm.ply'\nsubdivide = 9\n");
     assert_eq!(place.map(|(line, _)| line), Some(5));

@@ -114,7 +114,7 @@ fn shapes_that_no_ray_can_hit_are_refused() {
     shape(
         "",
         "3:9: `shape` needs one of `sphere`, `plane`, `triangle`, `box`, `cylinder`, `cone`, `disk`, `polygon`, \
-         `bezier`, `mesh`, but has none",
+         `bezier`, `bspline`, `nurbs`, `mesh`, but has none",
     );
     shape("mesh = 'bunny'", "3:18: unknown mesh `bunny`\nhelp: the scene defines none");
     shape(
@@ -301,4 +301,125 @@ fn loops_and_endless_graphs_are_refused() {
         doubled += "shape = { sphere = { center = [0, 0, 0], radius = 1 } }\n";
     }
     check_refused_with(&doubled, "s.toml:4:19: repeated nodes add up to more than 16777216 shapes");
+}
+
+#[test]
+fn splines_arrive_as_written() {
+    let shape = |text: &str| one_node(&format!("shape = {{ {text} }}")).shape.expect("a shape");
+    let net = "rows = [[[0, 0, 0], [1, 0, 0], [2, 0, 1]], [[0, 1, 0], [1, 1, 0], [2, 1, 0]]]";
+    let Shape::Nurbs { patch, steps } = shape(&format!("bspline = {{ {net}, degree = [2, 1] }}")) else {
+        panic!("a spline")
+    };
+    assert_eq!((patch.degrees, steps), ([2, 1], 8));
+    assert_eq!(patch.knots, [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]]);
+    assert_eq!(patch.rows[0][2], Vec3::new(2.0, 0.0, 1.0));
+    assert_eq!(patch.weights, [[1.0; 3]; 2]);
+    let rest = "weights = [[1, 2, 1], [1, 0.5, 1]], degree = 1, steps = 3, knots = [[0, 1, 2, 3, 9], [-1, -1, 5, 5]]";
+    let Shape::Nurbs { patch, steps } = shape(&format!("nurbs = {{ {net}, {rest} }}")) else {
+        panic!("a spline")
+    };
+    assert_eq!((patch.degrees, steps, patch.weights[1][1]), ([1, 1], 3, 0.5));
+    // The domain is from the second knot to the last but one.
+    assert_eq!(patch.spans(0), [[1.0, 2.0], [2.0, 3.0]]);
+    assert_eq!(patch.spans(1), [[-1.0, 5.0]]);
+}
+
+#[test]
+fn splines_whose_numbers_do_not_fit_are_refused() {
+    // The place of each error is where `at` first stands in the text.
+    let check = |text: &str, at: &str, message: &str| {
+        let text = format!("shape = {{ {text} }}");
+        let column = text.find(at).expect("a place") + 1;
+        check_node(&text, &format!("3:{column}: {message}"));
+    };
+    let net = "rows = [[[0,0,0], [1,0,0], [2,0,0]], [[0,1,0], [1,1,0], [2,1,0]]]";
+    let bspline = |rest: &str, at: &str, message: &str| {
+        check(&format!("bspline = {{ {net}, {rest} }}"), at, message);
+    };
+    let nurbs = |weights: &str, at: &str, message: &str| {
+        check(&format!("nurbs = {{ {net}, degree = 1, weights = {weights} }}"), at, message);
+    };
+    bspline(
+        "steps = 1",
+        "[[[",
+        "`rows` has 3 points along u, and degree 3 needs 4\nhelp: add points, or write a smaller `degree`",
+    );
+    bspline(
+        "degree = 2",
+        "[[[",
+        "`rows` has 2 points along v, and degree 2 needs 3\nhelp: add points, or write a smaller `degree`",
+    );
+    bspline("degree = 8", "8 }", "`degree` must be a whole number from 1 to 7, but is 8");
+    bspline(
+        "degree = [1]",
+        "[1]",
+        "`degree` must be a whole number from 1 to 7, or two of them: along u and along v, but is a list",
+    );
+    bspline("degree = 1, steps = 0", "0 }", "`steps` must be a whole number from 1 to 1024, but is 0");
+    check(
+        "bspline = { rows = [[[0,0,0], [1,0,0]], [[0,1,0]]] }",
+        "[[0,1,0]]",
+        "entry 2 of `rows` has 1 points, but the first has 2\nhelp: all rows need the same number",
+    );
+    check("bspline = { rows = [] }", "[]", "`rows` has no points");
+    check(
+        "bspline = { rows = [[[1,2,3], [1,2,3]], [[1,2,3], [1,2,3]]], degree = 1 }",
+        "[[[",
+        "all points of the net are the same, so no ray can hit the surface",
+    );
+    let knots =
+        |knots: &str, at: &str, message: &str| bspline(&format!("degree = 1, knots = {knots}"), at, message);
+    knots(
+        "[[0, 1, 2, 3, 4]]",
+        "[[0, 1",
+        "`knots` must be two lists of knots: along u and along v, but has 1",
+    );
+    knots(
+        "[[0, 1, 2, 3], [0, 0, 1, 1]]",
+        "[0, 1, 2, 3]",
+        "5 knots are needed along u (3 points + degree 1 + 1), but there are 4",
+    );
+    knots(
+        "[[0, 0, 1, 2, 2], [0, 3, 2, 4]]",
+        "2, 4]",
+        "knot 3 along v is 2, which is below the knot before it, 3\nhelp: list the knots in ascending order; equal ones \
+         are allowed",
+    );
+    knots(
+        "[[0, 0, 7, 9, 9], [0, 0, 0, 1]]",
+        "0, 1]] }",
+        "the knot 0 along v occurs 3 times; at an end a knot of degree 1 may occur 2 times",
+    );
+    knots(
+        "[[-3e38, 0, 1, 2, 3e38], [0, 0, 1, 1]]",
+        "[-3e38",
+        "the knots along u differ by more than the largest number, 3.4e38",
+    );
+    nurbs(
+        "[[1, 1], [1, 1]]",
+        "[[1, 1]",
+        "`weights` has 2 rows of 2, but `rows` has 2 rows of 3\nhelp: give one weight for each point",
+    );
+    nurbs("[[1, 0.0, 1], [1, 1, 1]]", "0.0", "entry 2 of `weights` must be above 0, but is 0.0");
+    nurbs("[[1, -2, 1], [1, 1, 1]]", "-2", "entry 2 of `weights` must be above 0, but is -2");
+    check(
+        &format!("nurbs = {{ {net} }}"),
+        "{ rows",
+        "`nurbs` lacks `weights`\nhelp: add it, for example `weights = [[1, 1], [1, 1]]`",
+    );
+    // With degree 2 a knot inside may occur twice. With degree 3 the domain of the other knots ends where it begins.
+    let four = "[[0,0,0], [1,0,0], [2,0,0], [3,0,1]]";
+    let wide = format!("rows = [{four}, {four}, {four}, {four}]");
+    check(
+        &format!(
+            "bspline = {{ {wide}, degree = 2, knots = [[0, 1, 5, 5, 5, 8, 9], [0, 0, 0, 1, 2, 2, 2]] }}"
+        ),
+        "5, 8",
+        "the knot 5 along u occurs 3 times; between the ends a knot of degree 2 may occur 2 times",
+    );
+    check(
+        &format!("bspline = {{ {wide}, knots = [[0, 0, 0, 0, 1, 1, 1, 1], [0, 1, 2, 3, 3, 4, 5, 6]] }}"),
+        "[0, 1, 2",
+        "the surface is empty: it extends along v from knot 4 to knot 5, which are equal",
+    );
 }

@@ -57,7 +57,7 @@ impl Transport for TurnedKit<'_> {
             Cylinder Cone
             GridResolution OctreeBuild KdBuild BspBuild PolygonBspBuild CachedSearch PacketSearch
             SafeNormalize;
-            GridSearch OctreeByCells OctreeSearch KdSearch BspSearch PolygonBspSearch
+            GridSearch OctreeByCells OctreeByNeighbours OctreeSearch KdSearch BspSearch PolygonBspSearch
         }
     }
 }

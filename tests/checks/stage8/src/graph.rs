@@ -12,15 +12,15 @@ use raykata::graph::{Graph, GraphNode, Savings};
 use raykata::kit::{GraphAnswer, GraphQuery, Table};
 use raykata::ray::Ray;
 
-const NOTHING: Savings = Savings { volumes: false, skip: false, sort: false };
-const VOLUMES: Savings = Savings { volumes: true, ..NOTHING };
-const SKIP: Savings = Savings { volumes: true, skip: true, sort: false };
-const SORT: Savings = Savings { volumes: true, skip: false, sort: true };
-const ALL: Savings = Savings { volumes: true, skip: true, sort: true };
+pub(super) const NOTHING: Savings = Savings { volumes: false, skip: false, sort: false };
+pub(super) const VOLUMES: Savings = Savings { volumes: true, ..NOTHING };
+pub(super) const SKIP: Savings = Savings { volumes: true, skip: true, sort: false };
+pub(super) const SORT: Savings = Savings { volumes: true, skip: false, sort: true };
+pub(super) const ALL: Savings = Savings { volumes: true, skip: true, sort: true };
 
 /// A tree of up to a dozen nodes with hits at multiples of 1/2, so that there are ties, and volumes that contain their
 /// hits.
-fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
+pub(super) fn random_query(random: &mut Random, savings: Savings) -> GraphQuery {
     let n_nodes = 1 + random.below(12) as usize;
     let mut nodes = vec![GraphNode::default(); n_nodes];
     for node in 1..n_nodes {
@@ -61,7 +61,7 @@ fn plainest_first(queries: &mut [GraphQuery]) {
     queries.sort_by_key(|query| (query.graph.nodes.len(), query.table.primitives.len()));
 }
 
-fn describe(query: &GraphQuery) -> String {
+pub(super) fn describe(query: &GraphQuery) -> String {
     let node = |(index, node): (usize, &GraphNode)| {
         let (enter, leave) = query.table.boxes[index];
         let hits: Vec<String> = node
@@ -251,7 +251,7 @@ pub(super) fn graph_asks_for_volumes_first(trial: &Trial<'_>) -> CheckResult {
 }
 
 /// Nodes one behind the other along the ray.
-struct Row {
+pub(super) struct Row {
     /// The order of the numbers of the nodes. It differs from the order along the ray, so that a search that sorts by number
     /// is noticed.
     numbers: [u32; 4],
@@ -260,7 +260,7 @@ struct Row {
 }
 
 impl Row {
-    fn new(trial: &Trial<'_>) -> Self {
+    pub(super) fn new(trial: &Trial<'_>) -> Self {
         let public = [2, 4, 1, 3];
         let hidden = (Just(public).prop_shuffle(), 0.25f32..8.0);
         let (numbers, step) = trial.varied((public, 1.0), hidden);
@@ -269,7 +269,7 @@ impl Row {
 
     /// A root with up to four children one behind the other along the ray, each with one primitive at its centre. The root
     /// lists them in the given order.
-    fn query(&self, order: &[u32], savings: Savings) -> GraphQuery {
+    pub(super) fn query(&self, order: &[u32], savings: Savings) -> GraphQuery {
         let n = order.len() as u32;
         // The places along the ray in the order of their nodes' numbers.
         let mut places: Vec<u32> = (0..n).collect();

@@ -1,11 +1,12 @@
 //! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
-//! (searches) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
-//! their formulas) · `surfaces` (patches) · `subdivision` (meshes; `quarters`: their triangles)
+//! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
+//! their formulas) · `surfaces` (patches) · `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles)
 
 mod bounding_spheres;
 mod boxes;
+mod child_cache;
 mod flat;
 mod graph;
 mod hard;
@@ -14,6 +15,7 @@ mod quarters;
 mod solid;
 mod solids;
 mod spaces;
+mod splines;
 mod subdivision;
 mod surfaces;
 
@@ -22,6 +24,9 @@ use bounding_spheres::{
     sphere_holds_all_points, sphere_is_small,
 };
 use boxes::{boxes_have_little_room_after_transforms, boxes_hold_what_they_should_after_transforms};
+use child_cache::{
+    child_cache_changes_no_answer, child_cache_goes_first, child_cache_stores_the_way_to_the_hit,
+};
 use flat::{disk_agrees_with_exact_arithmetic, polygon_at_edges_and_corners};
 use graph::{
     graph_asks_for_everything_without_savings, graph_asks_for_volumes_first, graph_finds_the_closest_hit,
@@ -41,6 +46,10 @@ use spaces::{
     normals_are_at_right_angles_to_the_surface, normals_stay_outside_in_a_mirror,
     placement_multiplies_in_the_right_order, placement_refuses_what_cannot_be_undone,
     rays_keep_their_t_in_every_space, rays_pass_the_same_points_in_every_space,
+};
+use splines::{
+    bspline_basis_follows_the_recursion, bspline_basis_sums_to_one, nurbs_arcs_are_exact,
+    nurbs_point_is_the_weighted_mean_of_its_net,
 };
 use subdivision::{
     loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
@@ -65,6 +74,9 @@ checks::stage! { ($ crate) 8 [
     graph_asks_for_volumes_first
     graph_skips_what_begins_beyond_the_hit
     graph_looks_into_the_nearest_first
+    child_cache_changes_no_answer
+    child_cache_goes_first
+    child_cache_stores_the_way_to_the_hit
     cuboid_agrees_with_exact_arithmetic
     cuboid_normals_point_outwards
     cuboid_keeps_to_the_rules
@@ -87,6 +99,10 @@ checks::stage! { ($ crate) 8 [
     polygon_at_edges_and_corners
     bezier_starts_and_ends_at_its_corners
     bezier_point_is_the_mean_of_its_net
+    bspline_basis_follows_the_recursion
+    bspline_basis_sums_to_one
+    nurbs_point_is_the_weighted_mean_of_its_net
+    nurbs_arcs_are_exact
     loop_makes_four_triangles_of_each
     loop_places_vertices_by_the_rule
     loop_borders_depend_on_borders

@@ -52,9 +52,11 @@ use kd_trees::{
 };
 use octrees::{
     octree_build_ends, octree_by_cells_agrees_with_brute_force, octree_by_cells_goes_along_edges,
-    octree_divides_where_there_is_much, octree_hit_beyond_its_octant_waits,
-    octree_lists_what_reaches_into_leaves, octree_search_agrees_with_brute_force,
-    octree_sorts_octants_that_are_entered_at_one_t, octree_visits_what_the_ray_enters_before_its_hit,
+    octree_by_neighbours_agrees_with_brute_force, octree_by_neighbours_goes_along_edges,
+    octree_by_neighbours_visits_no_node_again, octree_divides_where_there_is_much,
+    octree_hit_beyond_its_octant_waits, octree_lists_what_reaches_into_leaves,
+    octree_search_agrees_with_brute_force, octree_sorts_octants_that_are_entered_at_one_t,
+    octree_visits_what_the_ray_enters_before_its_hit,
 };
 use polygon_bsp_searches::{
     polygon_bsp_search_agrees_with_brute_force, polygon_bsp_takes_rays_on_and_along_planes,
@@ -83,6 +85,9 @@ checks::stage! { ($ crate) 9 [
     octree_build_ends: turned
     octree_by_cells_agrees_with_brute_force
     octree_by_cells_goes_along_edges: turned
+    octree_by_neighbours_agrees_with_brute_force
+    octree_by_neighbours_goes_along_edges: turned
+    octree_by_neighbours_visits_no_node_again: turned
     octree_search_agrees_with_brute_force
     octree_sorts_octants_that_are_entered_at_one_t: turned
     octree_hit_beyond_its_octant_waits: turned

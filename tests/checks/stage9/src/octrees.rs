@@ -1,4 +1,4 @@
-//! The laws of the octree: which primitives each leaf lists, and two searches.
+//! The laws of the octree: which primitives each leaf lists, and three searches.
 
 use super::lists::{Fault, ended, fact, infinite, judge_references, judge_tree, listing_fault, some_boxes};
 use super::parts;
@@ -144,6 +144,10 @@ pub(super) fn octree_by_cells_agrees_with_brute_force(trial: &Trial<'_>) -> Chec
     agrees(trial, Searcher::OctreeByCells)
 }
 
+pub(super) fn octree_by_neighbours_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
+    agrees(trial, Searcher::OctreeByNeighbours)
+}
+
 pub(super) fn octree_search_agrees_with_brute_force(trial: &Trial<'_>) -> CheckResult {
     agrees(trial, Searcher::Octree)
 }
@@ -185,14 +189,24 @@ pub(super) fn octree_by_cells_goes_along_edges(trial: &Trial<'_>) -> CheckResult
     along_edges(trial, Searcher::OctreeByCells)
 }
 
+pub(super) fn octree_by_neighbours_goes_along_edges(trial: &Trial<'_>) -> CheckResult {
+    along_edges(trial, Searcher::OctreeByNeighbours)
+}
+
 pub(super) fn octree_sorts_octants_that_are_entered_at_one_t(trial: &Trial<'_>) -> CheckResult {
     along_edges(trial, Searcher::Octree)
 }
 
 /// Trap A9: a large sphere that overlaps the first octant is hit in the second, behind a small one.
 pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResult {
-    // The same along each axis, in both directions.
-    let (mut down, mut along) = (Asked::new(), Asked::new());
+    overlapping_two_octants("from the root down").judge(|queries| trial.kit.octree_search(queries))?;
+    overlapping_two_octants("cell by cell").judge(|queries| trial.kit.octree_by_cells(queries))?;
+    overlapping_two_octants("by neighbours").judge(|queries| trial.kit.octree_by_neighbours(queries))
+}
+
+/// A large sphere and a small one along each axis, in both directions, for the search of this name.
+fn overlapping_two_octants(name: &str) -> Asked<Octree> {
+    let mut asked = Asked::new();
     for axis in 0..3 {
         for flipped in [false, true] {
             let turn = |v: Vec3| {
@@ -211,18 +225,15 @@ pub(super) fn octree_hit_beyond_its_octant_waits(trial: &Trial<'_>) -> CheckResu
             let (near, far) = if flipped { (first + octant, first) } else { (first, first + octant) };
             cells.set_leaf(near, &[0]);
             cells.set_leaf(far, &[0, 1]);
-            let what = |name: &str| format!("octree, {name}; primitive 0 overlaps two octants");
-            down.ask(what("from the root down"), &cells, &scene, ray);
-            along.ask(what("cell by cell"), &cells, &scene, ray);
+            let what = format!("octree, {name}; primitive 0 overlaps two octants");
+            asked.ask(what, &cells, &scene, ray);
             let mut control = Octree::new(cells.bounds);
             control.divide(0, 1, 1);
             control.set_leaf(near, &[0, 1, 2]);
-            down.control("octree, from the root down", control.clone(), ray, (1.0, 5.0));
-            along.control("octree, cell by cell", control, ray, (1.0, 5.0));
+            asked.control(&format!("octree, {name}"), control, ray, (1.0, 5.0));
         }
     }
-    down.judge(|queries| trial.kit.octree_search(queries))?;
-    along.judge(|queries| trial.kit.octree_by_cells(queries))
+    asked
 }
 
 pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>) -> CheckResult {
@@ -240,5 +251,25 @@ pub(super) fn octree_visits_what_the_ray_enters_before_its_hit(trial: &Trial<'_>
         let leaves = parts::of_leaves(&cells, &parts);
         let visits = yours.visits.iter().copied().filter(|node| leaves.contains(node)).collect();
         judge_visits("octree over 128 spheres, cell by cell", query, &parts, &CellsAnswer { visits, ..yours })
+    }))
+}
+
+pub(super) fn octree_by_neighbours_visits_no_node_again(trial: &Trial<'_>) -> CheckResult {
+    let place = |i: usize| vec3((i % 8) as f32, (i / 8 % 4) as f32, (i / 32) as f32);
+    let (scene, rays) = spheres_and_rays(&(0..128).map(place).collect::<Vec<Vec3>>(), 9, 12.0);
+    let cells = octree(&scene.boxes(), 4);
+    let queries = queries(&cells, &scene, &rays);
+    all_hold(compare(&queries, trial.kit.octree_by_neighbours(&queries), |query, yours| {
+        let parts = parts::of_octree(&cells, &query.ray);
+        let input = "octree over 128 spheres, by neighbours";
+        // A search that returns to the root visits the root once per leaf.
+        let returns = yours.visits.iter().filter(|visit| **visit == 0).count();
+        let leaves = parts::of_leaves(&cells, &parts);
+        let n_leaves = yours.visits.iter().filter(|node| leaves.contains(node)).count();
+        let mistake = (
+            returns > 1 && returns >= n_leaves,
+            "you go back to the root for each leaf: go up only to the smallest cell that contains the next leaf, too",
+        );
+        judge_visits(input, query, &parts, &yours).map_err(|broken| broken.explained_first_by([mistake]))
     }))
 }

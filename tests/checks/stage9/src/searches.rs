@@ -1,4 +1,4 @@
-//! The laws that the six searches of cells share.
+//! The laws that the seven searches of cells share.
 
 use super::parts::Structure;
 use super::scenes::{Scene, Thing, closest, odd_scenes, scenes, sphere};
@@ -14,11 +14,12 @@ use raykata::partition::Grid;
 use raykata::ray::Ray;
 use raykata::shape::Sphere;
 
-/// One of the student's six searches.
+/// One of the student's seven searches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Searcher {
     Grid,
     OctreeByCells,
+    OctreeByNeighbours,
     Octree,
     KdTree,
     Bsp,
@@ -31,6 +32,7 @@ impl Searcher {
         match self {
             Searcher::Grid => "grid",
             Searcher::OctreeByCells => "octree, cell by cell",
+            Searcher::OctreeByNeighbours => "octree, by neighbours",
             Searcher::Octree => "octree",
             Searcher::KdTree => "kd-tree",
             Searcher::Bsp => "BSP tree",
@@ -41,7 +43,7 @@ impl Searcher {
     /// The depth of a structure over a scene.
     fn depth(self) -> usize {
         match self {
-            Searcher::Grid | Searcher::OctreeByCells | Searcher::Octree => 3,
+            Searcher::Grid | Searcher::OctreeByCells | Searcher::OctreeByNeighbours | Searcher::Octree => 3,
             Searcher::KdTree => 7,
             Searcher::Bsp | Searcher::PolygonBsp => 6,
         }
@@ -63,6 +65,7 @@ impl Searcher {
                 asked.judge_each(|queries| kit.grid_search(queries))
             }
             Searcher::OctreeByCells => octrees().judge_each(|queries| kit.octree_by_cells(queries)),
+            Searcher::OctreeByNeighbours => octrees().judge_each(|queries| kit.octree_by_neighbours(queries)),
             Searcher::Octree => octrees().judge_each(|queries| kit.octree_search(queries)),
             Searcher::KdTree => {
                 Asked::over(self, cases, |scene, depth| structures::kd_tree(&scene.boxes(), depth))

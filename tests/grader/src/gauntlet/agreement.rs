@@ -131,9 +131,11 @@ fn structures(with: impl Fn(Accelerator, u32) -> Quality) -> Vec<(String, Qualit
     }
     // With smaller leaves the structure would split copies of a triangle down to the deepest level.
     for leaf_size in [4, 8] {
-        for (how, accelerator) in
-            [("by cells", Accelerator::OctreeByCells), ("from the root", Accelerator::Octree)]
-        {
+        for (how, accelerator) in [
+            ("by cells", Accelerator::OctreeByCells),
+            ("by neighbours", Accelerator::OctreeByNeighbours),
+            ("from the root", Accelerator::Octree),
+        ] {
             structures.push((format!("octree, leaves of {leaf_size}, {how}"), with(accelerator, leaf_size)));
         }
     }

@@ -61,7 +61,7 @@ struct Structure {
 }
 
 /// Every structure that finds hits of single rays in another way.
-const STRUCTURES: [Structure; 9] = {
+const STRUCTURES: [Structure; 10] = {
     const fn new(name: &'static str, accelerator: Accelerator, split: Split) -> Structure {
         Structure { name, accelerator, split }
     }
@@ -73,6 +73,7 @@ const STRUCTURES: [Structure; 9] = {
         new("grid", Accelerator::Grid, Split::SurfaceArea),
         new("octree", Accelerator::Octree, Split::SurfaceArea),
         new("octree by cells", Accelerator::OctreeByCells, Split::SurfaceArea),
+        new("octree by neighbours", Accelerator::OctreeByNeighbours, Split::SurfaceArea),
         new("kd-tree", Accelerator::KdTree, Split::SurfaceArea),
         new("bsp tree", Accelerator::Bsp, Split::SurfaceArea),
     ]

@@ -1,0 +1,210 @@
+//! Checks of `closest_hit_with_child_cache` with tables that hold the answers of `enter` and `hit`.
+
+use super::graph::{ALL, NOTHING, Row, SKIP, SORT, VOLUMES, describe, random_query};
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::tree::closest_of;
+use oracle::splitmix::Random;
+use raykata::bvh::PrimitiveHit;
+use raykata::graph::{ChildCache, Graph};
+use raykata::kit::{CachedGraphAnswer, CachedGraphQuery, GraphQuery};
+
+/// A cache in which each node with children has one of them or, in one of three cases, none.
+fn random_cache(random: &mut Random, graph: &Graph) -> ChildCache {
+    let mut cache = ChildCache::default();
+    for (node, children) in (0..).zip(graph.nodes.iter().map(|node| &node.children)) {
+        if !children.is_empty() && random.below(3) > 0 {
+            cache.set(node, children[random.below(children.len() as u64) as usize]);
+        }
+    }
+    cache
+}
+
+/// Queries of all kinds, the plainest first, so that the reported failure has the fewest nodes.
+fn random_queries(seed: u64, stream: u64) -> Vec<CachedGraphQuery> {
+    let mut random = Random::new(seed, stream);
+    let mut queries = Vec::new();
+    for _ in 0..200 {
+        for savings in [NOTHING, VOLUMES, SKIP, SORT, ALL] {
+            let search = random_query(&mut random, savings);
+            let cache = random_cache(&mut random, &search.graph);
+            queries.push(CachedGraphQuery { search, cache });
+        }
+    }
+    queries.sort_by_key(|query| (query.search.graph.nodes.len(), query.search.table.primitives.len()));
+    queries
+}
+
+fn describe_cached(query: &CachedGraphQuery) -> String {
+    let entries: Vec<String> =
+        entries(&query.cache).map(|(node, child)| format!("{node} → {child}")).collect();
+    let search = describe(&query.search).replacen("closest_hit_in_graph", "closest_hit_with_child_cache", 1);
+    format!("{search}\ncache: [{}]", entries.join(", "))
+}
+
+/// The entries of a cache, with their nodes.
+fn entries(cache: &ChildCache) -> impl Iterator<Item = (usize, u32)> {
+    cache.children.iter().enumerate().filter_map(|(node, child)| Some((node, (*child)?)))
+}
+
+fn closest(query: &GraphQuery) -> Option<PrimitiveHit> {
+    closest_of(&query.table.primitives, &query.ray).map(|(primitive, t)| PrimitiveHit { t, primitive })
+}
+
+/// The nodes from the root to the one that holds a primitive.
+fn path_to(graph: &Graph, primitive: u32) -> Vec<u32> {
+    let holder = graph.nodes.iter().position(|node| node.primitives.contains(&primitive)).unwrap_or(0) as u32;
+    let parent = |node: &u32| graph.nodes.iter().position(|other| other.children.contains(node));
+    let mut path: Vec<u32> =
+        std::iter::successors(Some(holder), |node| parent(node).map(|above| above as u32)).collect();
+    path.reverse();
+    path
+}
+
+pub(super) fn child_cache_changes_no_answer(trial: &Trial<'_>) -> CheckResult {
+    let queries = random_queries(trial.seed, 11);
+    let judge = |query: &CachedGraphQuery, yours: CachedGraphAnswer| {
+        let (search, found) = (&query.search, yours.found.search.hit);
+        let expected = closest(search);
+        let mut asked = yours.found.asked;
+        asked.sort_unstable();
+        let is_again = asked.windows(2).any(|pair| pair[0] == pair[1]);
+        let n_boxes = yours.found.search.counts.box_tests;
+        let most_boxes = if search.savings.volumes { search.graph.nodes.len() as u64 } else { 0 };
+        if found == expected && !is_again && n_boxes <= most_boxes {
+            return Ok(());
+        }
+        let named = |hit: Option<PrimitiveHit>| {
+            hit.map_or("None".into(), |hit| format!("#{} at {}", hit.primitive, hit.t))
+        };
+        let yours = format!("{}, {n_boxes} volumes, tested {asked:?}", named(found));
+        let expected_text =
+            format!("{}, at most {most_boxes} volumes, each primitive at most once", named(expected));
+        // The closest hit of the cached children alone, without the others.
+        let mut in_cache_only: Option<(f32, u32)> = None;
+        let mut waiting = if search.graph.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(node) = waiting.pop() {
+            for &primitive in &search.graph.nodes[node as usize].primitives {
+                let t = search.table.primitives[primitive as usize];
+                if search.ray.contains(t) && in_cache_only.is_none_or(|best| (t, primitive) < best) {
+                    in_cache_only = Some((t, primitive));
+                }
+            }
+            match query.cache.get(node) {
+                Some(child) => waiting.push(child),
+                None => waiting.extend(&search.graph.nodes[node as usize].children),
+            }
+        }
+        let is_cached_only = found.map(|hit| (hit.t, hit.primitive)) == in_cache_only && found != expected;
+        Err(Broken::with_texts(describe_cached(query), yours, expected_text, "brute force").explained_by([
+            (
+                is_cached_only,
+                "you visit only the cached child of a node: the others may have a nearer hit, and must be visited, too",
+            ),
+            (
+                is_again || n_boxes > most_boxes && search.savings.volumes,
+                "the cached child takes part twice: leave it out of the other children",
+            ),
+        ]))
+    };
+    all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))
+}
+
+pub(super) fn child_cache_goes_first(trial: &Trial<'_>) -> CheckResult {
+    let row = Row::new(trial);
+    let ignored = "you do not visit the cached child first";
+    let cached_only = "you visit the cached child only";
+    let as_listed = "you do not sort the other children although `sort` is on";
+    let never = "you do not skip a child that begins beyond the closest hit";
+    // A root with four children at the places 0 to 3 along the ray, as listed; the place in the cache; the tests expected.
+    type Case<'a> =
+        (&'a [u32], Option<u32>, raykata::graph::Savings, &'a [u32], &'a [(&'a [u32], &'static str)]);
+    let cases: [Case<'_>; 7] = [
+        (&[3, 1, 0, 2], Some(2), NOTHING, &[2, 3, 1, 0], &[(&[3, 1, 0, 2], ignored), (&[2], cached_only)]),
+        (&[1, 3, 0, 2], Some(0), VOLUMES, &[0, 1, 3, 2], &[(&[1, 3, 0, 2], ignored), (&[0], cached_only)]),
+        (
+            &[3, 1, 0, 2],
+            Some(1),
+            SORT,
+            &[1, 0, 2, 3],
+            &[(&[0, 1, 2, 3], ignored), (&[1], cached_only), (&[1, 3, 0, 2], as_listed)],
+        ),
+        (
+            &[3, 2, 1, 0],
+            Some(2),
+            SKIP,
+            &[2, 1, 0],
+            &[(&[3, 2, 1, 0], ignored), (&[2], cached_only), (&[2, 3, 1, 0], never)],
+        ),
+        (
+            &[3, 2, 1, 0],
+            Some(2),
+            ALL,
+            &[2, 0],
+            &[(&[0], ignored), (&[2], cached_only), (&[2, 1, 0], as_listed), (&[2, 0, 1, 3], never)],
+        ),
+        (&[3, 2, 1, 0], Some(0), SKIP, &[0], &[(&[3, 2, 1, 0], ignored), (&[0, 3, 2, 1], never)]),
+        (&[3, 1, 0, 2], None, ALL, &[0], &[(&[0, 1, 2, 3], never)]),
+    ];
+    let query = |(order, cached, savings, ..): &Case<'_>| {
+        let search = row.query(order, *savings);
+        // Each child holds the primitive with the number of its place.
+        let holder = |place: u32| search.graph.nodes.iter().position(|node| node.primitives.contains(&place));
+        let mut cache = ChildCache::default();
+        if let Some(child) = cached.and_then(holder) {
+            cache.set(0, child as u32);
+        }
+        CachedGraphQuery { search, cache }
+    };
+    let queries: Vec<CachedGraphQuery> = cases.iter().map(query).collect();
+    let answers = trial.kit.closest_hit_with_child_cache(&queries);
+    let judge = |(case, query): (&Case<'_>, &CachedGraphQuery), yours: CachedGraphAnswer| {
+        let (.., expected, mistakes) = case;
+        let asked = yours.found.asked;
+        if asked == *expected {
+            return Ok(());
+        }
+        let (yours, right) = (format!("tested the primitives {asked:?}"), format!("{expected:?}"));
+        Err(Broken::with_texts(describe_cached(query), yours, right, "the definition")
+            .explained_by(mistakes.iter().map(|(wrong, text)| (asked == *wrong, *text))))
+    };
+    let pairs = cases.iter().zip(&queries).zip(answers);
+    all_hold(pairs.map(|(pair, answer)| judge(pair, answer)).collect())
+}
+
+pub(super) fn child_cache_stores_the_way_to_the_hit(trial: &Trial<'_>) -> CheckResult {
+    let queries = random_queries(trial.seed, 12);
+    let judge = |query: &CachedGraphQuery, yours: CachedGraphAnswer| {
+        let graph = &query.search.graph;
+        // A ray that hits nothing may leave the cache as it is.
+        let Some(hit) = closest(&query.search) else { return Ok(()) };
+        let path = path_to(graph, hit.primitive);
+        let steps = || path.windows(2).map(|step| (step[0], step[1]));
+        let is_child = |(node, child): (usize, u32)| {
+            graph.nodes.get(node).is_some_and(|node| node.children.contains(&child))
+        };
+        let stray = entries(&yours.cache).find(|entry| !is_child(*entry));
+        let wrong = steps().find(|(node, child)| yours.cache.get(*node) != Some(*child));
+        let (text, expected) = match (stray, wrong) {
+            (None, None) => return Ok(()),
+            (Some((node, child)), _) => {
+                (format!("{child} for node {node}"), "one of its children".to_owned())
+            }
+            (None, Some((node, child))) => {
+                let stored = yours.cache.get(node).map_or("nothing".into(), |child| child.to_string());
+                (format!("{stored} for node {node}"), format!("{child}, which leads to #{}", hit.primitive))
+            }
+        };
+        let unchanged = yours.cache.children.iter().eq(&query.cache.children)
+            || entries(&yours.cache).eq(entries(&query.cache));
+        let root_only = path.len() > 2
+            && yours.cache.get(path[0]) == Some(path[1])
+            && steps().skip(1).all(|(node, _)| yours.cache.get(node) == query.cache.get(node));
+        Err(Broken::with_texts(describe_cached(query), text, expected, "the definition").explained_by([
+            (unchanged, "you do not change the cache: store the child with the closest hit"),
+            (root_only, "you store the child of the root only: each node on the path has an entry"),
+        ]))
+    };
+    all_hold(compare(&queries, trial.kit.closest_hit_with_child_cache(&queries), judge))
+}
