@@ -1,7 +1,7 @@
 //! The checks of stage 9: partitions of space.
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
-//! `bsp_searches` · `polygon_bsps` · `coherence`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
+//! `bsp_searches` · `polygon_bsps` · `coherence` · `table` · `picture`. Shared modules: `scenes` (primitives and rays), `structures` (simple builders),
 //! `searches` (calls a search and judges its answer),
 //! `search_mistakes`, `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each node), `lists` (judges the
 //! lists of cells).
@@ -16,6 +16,7 @@ mod lists;
 mod octant_mistakes;
 mod octrees;
 mod parts;
+mod picture;
 mod plane_mistakes;
 mod polygon_bsps;
 mod resolutions;
@@ -23,6 +24,7 @@ mod scenes;
 mod search_mistakes;
 mod searches;
 mod structures;
+mod table;
 
 use bsp_searches::{
     bsp_planes_behind_and_beyond_do_not_end_the_search, bsp_search_agrees_with_brute_force,
@@ -54,6 +56,7 @@ use octrees::{
     octree_lists_what_reaches_into_leaves, octree_search_agrees_with_brute_force,
     octree_sorts_octants_that_are_entered_at_one_t, octree_visits_what_the_ray_enters_before_its_hit,
 };
+use picture::picture_searched_in_six_structures;
 use polygon_bsps::{
     polygon_bsp_build_ends, polygon_bsp_puts_polygons_on_planes, polygon_bsp_search_agrees_with_brute_force,
     polygon_bsp_splits_few_polygons, polygon_bsp_takes_rays_on_and_along_planes,
@@ -63,6 +66,7 @@ use resolutions::{
     grid_resolution_makes_cubes, grid_resolution_of_flat_and_empty_boxes,
     spans_of_cells_agree_with_double_precision,
 };
+use table::map_of_the_cells_on_the_way;
 
 checks::stage! { ($ crate) 9 [
     spans_of_cells_agree_with_double_precision
@@ -113,4 +117,6 @@ checks::stage! { ($ crate) 9 [
     cached_hit_saves_tests: turned
     packet_finds_what_single_rays_find
     packet_opens_a_node_once: turned
+    map_of_the_cells_on_the_way: composed
+    picture_searched_in_six_structures: composed
 ] }
