@@ -9,6 +9,7 @@ use super::{Pair, Size, film_of_width, golden_picture, image_of, linear};
 use crate::broken::{Broken, CheckResult};
 use crate::trial::Trial;
 use glam::{DVec3, Vec3};
+use image::RgbImage;
 use raykata::kit::Kit;
 
 /// The number of columns and rows of a block.
@@ -21,6 +22,11 @@ const STANDARD_ERRORS: f64 = 6.0;
 /// The largest error of a mean by the rounding of the golden picture to bytes. With gamma 2 the codes of bright colours are
 /// 2/255 apart, so that a byte is wrong by up to 1/255.
 const BYTE_ERROR: f64 = 1.0 / 255.0;
+
+/// The number of samples that are off by 1 which a block may have missed by chance. The standard error of equal samples is 0,
+/// although the expected picture may have a rare colour there. If a colour has 12 samples per block on average, none of them is
+/// seen, and 24 are expected, once in 100 million times.
+const MISSED: f64 = 8.0;
 
 /// A picture of random samples that is composed from answers.
 pub struct Sampled<'a> {
@@ -38,6 +44,16 @@ struct Block {
     means: DVec3,
     squared_errors: DVec3,
     expected: DVec3,
+}
+
+impl Block {
+    /// The largest difference of a channel of both means, in units of the largest difference that may be chance.
+    fn score(&self) -> f64 {
+        let error = (2.0 * self.squared_errors).powf(0.5) / self.pixels;
+        let off = (self.means - self.expected).abs() / self.pixels;
+        let off = off / (STANDARD_ERRORS * error + BYTE_ERROR);
+        if off.is_nan() { f64::INFINITY } else { off.max_element() }
+    }
 }
 
 impl Sampled<'_> {
@@ -61,8 +77,8 @@ impl Sampled<'_> {
         self.judge(trial, &yours, &Pair { name: self.name, film: &film, golden: &golden })
     }
 
-    fn judge(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], pair: &Pair<'_>) -> CheckResult {
-        // Add up the pixels of each block, and the colours that are expected there. Rows that were left out are missing in both.
+    /// Adds up the pixels of each block, and the colours that are expected there. Rows that were left out are missing in both.
+    fn blocks(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], golden: &RgbImage) -> Vec<Block> {
         let width = self.size.width;
         let per_row = width.div_ceil(BLOCK);
         let mut blocks = vec![Block::default(); (per_row * self.size.height.div_ceil(BLOCK)) as usize];
@@ -71,24 +87,21 @@ impl Sampled<'_> {
             let n = samples.len() as f64;
             let mean = samples.iter().map(|sample| sample.as_dvec3()).sum::<DVec3>() / n;
             let squares: DVec3 = samples.iter().map(|sample| (sample.as_dvec3() - mean).powf(2.0)).sum();
+            let missed = if block.pixels == 0.0 { MISSED } else { 0.0 };
             block.pixels += 1.0;
             block.means += mean;
-            // A block whose samples are all equal may have missed a rare colour: assume one sample more in the block that is
-            // off by 1.
-            let missed = 1.0 / f64::from(BLOCK * BLOCK);
             block.squared_errors += (squares + missed) / (n * (n - 1.0));
-            block.expected += linear(pair.golden, index as u32 % width, index as u32 / width).as_dvec3();
+            block.expected += linear(golden, index as u32 % width, index as u32 / width).as_dvec3();
         }
-        // Compare the means in units of what may differ.
-        let score = |block: &Block| {
-            let error = (2.0 * block.squared_errors).powf(0.5) / block.pixels;
-            let off = (block.means - block.expected).abs() / block.pixels;
-            let off = off / (STANDARD_ERRORS * error + BYTE_ERROR);
-            if off.is_nan() { f64::INFINITY } else { off.max_element() }
-        };
+        blocks
+    }
+
+    fn judge(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], pair: &Pair<'_>) -> CheckResult {
+        let per_row = self.size.width.div_ceil(BLOCK);
+        let blocks = self.blocks(trial, samples, pair.golden);
         let used: Vec<usize> = (0..blocks.len()).filter(|&block| blocks[block].pixels > 0.0).collect();
-        let n_off = used.iter().filter(|&&block| score(&blocks[block]) > 1.0).count();
-        let worst = used.iter().copied().max_by(|&p, &q| score(&blocks[p]).total_cmp(&score(&blocks[q])));
+        let n_off = used.iter().filter(|&&block| blocks[block].score() > 1.0).count();
+        let worst = used.iter().copied().max_by(|&p, &q| blocks[p].score().total_cmp(&blocks[q].score()));
         let Some(worst) = worst.filter(|_| n_off > 0) else { return Ok(()) };
         let block = &blocks[worst];
         let (column, row) = (worst as u32 % per_row * BLOCK, worst as u32 / per_row * BLOCK);
@@ -106,5 +119,52 @@ impl Sampled<'_> {
                 "the golden picture, 1 false alarm in a million",
             )
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SMALL;
+    use super::*;
+    use crate::statistics::pairs;
+    use raykata::frame::Watch;
+    use raykata::kit::{Answer, Door, KitError, Request, Transport, kit_error};
+
+    /// A kit that is never called.
+    struct Silent;
+
+    impl Transport for Silent {
+        fn call(&self, _: Request, _: &dyn Watch) -> Answer {
+            kit_error::unwind(KitError::Crashed { how: "this kit does not answer".into() })
+        }
+    }
+
+    /// Samples of which each is white with the probability that its column has, from 0 to `most`.
+    fn samples(seed: u64, most: f32) -> Vec<Vec<Vec3>> {
+        let n_pixels = (SMALL.width * SMALL.height) as usize;
+        let numbers = pairs(seed, 16 * n_pixels);
+        let share = |pixel: usize| most * (pixel as u32 % SMALL.width) as f32 / SMALL.width as f32;
+        let white = |pixel: usize, u: f32| if u < share(pixel) { Vec3::ONE } else { Vec3::ZERO };
+        let pixel = |(pixel, us): (usize, &[glam::Vec2])| us.iter().map(|u| white(pixel, u.x)).collect();
+        numbers.chunks(16).enumerate().map(pixel).collect()
+    }
+
+    #[test]
+    fn other_random_numbers_make_an_equal_picture_and_other_probabilities_do_not() {
+        let door = Door(Silent);
+        let trial = Trial::new(&door, "a_check", 0);
+        let sampled = Sampled { name: "none", size: SMALL };
+        let score = |yours: (u64, f32), golden: (u64, f32)| {
+            let mean = |samples: &Vec<Vec3>| samples.iter().sum::<Vec3>() / 16.0;
+            let golden = samples(golden.0, golden.1).iter().map(mean).collect();
+            let golden = image_of(&film_of_width(SMALL.width, golden));
+            let blocks = sampled.blocks(&trial, &samples(yours.0, yours.1), &golden);
+            blocks.iter().map(Block::score).fold(0.0, f64::max)
+        };
+        // Of 20 pictures with other numbers none comes near the bound, in no block.
+        let scores = (1..=20).map(|seed| score((seed, 0.8), (0, 0.8)));
+        assert!(scores.clone().all(|score| score < 0.8), "{:?}", scores.collect::<Vec<f64>>());
+        assert!(score((1, 0.6), (0, 0.8)) > 1.0);
+        assert!(score((1, f32::NAN), (0, 0.8)) > 1.0);
     }
 }
