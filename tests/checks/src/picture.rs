@@ -68,10 +68,6 @@ pub fn pixels(trial: &Trial<'_>, size: Size) -> impl Iterator<Item = (u32, u32)>
 }
 
 /// The picture that these colours make, in the order of [`rays`].
-pub fn film_of(pixels: Vec<Vec3>) -> Film {
-    film_of_width(LARGE.width, pixels)
-}
-
 fn film_of_width(width: u32, pixels: Vec<Vec3>) -> Film {
     Film { width, height: pixels.len() as u32 / width, pixels }
 }
@@ -119,7 +115,7 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
 /// Compares `film`, whose pixels belong to `rays`, with the golden picture `name`. A fraction `may_differ` of the
 /// pixels of the whole picture may differ. Rows that [`rays`] left out are not compared. `INSTA_UPDATE=always cargo test -p
 /// solutions` writes the golden picture again.
-pub fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
+fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
     match golden_picture(trial, name, film)? {
         None => Ok(()),
         Some((golden, n_pixels)) => judge(&Pair { name, film, golden: &golden }, rays, may_differ, n_pixels),

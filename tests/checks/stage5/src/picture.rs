@@ -94,17 +94,23 @@ fn colors(kit: &dyn Kit, rays: &[Ray], balls: &[Ball]) -> Vec<Vec3> {
             hit.push((way, Surface { point, error, geometric_normal: normal, shading_normal: normal }));
         }
         let scattered = kit.scatter(&queries);
-        let pairs = || hit.iter().zip(&scattered);
-        let leaving: Vec<(Surface, SecondaryRay)> =
-            pairs().flat_map(|((_, surface), rays)| rays.iter().map(move |ray| (*surface, *ray))).collect();
-        let next = pairs().flat_map(|((way, _), rays)| rays.iter().map(move |ray| (way, ray.weight)));
-        let spawned = kit.spawn_ray(&leaving);
-        // At most two rays leave a surface. An answer with many more must not fill the memory.
-        level = next
-            .zip(spawned)
-            .map(|((way, weight), ray)| Way { pixel: way.pixel, ray, weight, depth: way.depth + 1 })
-            .take(rays.len() << LIMITS.max_depth)
+        // At most two rays leave a surface. An answer with many more must not fill the memory of a judge.
+        let most = rays.len() << LIMITS.max_depth;
+        let leaving: Vec<(&Way, Surface, SecondaryRay)> = hit
+            .iter()
+            .zip(&scattered)
+            .flat_map(|((way, surface), rays)| rays.iter().map(move |ray| (*way, *surface, *ray)))
+            .take(most)
             .collect();
+        let spawned =
+            kit.spawn_ray(&leaving.iter().map(|(_, surface, ray)| (*surface, *ray)).collect::<Vec<_>>());
+        let next = leaving.into_iter().zip(spawned).map(|((way, _, secondary), ray)| Way {
+            pixel: way.pixel,
+            ray,
+            weight: secondary.weight,
+            depth: way.depth + 1,
+        });
+        level = next.collect();
     }
     pixels
 }

@@ -33,7 +33,7 @@ fn fan(scene: &Scene, turn: f32) -> Vec<Ray> {
         let [begin, end] = [low + share * (high - low), high - (0.9 * share + 0.05) * (high - low)];
         let begin = vec3(bounds.min.x - 1.0, begin, 0.0);
         let end = vec3(bounds.max.x + 1.0, end, 0.0) - vec3(turn * width, 0.0, 0.0);
-        let (begin, end) = if i % 2 == 0 { (begin, end) } else { (end, begin) };
+        let (begin, end) = if i.is_multiple_of(2) { (begin, end) } else { (end, begin) };
         Ray::new(begin, (end - begin).normalize())
     };
     let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
