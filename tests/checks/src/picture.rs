@@ -1,7 +1,12 @@
 //! Comparison of pictures with golden pictures.
 //!
 //! The metric: a pixel differs if one of its channels is off by more than 8 of 255 after gamma 2. Only a stated
-//! fraction of the pixels may differ, because correct methods round differently along outlines.
+//! fraction of the pixels may differ, because correct methods round differently along outlines. Pictures of random samples
+//! are compared by the means of blocks of pixels (`blocks`).
+
+mod blocks;
+
+pub use blocks::Sampled;
 
 use crate::broken::{Broken, CheckResult, Png};
 use crate::golden as golden_texts;
@@ -11,6 +16,7 @@ use glam::Vec3;
 use image::RgbImage;
 use raykata::camera::Camera;
 use raykata::film::{Film, write_atomically};
+use raykata::kit::Kit;
 use raykata::ray::Ray;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -18,9 +24,19 @@ use std::path::PathBuf;
 /// The largest accepted error of a channel, of 255.
 const CHANNEL_TOLERANCE: u8 = 8;
 
-/// The size of the pictures that are assembled here.
-const WIDTH: u32 = 80;
-const HEIGHT: u32 = 60;
+/// The size of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// The number of columns.
+    pub width: u32,
+    /// The number of rows.
+    pub height: u32,
+}
+
+/// The size of pictures whose pixels need few answers.
+pub const LARGE: Size = Size { width: 80, height: 60 };
+/// The size of pictures whose pixels need many answers.
+pub const SMALL: Size = Size { width: 48, height: 32 };
 
 /// One ray through the middle of each pixel of a small picture, row by row from the top. If the trial judges only a part of
 /// its inputs, rows are left out.
@@ -28,17 +44,67 @@ const HEIGHT: u32 = 60;
 /// Graded pictures are assembled here from the answers for many rays at once. So they show one stage only, and an error
 /// in another stage does not change them.
 pub fn rays(trial: &Trial<'_>, eye: Vec3, target: Vec3) -> Vec<Ray> {
-    let camera = Camera::new(eye, target - eye, Vec3::Y, 45.0, WIDTH as f32 / HEIGHT as f32);
-    let camera = camera.expect("the eye is not above its target");
-    let pixels = (0..HEIGHT).step_by(trial.row_step()).flat_map(|y| (0..WIDTH).map(move |x| (x, y)));
-    pixels
-        .map(|(x, y)| camera.ray((x as f32 + 0.5) / WIDTH as f32, (y as f32 + 0.5) / HEIGHT as f32))
+    rays_of(trial, LARGE, eye, target)
+}
+
+/// The same for a picture of this size.
+pub fn rays_of(trial: &Trial<'_>, size: Size, eye: Vec3, target: Vec3) -> Vec<Ray> {
+    let camera = camera(size, eye, target);
+    let (width, height) = (size.width as f32, size.height as f32);
+    pixels(trial, size)
+        .map(|(x, y)| camera.ray((x as f32 + 0.5) / width, (y as f32 + 0.5) / height))
         .collect()
 }
 
+/// The camera of the pictures.
+pub fn camera(size: Size, eye: Vec3, target: Vec3) -> Camera {
+    let camera = Camera::new(eye, target - eye, Vec3::Y, 45.0, size.width as f32 / size.height as f32);
+    camera.expect("the eye is not above its target")
+}
+
+/// The pixels of a picture, `(column, row)`, without the rows that the trial leaves out.
+pub fn pixels(trial: &Trial<'_>, size: Size) -> impl Iterator<Item = (u32, u32)> + Clone + use<> {
+    (0..size.height).step_by(trial.row_step()).flat_map(move |y| (0..size.width).map(move |x| (x, y)))
+}
+
 /// The picture that these colours make, in the order of [`rays`].
-pub fn film_of(pixels: Vec<Vec3>) -> Film {
-    Film { width: WIDTH, height: pixels.len() as u32 / WIDTH, pixels }
+fn film_of_width(width: u32, pixels: Vec<Vec3>) -> Film {
+    Film { width, height: pixels.len() as u32 / width, pixels }
+}
+
+/// A picture that is composed from answers.
+pub struct Composed<'a> {
+    /// The name of the golden picture.
+    pub name: &'a str,
+    /// The size of the whole picture.
+    pub size: Size,
+    /// The rays, of which each makes a pixel.
+    pub rays: &'a [Ray],
+    /// The fraction of pixels that may differ.
+    pub may_differ: f64,
+}
+
+impl Composed<'_> {
+    /// Composes the picture from the answers of the trial's kit, and compares it with the golden picture; or, for a hidden
+    /// seed and with a reference to ask, with the picture that the answers of the reference make. `colors` returns the
+    /// colour of each ray.
+    #[track_caller]
+    pub fn check(&self, trial: &Trial<'_>, colors: impl Fn(&dyn Kit) -> Vec<Vec3>) -> CheckResult {
+        let film = film_of_width(self.size.width, colors(trial.kit));
+        match trial.expected(&colors) {
+            None => compare(trial, self.name, &film, self.rays, self.may_differ),
+            Some(expected) => {
+                let expected = film_of_width(self.size.width, (*expected).clone());
+                let (name, n_pixels) = (self.name, self.size.width * self.size.height);
+                judge(
+                    &Pair { name, film: &film, golden: &image_of(&expected) },
+                    self.rays,
+                    self.may_differ,
+                    n_pixels,
+                )
+            }
+        }
+    }
 }
 
 /// A normal as a colour.
@@ -49,28 +115,71 @@ pub fn normal_color(normal: Vec3) -> Vec3 {
 /// Compares `film`, whose pixels belong to `rays`, with the golden picture `name`. A fraction `may_differ` of the
 /// pixels of the whole picture may differ. Rows that [`rays`] left out are not compared. `INSTA_UPDATE=always cargo test -p
 /// solutions` writes the golden picture again.
-pub fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
+fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_differ: f64) -> CheckResult {
+    match golden_picture(trial, name, film)? {
+        None => Ok(()),
+        Some((golden, n_pixels)) => judge(&Pair { name, film, golden: &golden }, rays, may_differ, n_pixels),
+    }
+}
+
+/// The rows of the golden picture `name` that are compared, and the number of pixels of the whole picture. `None` if the
+/// golden picture was just written from `film`.
+fn golden_picture(trial: &Trial<'_>, name: &str, film: &Film) -> Result<Option<(RgbImage, u32)>, Broken> {
     let golden_file =
         PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../golden")).join(format!("{name}.png"));
-    let yours = film.to_bytes(gamma());
     if !golden_texts::is_sealed() && std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
         let written = film.write_png(&golden_file, gamma());
-        return written.map_err(|error| {
-            Broken::with_texts(name, "cannot be written", error.to_string(), "the file system")
-        });
+        return match written {
+            Ok(()) => Ok(None),
+            Err(error) => {
+                Err(Broken::with_texts(name, "cannot be written", error.to_string(), "the file system"))
+            }
+        };
     }
     let input = format!("the picture tests/golden/{name}.png");
-    let golden = match image::open(&golden_file) {
-        Ok(golden) => every_row(trial.row_step(), &golden.to_rgb8()),
+    let whole = match image::open(&golden_file) {
+        Ok(golden) => golden.to_rgb8(),
         Err(error) => {
             return Err(Broken::with_texts(input, "a picture", error.to_string(), "the golden picture"));
         }
     };
+    let golden = every_row(trial.row_step(), &whole);
     if (golden.width(), golden.height()) != (film.width, film.height) {
         let size = |width: u32, height: u32| format!("{width} × {height} pixels");
         let (yours, theirs) = (size(film.width, film.height), size(golden.width(), golden.height()));
         return Err(Broken::with_texts(input, yours, theirs, "the golden picture"));
     }
+    Ok(Some((golden, whole.width() * whole.height())))
+}
+
+/// A picture and the one that is expected.
+struct Pair<'a> {
+    name: &'a str,
+    film: &'a Film,
+    golden: &'a RgbImage,
+}
+
+impl Pair<'_> {
+    fn input(&self) -> String {
+        format!("the picture tests/golden/{}.png", self.name)
+    }
+
+    /// The message, with the pictures side by side: as a part of the message for the grader, else as a file that a line of
+    /// the message names. `text` gets that line.
+    fn broken(&self, yours: &[u8], text: impl FnOnce(String) -> Broken) -> Broken {
+        let wide = side_by_side(yours, self.golden);
+        let (picture, written) = match golden_texts::is_sealed() {
+            true => (png(&wide).ok().map(|bytes| Box::new(Png(bytes))), String::new()),
+            false => (None, write_side_by_side(self.name, &wide)),
+        };
+        Broken { picture, ..text(written) }
+    }
+}
+
+/// Compares two pictures pixel by pixel. A fraction `may_differ` of `n_pixels`, the pixels of the whole picture, may differ.
+fn judge(pair: &Pair<'_>, rays: &[Ray], may_differ: f64, n_pixels: u32) -> CheckResult {
+    let Pair { film, golden, .. } = pair;
+    let yours = film.to_bytes(gamma());
     let off: Vec<u8> = yours
         .rgb
         .chunks(3)
@@ -79,32 +188,34 @@ pub fn compare(trial: &Trial<'_>, name: &str, film: &Film, rays: &[Ray], may_dif
         .collect();
     let n_off = off.iter().filter(|&&off| off > CHANNEL_TOLERANCE).count();
     // The rows that are compared may contain all pixels that may differ.
-    let may_differ = may_differ * f64::from(WIDTH * HEIGHT);
+    let may_differ = may_differ * f64::from(n_pixels);
     if n_off as f64 <= may_differ && yours.not_a_number == 0 {
         return Ok(());
     }
     let worst = (0..off.len()).max_by_key(|&pixel| off[pixel]).unwrap_or(0);
     let (x, y) = (worst as u32 % film.width, worst as u32 / film.width);
-    let wide = side_by_side(&yours.rgb, &golden);
-    let (picture, written) = match golden_texts::is_sealed() {
-        true => (png(&wide).ok().map(|bytes| Box::new(Png(bytes))), String::new()),
-        false => (None, write_side_by_side(name, &wide)),
-    };
     let not_a_number = match yours.not_a_number {
         0 => String::new(),
         n => format!(", and {n} are NaN"),
     };
-    let broken = Broken::with_texts(
-        format!("{input}\n{written}the ray of the worst pixel: {}", rays[worst].paste()),
-        format!(
-            "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
-            off.len(),
-            film.at(x, y)
-        ),
-        format!("at most {may_differ:.0} differ; there: {:?}", linear(&golden, x, y)),
-        "the golden picture",
-    );
-    Err(Broken { picture, ..broken })
+    Err(pair.broken(&yours.rgb, |written| {
+        Broken::with_texts(
+            format!("{}\n{written}the ray of the worst pixel: {}", pair.input(), rays[worst].paste()),
+            format!(
+                "{n_off} of {} pixels differ, most at ({x}, {y}): {:?}{not_a_number}",
+                off.len(),
+                film.at(x, y)
+            ),
+            format!("at most {may_differ:.0} differ; there: {:?}", linear(golden, x, y)),
+            "the golden picture",
+        )
+    }))
+}
+
+/// A film as a picture of bytes.
+fn image_of(film: &Film) -> RgbImage {
+    let bytes = film.to_bytes(gamma()).rgb;
+    RgbImage::from_raw(film.width, film.height, bytes).unwrap_or_default()
 }
 
 /// The encoding with gamma 2: each code stands for the colours from halfway to the code below to halfway to the code

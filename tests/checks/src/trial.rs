@@ -60,11 +60,14 @@ pub struct Inputs {
     /// with hidden inputs needs no more than a sample: these only have to show that the answers are not those to known
     /// inputs.
     pub one_in: usize,
+    /// A kit whose answers are right. If there is one, a check of a text or a picture draws a scene for a hidden seed, and
+    /// composes the expected text or picture from the answers of this kit.
+    pub reference: Option<Arc<dyn Kit + Send + Sync>>,
 }
 
 impl Default for Inputs {
     fn default() -> Self {
-        Inputs { drawn: None, one_in: 1 }
+        Inputs { drawn: None, one_in: 1, reference: None }
     }
 }
 
@@ -98,6 +101,34 @@ impl<'a> Trial<'a> {
             return public;
         }
         hidden.new_tree(&mut self.runner()).map_or(public, |tree| tree.current())
+    }
+
+    /// The kit whose answers are the expected ones: only for a hidden seed, and only if the judge has one.
+    fn reference(&self) -> Option<&Arc<dyn Kit + Send + Sync>> {
+        self.inputs.reference.as_ref().filter(|_| self.seed != PUBLIC_SEED)
+    }
+
+    /// `public` if the expected text or picture is a file, and a value drawn from `hidden` if it is composed from the
+    /// answers of the reference. Draw values that must be independent as a tuple.
+    pub fn composed<S: Strategy>(&self, public: S::Value, hidden: S) -> S::Value {
+        if self.reference().is_some() { self.varied(public, hidden) } else { public }
+    }
+
+    /// What `compose` makes of the answers of the reference; `None` if the expected value is a file. It is computed once
+    /// per seed and kept with the inputs.
+    #[track_caller]
+    pub(crate) fn expected<T: Send + Sync + 'static>(
+        &self,
+        compose: impl Fn(&dyn Kit) -> T,
+    ) -> Option<Arc<T>> {
+        let reference = self.reference()?;
+        let key = (self.name, self.seed, Location::caller(), self.draws.replace(self.draws.get() + 1));
+        let compute = || -> Values { Arc::new(compose(&**reference)) };
+        let value = match &self.inputs.drawn {
+            Some(drawn) => drawn.get(key, &compute),
+            None => compute(),
+        };
+        value.downcast::<T>().ok()
     }
 
     /// Draws `cases` inputs, calls `judge` with all of them at once, and shrinks the first input that breaks the law.
@@ -354,7 +385,10 @@ fn on_a_thread(
         .stack_size(raykata::worker::STACK_BYTES)
         .spawn(move || {
             let trial = Trial { inputs, shrinks, ..Trial::new(&*kit, check.name, seed) };
-            let symmetry = trial.varied(Symmetry::IDENTITY, check.symmetries.strategy());
+            // A scene that is drawn needs no turn.
+            let is_drawn = check.symmetries == Symmetries::Composed && trial.reference().is_some();
+            let symmetries = if is_drawn { Symmetries::None } else { check.symmetries };
+            let symmetry = trial.varied(Symmetry::IDENTITY, symmetries.strategy());
             let turned = Door(TurnedKit { kit: &*kit, symmetry });
             let is_turned = symmetry != Symmetry::IDENTITY;
             let trial = if is_turned { Trial { kit: &turned, ..trial } } else { trial };

@@ -3,7 +3,7 @@
 use all_checks::STAGES;
 use anyhow::Result;
 use checks::rubric::{self, RUBRIC};
-use checks::{Check, Verdict};
+use checks::{Check, Inputs, Verdict};
 use raykata_cli::kits::{Source, with_exercises};
 use raykata_cli::queue;
 use std::path::Path;
@@ -26,20 +26,22 @@ impl Graded {
 
 /// Runs all checks of the stages for which `wanted` is true, each with a kit of its own, on all cores.
 pub fn run_checks(source: &Source, wanted: impl Fn(u8) -> bool) -> Result<Vec<Graded>> {
-    run_checks_on(queue::cores(), source, wanted, 0)
+    run_checks_on(queue::cores(), source, wanted, 0, &Inputs::default())
 }
 
-/// The same on this many threads, with the inputs of `seed`.
+/// The same on this many threads, with the inputs of `seed` from `inputs`.
 pub fn run_checks_on(
     threads: usize,
     source: &Source,
     wanted: impl Fn(u8) -> bool,
     seed: u64,
+    inputs: &Inputs,
 ) -> Result<Vec<Graded>> {
     let checks: Vec<&'static Check> =
         STAGES.iter().filter(|(stage, _)| wanted(*stage)).flat_map(|(_, checks)| checks.iter()).collect();
     let grade = |_: &(), &check: &&'static Check| {
-        let verdict = checks::run(check, &source.fresh(), seed);
+        let examined = checks::examine_with(check, &source.fresh(), seed, inputs.clone());
+        let verdict = checks::verdict(check, examined);
         Ok(Graded { check, verdict, points: rubric::entry(check.stage, check.name).points })
     };
     queue::run(&vec![(); threads], &checks, grade)

@@ -36,6 +36,9 @@ pub enum Symmetries {
     Turned,
     /// Each axis is mapped to itself, at least one of them in the other direction, with a scale.
     Mirrored,
+    /// None if the check draws a scene, whose expected text or picture comes from the reference; as `Turned` if there is no
+    /// reference to ask.
+    Composed,
 }
 
 impl Symmetries {
@@ -52,7 +55,7 @@ impl Symmetries {
                 match self {
                     Symmetries::None => Symmetry::IDENTITY,
                     // The third sign makes the determinant 1. An exchange of two axes has the determinant -1.
-                    Symmetries::Turned => Symmetry {
+                    Symmetries::Turned | Symmetries::Composed => Symmetry {
                         axes: [first, next % 3, (2 * next - first) % 3],
                         signs: [x, y, if swapped { -x * y } else { x * y }],
                         scale,

@@ -1,6 +1,6 @@
 //! Stage 1: spheres and planes.
 //!
-//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers, `sphere_mistakes` names mistakes) · `planes` · `plane_equations` · `picture`
+//! `roots` · `spheres` (checks for both methods; `sphere_method` judges the answers, `sphere_mistakes` names mistakes) · `planes` · `plane_equations` · `table` · `picture`
 
 mod picture;
 mod plane_equations;
@@ -9,6 +9,7 @@ mod roots;
 mod sphere_method;
 mod sphere_mistakes;
 mod spheres;
+mod table;
 
 use picture::picture_of_a_sphere_on_a_plane;
 use plane_equations::{
@@ -30,6 +31,7 @@ use spheres::{
     sphere_geometric_respects_the_range, sphere_geometric_starts_inside,
     sphere_geometric_survives_invalid_numbers, sphere_geometric_touches, sphere_normal_points_outwards,
 };
+use table::hit_table_of_a_sphere_on_a_plane;
 
 checks::stage! { ($ crate) 1 [
     nearest_root_is_the_smaller_one_that_counts
@@ -59,5 +61,6 @@ checks::stage! { ($ crate) 1 [
     plane_by_coefficients_is_missed_by_rays_along_it: turned
     plane_by_coefficients_far_from_the_origin
     face_forward_turns_the_normal_to_the_ray
-    picture_of_a_sphere_on_a_plane: turned
+    hit_table_of_a_sphere_on_a_plane: composed
+    picture_of_a_sphere_on_a_plane: composed
 ] }

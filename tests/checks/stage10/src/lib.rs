@@ -1,7 +1,7 @@
 //! The checks of stage 10: stability.
 //!
 //! `roots` · `triangles` · `boxes` (slabs) · `points` (offsets, directions) · `doubles` (triangles in double precision)
-//! · `rims` (spheres in double precision) · `next_to_faces` (rays that start next to a triangle)
+//! · `rims` (spheres in double precision) · `next_to_faces` (rays that start next to a triangle) · `table` · `picture`
 //!
 //! [`oracle::exact`] gives the exact answers. An answer may differ from the exact one only if at most
 //! [`oracle::STABLE`] roundings decide, and a closed mesh must not leak at all.
@@ -9,9 +9,11 @@
 mod boxes;
 mod doubles;
 mod next_to_faces;
+mod picture;
 mod points;
 mod rims;
 mod roots;
+mod table;
 mod triangles;
 
 use boxes::{
@@ -24,6 +26,7 @@ use doubles::{
 };
 use glam::Vec3;
 use oracle::splitmix::Random;
+use picture::picture_at_three_scales;
 use points::{
     directions_have_length_one_at_every_length, offsets_are_as_small_as_they_can_be,
     offsets_leave_the_surface_at_any_scale, zero_has_no_direction,
@@ -33,6 +36,7 @@ use raykata::ray::Ray;
 use raykata::shape::Triangle;
 use rims::{double_sphere_has_the_nearest_t, double_sphere_is_right_at_rims};
 use roots::{roots_do_not_cancel, roots_of_special_numbers_are_finite, roots_that_touch_are_found};
+use table::table_of_seven_scales;
 use triangles::{
     watertight_errs_only_where_roundings_decide, watertight_has_a_good_t, watertight_meshes_do_not_leak,
     watertight_of_special_numbers_is_finite, watertight_sees_size_alike,
@@ -96,4 +100,6 @@ checks::stage! { ($ crate) 10 [
     double_sphere_is_right_at_rims
     double_sphere_has_the_nearest_t
     double_of_special_numbers_is_finite
+    table_of_seven_scales: composed
+    picture_at_three_scales: composed
 ] }

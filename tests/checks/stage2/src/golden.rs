@@ -3,16 +3,26 @@
 use super::method::{CHOICE, CRAMER, GRAM};
 use super::vertex_normals::octahedron;
 use checks::broken::CheckResult;
-use checks::{Trial, golden, picture};
-use glam::{Vec3, vec3};
-use raykata::kit::{InterpolateQuery, TriangleQuery};
+use checks::golden::Table;
+use checks::picture::{Composed, LARGE};
+use checks::{Trial, picture};
+use glam::{Quat, Vec3, vec3};
+use proptest::prelude::*;
+use raykata::kit::{InterpolateQuery, Kit, TriangleQuery};
+use raykata::mesh::Mesh;
 use raykata::ray::Ray;
 use raykata::shape::Triangle;
 
 /// The hits of each method on a fan of 25 rays, to four digits, because the methods differ in later digits.
 pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
-    let triangle = Triangle { a: vec3(-1.0, -1.0, 0.0), b: vec3(2.0, -0.5, 0.5), c: vec3(0.0, 2.0, -0.5) };
-    let eye = vec3(0.3, 0.2, 4.0);
+    let shift = || (-0.2..0.2f32, -0.2..0.2f32, -0.5..0.5f32).prop_map(Vec3::from);
+    let public = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, vec3(0.3, 0.2, 4.0));
+    let (a, b, c, eye) = trial.composed(
+        public,
+        (shift(), shift(), shift(), shift().prop_map(|shift| vec3(0.3, 0.2, 4.0) + 2.0 * shift)),
+    );
+    let triangle =
+        Triangle { a: a + vec3(-1.0, -1.0, 0.0), b: b + vec3(2.0, -0.5, 0.5), c: c + vec3(0.0, 2.0, -0.5) };
     let rays: Vec<TriangleQuery> = (0..25)
         .map(|i| {
             let target = vec3(-1.05 + 0.7 * (i % 5) as f32, -1.15 + 0.7 * (i / 5) as f32, 0.0);
@@ -20,35 +30,29 @@ pub(super) fn hit_table_of_a_fan(trial: &Trial<'_>) -> CheckResult {
         })
         .collect();
     for method in [CRAMER, GRAM, CHOICE] {
-        let lines: Vec<String> = rays
-            .iter()
-            .zip((method.ask)(trial.kit, &rays))
-            .map(|(query, hit)| {
+        let lines = |kit: &dyn Kit| {
+            let line = |(query, hit): (&TriangleQuery, Option<raykata::kit::TriangleHit>)| {
                 let target = query.ray.at(1.0);
                 let hit =
                     hit.map_or("-".into(), |hit| format!("{:.4} {:.4} {:.4}", hit.t, hit.beta, hit.gamma));
                 format!("({:.2} {:.2})  {hit}", target.x, target.y)
-            })
-            .collect();
-        golden::compare(
-            "stage2_hit_table",
-            &format!("{} on a fan of 25 rays from {eye}", method.name),
-            &lines.join("\n"),
-        )?;
+            };
+            rays.iter().zip((method.ask)(kit, &rays)).map(line).collect::<Vec<String>>().join("\n")
+        };
+        let input = format!("{} on a fan of 25 rays from {eye}", method.name);
+        Table { name: "stage2_hit_table", input: &input }.check(trial, lines)?;
     }
     Ok(())
 }
 
-pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
-    let mesh = octahedron();
-    let rays = picture::rays(trial, vec3(1.2, 1.6, 2.4), Vec3::ZERO);
+fn colors(kit: &dyn Kit, rays: &[Ray], mesh: &Mesh) -> Vec<Vec3> {
     let mut nearest: Vec<(f32, Vec3)> = vec![(f32::INFINITY, Vec3::ZERO); rays.len()];
-    let normals = trial.kit.vertex_normals(std::slice::from_ref(&mesh)).remove(0);
+    let normals = kit.vertex_normals(std::slice::from_ref(mesh)).remove(0);
     for (face, corners) in mesh.triangles.iter().enumerate() {
         let [a, b, c] = mesh.corners(face);
         let queries: Vec<TriangleQuery> =
             rays.iter().map(|&ray| TriangleQuery { ray, triangle: Triangle { a, b, c } }).collect();
-        let hits = trial.kit.triangle_choice(&queries);
+        let hits = kit.triangle_choice(&queries);
         let weights: Vec<InterpolateQuery> = hits
             .iter()
             .map(|hit| hit.map_or(Vec3::ZERO, |hit| vec3(1.0 - hit.beta - hit.gamma, hit.beta, hit.gamma)))
@@ -57,13 +61,23 @@ pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
                 corners: corners.map(|corner| normals[corner as usize]),
             })
             .collect();
-        for ((pixel, hit), normal) in nearest.iter_mut().zip(hits).zip(trial.kit.interpolate(&weights)) {
+        for ((pixel, hit), normal) in nearest.iter_mut().zip(hits).zip(kit.interpolate(&weights)) {
             if let Some(hit) = hit.filter(|hit| hit.t < pixel.0) {
                 *pixel = (hit.t, picture::normal_color(normal.normalize_or_zero()));
             }
         }
     }
+    nearest.into_iter().map(|(_, color)| color).collect()
+}
+
+pub(super) fn picture_of_an_octahedron(trial: &Trial<'_>) -> CheckResult {
+    let turns = (-1.0..1f32, -0.5..0.5f32, 0.7..1f32);
+    let (turn, tilt, size) = trial.composed((0.0, 0.0, 1.0), turns);
+    let turn = Quat::from_rotation_x(tilt) * Quat::from_rotation_y(turn);
+    let mut mesh = octahedron();
+    mesh.positions.iter_mut().for_each(|position| *position = size * (turn * *position));
+    let rays = picture::rays(trial, vec3(1.2, 1.6, 2.4), Vec3::ZERO);
     // The outline crosses about 120 of 4800 pixels. There rounding decides whether a ray hits or misses.
-    let film = picture::film_of(nearest.into_iter().map(|(_, color)| color).collect());
-    picture::compare(trial, "stage2_octahedron", &film, &rays, 0.002)
+    let composed = Composed { name: "stage2_octahedron", size: LARGE, rays: &rays, may_differ: 0.002 };
+    composed.check(trial, |kit| colors(kit, &rays, &mesh))
 }

@@ -79,6 +79,6 @@ checks::stage! { ($ crate) 2 [
     vertex_normals_average_their_faces
     vertex_normals_that_cancel_are_still_normals: turned
     brute_force_finds_the_closest_of_all
-    hit_table_of_a_fan: turned
-    picture_of_an_octahedron: turned
+    hit_table_of_a_fan: composed
+    picture_of_an_octahedron: composed
 ] }

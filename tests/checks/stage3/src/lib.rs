@@ -69,7 +69,7 @@ checks::stage! { ($ crate) 3 [
     build_isolates_what_is_not_a_number: turned
     object_median_is_balanced: turned
     surface_area_heuristic_is_cheap_in_a_stadium: turned
-    trees_of_eight_boxes: turned
+    trees_of_eight_boxes: composed
     closest_hit_both_agrees_with_brute_force
     closest_hit_both_enters_only_boxes_it_meets
     closest_hit_agrees_with_brute_force
@@ -77,5 +77,5 @@ checks::stage! { ($ crate) 3 [
     any_hit_agrees_with_brute_force
     any_hit_stops_at_the_first
     each_split_strategy_is_worth_its_cost: turned
-    picture_of_depth: turned
+    picture_of_depth: composed
 ] }

@@ -1,9 +1,12 @@
 //! A table and a picture that are compared with stored references.
 
 use checks::broken::CheckResult;
-use checks::{Trial, golden, picture};
+use checks::golden::Table;
+use checks::picture::{Composed, LARGE};
+use checks::{Trial, picture};
 use glam::{Vec3, vec3};
-use raykata::kit::{LightSample, ShadeQuery, Surface};
+use proptest::prelude::*;
+use raykata::kit::{Kit, LightSample, ShadeAnswer, ShadeQuery, Surface};
 use raykata::material::Material;
 
 pub(super) fn lights(at: Vec3) -> Vec<LightSample> {
@@ -29,19 +32,27 @@ pub(super) fn sphere_point(normal: Vec3, to_viewer: Vec3) -> ShadeQuery {
     ShadeQuery { surface, to_viewer, material, ambient: Vec3::splat(0.15), lights: lights(normal), visible }
 }
 
+/// The material and the ambient light of [`sphere_point`], and others for a hidden seed.
+fn varied(trial: &Trial<'_>, query: ShadeQuery) -> ShadeQuery {
+    let color = || (0.05..0.95f32, 0.05..0.95f32, 0.05..0.95f32).prop_map(Vec3::from);
+    let public = (query.material.diffuse, query.material.specular, query.material.exponent, query.ambient);
+    let hidden = (color(), color(), 5.0..40f32, color().prop_map(|color| 0.3 * color));
+    let (diffuse, specular, exponent, ambient) = trial.composed(public, hidden);
+    let material = Material { ambient: diffuse, diffuse, specular, exponent, ..query.material };
+    ShadeQuery { material, ambient, ..query }
+}
+
 pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
     let queries: Vec<ShadeQuery> = (0..24)
         .map(|i| {
             let (azimuth, height) = ((i % 8) as f32 * 0.785, 0.8 - (i / 8) as f32 * 0.7);
             let flat = (1.0 - height * height).sqrt();
             let normal = vec3(flat * azimuth.cos(), height, flat * azimuth.sin());
-            sphere_point(normal, (vec3(0.0, 1.0, 6.0) - normal).normalize())
+            varied(trial, sphere_point(normal, (vec3(0.0, 1.0, 6.0) - normal).normalize()))
         })
         .collect();
-    let lines: Vec<String> = queries
-        .iter()
-        .zip(trial.kit.shade(&queries))
-        .map(|(query, answer)| {
+    let lines = |kit: &dyn Kit| {
+        let line = |(query, answer): (&ShadeQuery, ShadeAnswer)| {
             let n = query.surface.point;
             let mut traced = answer.traced;
             traced.sort_unstable();
@@ -49,9 +60,11 @@ pub(super) fn shading_table(trial: &Trial<'_>) -> CheckResult {
                 "({:.2} {:.2} {:.2})  {:.3} {:.3} {:.3}  rays to {traced:?}",
                 n.x, n.y, n.z, answer.color.x, answer.color.y, answer.color.z
             )
-        })
-        .collect();
-    golden::compare("stage4_shading_table", "24 points of a sphere, two lights", &lines.join("\n"))
+        };
+        queries.iter().zip(kit.shade(&queries)).map(line).collect::<Vec<String>>().join("\n")
+    };
+    let input = "24 points of a sphere, two lights";
+    Table { name: "stage4_shading_table", input }.check(trial, lines)
 }
 
 pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
@@ -68,10 +81,16 @@ pub(super) fn picture_of_a_lit_sphere(trial: &Trial<'_>) -> CheckResult {
     let queries: Vec<ShadeQuery> = rays
         .iter()
         .zip(&points)
-        .map(|(ray, point)| sphere_point(point.unwrap_or(Vec3::Y), -ray.direction))
+        .map(|(ray, point)| varied(trial, sphere_point(point.unwrap_or(Vec3::Y), -ray.direction)))
         .collect();
-    let colors = trial.kit.shade(&queries).into_iter().zip(points);
-    let colors = colors.map(|(answer, point)| if point.is_some() { answer.color } else { Vec3::ZERO });
+    let colors = |kit: &dyn Kit| {
+        let color = |(answer, point): (ShadeAnswer, &Option<Vec3>)| match point {
+            Some(_) => answer.color,
+            None => Vec3::ZERO,
+        };
+        kit.shade(&queries).into_iter().zip(&points).map(color).collect()
+    };
     // The points are given, so pixels may differ only where a light is exactly at the horizon: a few of 4800.
-    picture::compare(trial, "stage4_lit_sphere", &picture::film_of(colors.collect()), &rays, 0.001)
+    let composed = Composed { name: "stage4_lit_sphere", size: LARGE, rays: &rays, may_differ: 0.001 };
+    composed.check(trial, colors)
 }

@@ -39,6 +39,6 @@ checks::stage! { ($ crate) 4 [
     shade_traces_at_most_one_ray_per_light
     gamma_is_two
     gamma_survives_invalid_numbers
-    shading_table: turned
-    picture_of_a_lit_sphere: turned
+    shading_table: composed
+    picture_of_a_lit_sphere: composed
 ] }

@@ -1,10 +1,11 @@
 //! The checks of stage 5: mirrors and glass.
 //!
 //! `directions` (reflection and refraction), `fresnel` (reflectance), `scatter` (secondary rays and their weights),
-//! `weights` (the limit on the weight), `spawn` (origins of secondary rays), `trees` (whole ray trees, counted).
+//! `weights` (the limit on the weight), `spawn` (origins of secondary rays), `trees` (whole ray trees, counted), `picture`.
 
 mod directions;
 mod fresnel;
+mod picture;
 mod scatter;
 mod spawn;
 mod trees;
@@ -16,6 +17,7 @@ use directions::{
     refract_survives_rounded_directions,
 };
 use fresnel::{fresnel_exact_agrees_with_double_precision, fresnel_schlick_agrees_with_double_precision};
+use picture::picture_of_a_mirror_and_glass;
 use scatter::{
     scatter_refracts_nothing_in_total_reflection, scatter_skips_rays_without_weight,
     scatter_swaps_indices_when_leaving_glass, scatter_weighs_rays_by_the_material,
@@ -44,5 +46,6 @@ checks::stage! { ($ crate) 5 [
     tree_ends_at_its_depth: turned
     tree_ends_below_min_contribution: turned
     facing_mirrors_end: turned
-    tree_of_a_glass_sphere: turned
+    tree_of_a_glass_sphere: composed
+    picture_of_a_mirror_and_glass: composed
 ] }

@@ -1,11 +1,12 @@
 //! Whole ray trees, counted in scenes so simple that the number of rays is known.
 
 use super::scatter::{FAR, paste};
+use checks::Trial;
 use checks::broken::{Broken, CheckResult, all_hold};
+use checks::golden::Table;
 use checks::judge::compare_formulas;
-use checks::{Trial, golden};
 use glam::{Vec3, vec3};
-use raykata::kit::{Bounce, Limits, ScatterQuery};
+use raykata::kit::{Bounce, Kit, Limits, ScatterQuery};
 use raykata::material::{Fresnel, Material};
 
 /// A tree with more rays than this is reported as infinite.
@@ -169,27 +170,28 @@ pub(super) fn facing_mirrors_end(trial: &Trial<'_>) -> CheckResult {
 
 /// The tree of a ray through a glass sphere, each ray with its weight. Every correct solution gives this tree.
 pub(super) fn tree_of_a_glass_sphere(trial: &Trial<'_>) -> CheckResult {
+    // Another index and another angle for a hidden seed.
+    let (index_of_refraction, sine) = trial.composed((1.5, 0.5), (1.2..1.8f32, 0.2..0.8f32));
     let glass = Material {
         transmission: Vec3::ONE,
-        index_of_refraction: 1.5,
+        index_of_refraction,
         fresnel: Fresnel::Exact,
         ..Material::default()
     };
-    let mut text = String::new();
     let start = vec3(-1.0, 0.0, 0.0);
-    let (sine, cosine) = (0.5f32, 0.75f32.sqrt());
-    follow(trial, &glass, start, vec3(cosine, sine, 0.0), true, Vec3::ONE, 0, &mut text);
-    golden::compare(
-        "stage5_tree_of_a_glass_sphere",
-        "a ray into a sphere of glass (index 1.5, Fresnel::Exact) at 30°, depth 4",
-        &text,
-    )
+    let direction = vec3((1.0 - sine * sine).sqrt(), sine, 0.0);
+    let input = "a ray into a sphere of glass (index 1.5, Fresnel::Exact) at 30°, depth 4";
+    Table { name: "stage5_tree_of_a_glass_sphere", input }.check(trial, |kit| {
+        let mut text = String::new();
+        follow(kit, &glass, start, direction, true, Vec3::ONE, 0, &mut text);
+        text
+    })
 }
 
 /// Writes the secondary rays of a ray that meets the unit sphere at `point`, and theirs, recursively.
 #[allow(clippy::too_many_arguments, reason = "a recursion over plain data")]
 fn follow(
-    trial: &Trial<'_>,
+    kit: &dyn Kit,
     glass: &Material,
     point: Vec3,
     direction: Vec3,
@@ -206,7 +208,7 @@ fn follow(
         return;
     }
     let query = ScatterQuery { direction, normal, entering, material: glass.clone(), weight, depth, limits };
-    let mut children = trial.kit.scatter(&[query]).remove(0);
+    let mut children = kit.scatter(&[query]).remove(0);
     children.sort_by_key(|child| child.bounce == Bounce::Transmission);
     for child in children {
         let indent = "  ".repeat(depth as usize);
@@ -216,7 +218,7 @@ fn follow(
         if goes_in {
             // Inside the sphere, the next hit is the other end of the chord.
             let next = point - 2.0 * point.dot(child.direction) * child.direction;
-            follow(trial, glass, next.normalize(), child.direction, false, child.weight, depth + 1, text);
+            follow(kit, glass, next.normalize(), child.direction, false, child.weight, depth + 1, text);
         }
     }
 }

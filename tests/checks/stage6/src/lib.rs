@@ -1,15 +1,17 @@
 //! The checks of stage 6: distributed ray tracing.
 //!
 //! `pixels` (samples and the filter), `lens` (depth of field), `area_lights`, `rough` (glossy reflection), `motion`
-//! (times and motion blur).
+//! (times and motion blur), `table`, `picture`.
 //!
 //! Distributions are judged by [`checks::statistics`], with 1 false alarm in 10 million per test.
 
 mod area_lights;
 mod lens;
 mod motion;
+mod picture;
 mod pixels;
 mod rough;
+mod table;
 
 use area_lights::{
     a_far_sphere_is_still_a_sphere, directions_to_a_sphere_are_even, from_inside_a_sphere_it_is_everywhere,
@@ -25,6 +27,7 @@ use motion::{
     lerp_is_exact_where_it_must, lerp_stays_on_the_way, motion_bounds_covers_the_way_and_no_more,
     temporal_table_has_each_time_once, times_are_even, times_lie_in_their_slots,
 };
+use picture::picture_of_soft_edges;
 use pixels::{
     each_sampler_has_its_places, filter_pixel_is_the_weighted_mean, filter_pixel_of_no_samples_is_black,
     gaussian_weight_is_a_bell_that_ends, jittered_samples_cover_the_pixel_evenly,
@@ -35,6 +38,7 @@ use rough::{
     phong_lobe_falls_with_the_power_of_the_cosine, phong_lobe_stays_on_its_side,
     slightly_rough_is_not_a_few_angles, smooth_surfaces_stay_sharp,
 };
+use table::table_of_the_samples_of_a_pixel;
 
 /// A direction that leaves a surface, and the normal on the side to which it goes.
 fn unit_arrival() -> impl Strategy<Value = (Vec3, Vec3)> + Clone {
@@ -71,4 +75,6 @@ checks::stage! { ($ crate) 6 [
     lerp_is_exact_where_it_must
     lerp_stays_on_the_way
     motion_bounds_covers_the_way_and_no_more
+    table_of_the_samples_of_a_pixel: composed
+    picture_of_soft_edges: composed
 ] }

@@ -1,8 +1,9 @@
 //! Checks of stage 8: scene graph, solids and curved surfaces.
 //!
 //! `spaces` (rays, normals, placements) · `boxes` (after transforms) · `bounding_spheres` (around points) · `graph`
-//! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of
-//! their formulas) · `surfaces` (patches) · `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles)
+//! (searches; `child_cache`: with a cache in each node) · `solid` (one description per solid) · `solids` (laws for all
+//! solids) · `mistakes` (known mistakes in them) · `hard`, `flat` (pitfalls of their formulas) · `surfaces` (patches) ·
+//! `splines` (B-spline and NURBS surfaces) · `subdivision` (meshes; `quarters`: their triangles) · `table` · `picture`
 
 mod bounding_spheres;
 mod boxes;
@@ -11,6 +12,7 @@ mod flat;
 mod graph;
 mod hard;
 mod mistakes;
+mod picture;
 mod quarters;
 mod solid;
 mod solids;
@@ -18,6 +20,7 @@ mod spaces;
 mod splines;
 mod subdivision;
 mod surfaces;
+mod table;
 
 use bounding_spheres::{
     enter_bounding_sphere_finds_what_is_met, enter_bounding_sphere_passes_what_is_missed,
@@ -36,6 +39,7 @@ use hard::{
     cone_at_its_tip_and_rim, cone_is_not_its_mirror_image, cone_seen_along_its_side,
     cuboid_seen_along_its_faces, cylinder_at_its_rim, cylinder_seen_along_its_axis,
 };
+use picture::picture_of_placed_solids;
 use solids::{
     cone_agrees_with_exact_arithmetic, cone_keeps_to_the_rules, cone_normals_point_outwards,
     cuboid_agrees_with_exact_arithmetic, cuboid_keeps_to_the_rules, cuboid_normals_point_outwards,
@@ -55,6 +59,7 @@ use subdivision::{
     loop_borders_depend_on_borders, loop_makes_four_triangles_of_each, loop_places_vertices_by_the_rule,
 };
 use surfaces::{bezier_point_is_the_mean_of_its_net, bezier_starts_and_ends_at_its_corners};
+use table::table_of_curved_surfaces;
 
 checks::stage! { ($ crate) 8 [
     rays_pass_the_same_points_in_every_space
@@ -106,4 +111,6 @@ checks::stage! { ($ crate) 8 [
     loop_makes_four_triangles_of_each
     loop_places_vertices_by_the_rule
     loop_borders_depend_on_borders
+    table_of_curved_surfaces: composed
+    picture_of_placed_solids: composed
 ] }

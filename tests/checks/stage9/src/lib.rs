@@ -1,8 +1,8 @@
 //! The checks of stage 9: partitions of space.
 //!
 //! `resolutions` (and the interval of a ray in a cell) · `grids` · `octrees` · `kd_trees` · `heuristics` · `bsps` ·
-//! `bsp_searches` · `polygon_bsps` · `polygon_bsp_searches` · `coherence`. Shared modules: `scenes` (primitives and rays),
-//! `structures` (simple builders), `searches` (calls a search and judges its answer), `search_mistakes`,
+//! `bsp_searches` · `polygon_bsps` · `polygon_bsp_searches` · `coherence` · `table` · `picture`. Shared modules: `scenes`
+//! (primitives and rays), `structures` (simple builders), `searches` (calls a search and judges its answer), `search_mistakes`,
 //! `plane_mistakes` and `octant_mistakes` (searches with one mistake each), `parts` (the interval of a ray in each
 //! node), `lists` (judges the lists of cells), `hulls` (judges trees over hulls).
 
@@ -17,6 +17,7 @@ mod lists;
 mod octant_mistakes;
 mod octrees;
 mod parts;
+mod picture;
 mod plane_mistakes;
 mod polygon_bsp_searches;
 mod polygon_bsps;
@@ -25,6 +26,7 @@ mod scenes;
 mod search_mistakes;
 mod searches;
 mod structures;
+mod table;
 
 use bsp_searches::{
     bsp_planes_behind_and_beyond_do_not_end_the_search, bsp_search_agrees_with_brute_force,
@@ -58,6 +60,7 @@ use octrees::{
     octree_search_agrees_with_brute_force, octree_sorts_octants_that_are_entered_at_one_t,
     octree_visits_what_the_ray_enters_before_its_hit,
 };
+use picture::picture_searched_in_six_structures;
 use polygon_bsp_searches::{
     polygon_bsp_search_agrees_with_brute_force, polygon_bsp_takes_rays_on_and_along_planes,
     polygon_bsp_visits_what_the_ray_enters_before_its_hit,
@@ -69,6 +72,7 @@ use resolutions::{
     grid_resolution_makes_cubes, grid_resolution_of_flat_and_empty_boxes,
     spans_of_cells_agree_with_double_precision,
 };
+use table::map_of_the_cells_on_the_way;
 
 checks::stage! { ($ crate) 9 [
     spans_of_cells_agree_with_double_precision
@@ -122,4 +126,6 @@ checks::stage! { ($ crate) 9 [
     cached_hit_saves_tests: turned
     packet_finds_what_single_rays_find
     packet_opens_a_node_once: turned
+    map_of_the_cells_on_the_way: composed
+    picture_searched_in_six_structures: composed
 ] }

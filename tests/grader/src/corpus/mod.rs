@@ -14,11 +14,13 @@ use crate::kits::{Need, Source, Which};
 use crate::queue;
 use crate::report::bar_of_steps;
 use anyhow::{Result, bail};
+use checks::Inputs;
 use entry::{Claim, Entry};
 use judge::scorecard::run_checks_on;
 use raykata_cli::args::{Argument, Given, Misuse, Opt, Spec};
 use records::Matrix;
 use std::path::Path;
+use std::sync::Arc;
 use verdict::{Fate, Tried};
 use workshop::{Built, Workshop};
 
@@ -145,9 +147,15 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Re
     let jobs = jobs.min(entries.len());
     let workshops = Workshop::open_all(root, jobs, Need::Checks)?;
     let threads = queue::cores().div_ceil(jobs);
+    // With a seed, texts and pictures are drawn, and the expected ones come from the reference.
+    let reference = match seed {
+        Some(_) => Some(Source::prepare(root, Which::Solutions, Need::Checks)?.fresh()),
+        None => None,
+    };
+    let inputs = Inputs { drawn: Some(Arc::default()), reference, ..Inputs::default() };
     let tried = queue::run(&workshops, entries, |workshop, entry| {
         bar.set_message(entry.to_string());
-        let one = try_one(workshop, entry, threads, seed)?;
+        let one = try_one(workshop, entry, threads, seed, &inputs)?;
         bar.inc(1);
         Ok(one)
     })?;
@@ -155,7 +163,13 @@ fn try_all(root: &Path, entries: &[Entry], jobs: usize, seed: Option<u64>) -> Re
     Ok(tried)
 }
 
-fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>) -> Result<Tried> {
+fn try_one(
+    workshop: &Workshop,
+    entry: &Entry,
+    threads: usize,
+    seed: Option<u64>,
+    inputs: &Inputs,
+) -> Result<Tried> {
     let tried = |fate, failures| Ok(Tried { entry: entry.clone(), fate, failures });
     let worker = match workshop.build(&entry.file, &entry.diff)? {
         Built::Worker(worker) => worker,
@@ -164,7 +178,7 @@ fn try_one(workshop: &Workshop, entry: &Entry, threads: usize, seed: Option<u64>
     };
     let wanted = |stage| stage == entry.stage;
     let source = Source { which: Which::Solutions, program: worker };
-    let graded = run_checks_on(threads, &source, wanted, seed.unwrap_or(0))?;
+    let graded = run_checks_on(threads, &source, wanted, seed.unwrap_or(0), inputs)?;
     let failures: verdict::Failures =
         graded.into_iter().filter_map(|one| Some((one.check.name, verdict::failure(one.verdict)?))).collect();
     let fate = match Fate::of(entry, &failures) {

@@ -50,8 +50,11 @@ pub struct Judge {
     seed: u64,
     /// The sandbox around a worker.
     confinement: Confinement,
-    /// The inputs of all checks, which are the same for all submissions.
+    /// The inputs of all checks, which are the same for all submissions, and the texts and pictures that are expected for
+    /// hidden ones.
     drawn: Arc<Drawn>,
+    /// The reference. It has answered all questions about hidden texts and pictures before the first submission is judged.
+    reference: Arc<dyn Kit + Send + Sync>,
 }
 
 /// A check, and the facts that were learned by running it against the reference.
@@ -88,10 +91,13 @@ impl Judge {
         let reference = Source::prepare(root, Which::Solutions, Need::Checks)?.program;
         let of_stages = STAGES.iter().filter(|(number, _)| stages.contains(number));
         let checks: Vec<&'static Check> = of_stages.flat_map(|(_, checks)| checks.iter()).collect();
-        // Compare the questions of each check with the public seed and with the hidden one.
+        // Compare the questions of each check with the public seed and with the hidden one. This also draws all inputs, and
+        // composes the expected texts and pictures, so that no submission waits for the reference or fails with it.
+        let drawn = Arc::<Drawn>::default();
         let put = |reference: &Arc<Worker>, check: &&'static Check| {
+            let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Shared(reference.clone())));
             let [(known, asks, passes), (hidden, _, passes_hidden)] =
-                [0, seed].map(|seed| asked(reference, check, seed));
+                [0, seed].map(|seed| asked(reference, check, seed, inputs(seed, &drawn, &kit)));
             ensure!(
                 passes,
                 "the reference fails {} of stage {}: is the kit complete?",
@@ -108,7 +114,8 @@ impl Judge {
         let worker = || Arc::new(Worker::new(reference.clone(), worker::CALL_PATIENCE));
         let workers: Vec<_> = (0..queue::cores()).map(|_| worker()).collect();
         let checks = queue::run(&workers, &checks, put)?;
-        Ok(Judge { checks, seed, confinement, drawn: Arc::default() })
+        let reference: Arc<dyn Kit + Send + Sync> = Arc::new(Door(Shared(worker())));
+        Ok(Judge { checks, seed, confinement, drawn, reference })
     }
 
     /// Runs all checks against the program `worker`, and returns their results and the processor time of the program. Checks
@@ -219,7 +226,7 @@ impl Judge {
     fn examine(&self, put: &Put, worker: Arc<Worker>, seed: u64) -> Result<checks::CheckResult, KitError> {
         let over = Arc::new(AtomicBool::new(false));
         let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(StoppableWorker { worker, over: over.clone() }));
-        let inputs = Inputs { drawn: Some(self.drawn.clone()), one_in: one_in(seed) };
+        let inputs = inputs(seed, &self.drawn, &self.reference);
         let examined = checks::examine_with(put.check, &kit, seed, inputs);
         // A check that hangs continues on its own thread. It ends there, because it gets no more answers.
         over.store(true, Ordering::Relaxed);
@@ -273,8 +280,10 @@ impl Processes<'_> {
     }
 }
 
-fn one_in(seed: u64) -> usize {
-    if seed == 0 { 1 } else { ONE_HIDDEN_IN }
+/// The inputs of a check.
+fn inputs(seed: u64, drawn: &Arc<Drawn>, reference: &Arc<dyn Kit + Send + Sync>) -> Inputs {
+    let one_in = if seed == 0 { 1 } else { ONE_HIDDEN_IN };
+    Inputs { drawn: Some(drawn.clone()), one_in, reference: Some(reference.clone()) }
 }
 
 fn hidden_message(check: &Check) -> String {
@@ -324,14 +333,23 @@ fn asked(
     reference: &Arc<Worker>,
     check: &Check,
     seed: u64,
+    inputs: Inputs,
 ) -> (Vec<u8>, HashSet<Discriminant<Request>>, bool) {
     let heard = Arc::new(Mutex::new((Sha256::new(), HashSet::new())));
     let overheard = Overheard { reference: reference.clone(), heard: heard.clone() };
     let kit: Arc<dyn Kit + Send + Sync> = Arc::new(Door(overheard));
-    let inputs = Inputs { drawn: None, one_in: one_in(seed) };
     let passes = matches!(checks::examine_with(check, &kit, seed, inputs), Ok(Ok(())));
     let (questions, functions) = heard.lock().unwrap_or_else(PoisonError::into_inner).clone();
     (questions.finalize().to_vec(), functions, passes)
+}
+
+/// The reference, which several checks ask.
+struct Shared(Arc<Worker>);
+
+impl Transport for Shared {
+    fn call(&self, request: Request, watch: &dyn Watch) -> Answer {
+        self.0.call(request, watch)
+    }
 }
 
 /// The reference, with a record of the questions.

@@ -178,7 +178,7 @@ fn archives_take_the_place_of_the_folder() {
 fn points_that_are_not_earned_are_complained_about_and_points_that_are_not_given() {
     let fine = graded(|_| Outcome::Passed);
     assert_eq!(message("earned = \"all\"", &fine), [""; 0]);
-    assert_eq!(message("earned = \"none\"", &fine).len(), 28);
+    assert_eq!(message("earned = \"none\"", &fine).len(), 29);
     let normal =
         graded(|name| if name.starts_with("sphere_normal") { Outcome::TooLong } else { Outcome::Passed });
     assert_eq!(message("earned = { all_but = [\"sphere_normal_*\"] }", &normal), [""; 0]);

@@ -1,0 +1,170 @@
+//! Comparison of pictures of random samples.
+//!
+//! The metric: two correct pictures have samples at other places, so their pixels differ. The means of blocks of 8 × 8 pixels
+//! agree within the standard error that the samples of the picture show. The bound of six standard errors is exceeded by
+//! chance once in 500 million comparisons: for the 24 blocks of a small picture with three channels once in 7 million
+//! pictures. Stratified samples differ less than that.
+
+use super::{Pair, Size, film_of_width, golden_picture, image_of, linear};
+use crate::broken::{Broken, CheckResult};
+use crate::trial::Trial;
+use glam::{DVec3, Vec3};
+use image::RgbImage;
+use raykata::kit::Kit;
+
+/// The number of columns and rows of a block.
+const BLOCK: u32 = 8;
+
+/// The largest difference of two means, in standard errors. A normally distributed number is beyond it once in 500 million
+/// times.
+const STANDARD_ERRORS: f64 = 6.0;
+
+/// The largest error of a mean by the rounding of the golden picture to bytes. With gamma 2 the codes of bright colours are
+/// 2/255 apart, so that a byte is wrong by up to 1/255.
+const BYTE_ERROR: f64 = 1.0 / 255.0;
+
+/// The number of samples that are off by 1 which a block may have missed by chance. The standard error of equal samples is 0,
+/// although the expected picture may have a rare colour there. If a colour has 12 samples per block on average, none of them is
+/// seen, and 24 are expected, once in 100 million times.
+const MISSED: f64 = 8.0;
+
+/// A picture of random samples that is composed from answers.
+pub struct Sampled<'a> {
+    /// The name of the golden picture.
+    pub name: &'a str,
+    /// The size of the whole picture.
+    pub size: Size,
+}
+
+/// The pixels of a block: their number, the sum of their means, the sum of the squares of the standard errors of these means,
+/// and the sum of the expected colours.
+#[derive(Clone, Copy, Default)]
+struct Block {
+    pixels: f64,
+    means: DVec3,
+    squared_errors: DVec3,
+    expected: DVec3,
+}
+
+impl Block {
+    /// The largest difference of a channel of both means, in units of the largest difference that may be chance.
+    fn score(&self) -> f64 {
+        let error = (2.0 * self.squared_errors).powf(0.5) / self.pixels;
+        let off = (self.means - self.expected).abs() / self.pixels;
+        let off = off / (STANDARD_ERRORS * error + BYTE_ERROR);
+        if off.is_nan() { f64::INFINITY } else { off.max_element() }
+    }
+}
+
+impl Sampled<'_> {
+    /// Composes the picture from the answers of the trial's kit, and compares it with the golden picture; or, for a hidden
+    /// seed and with a reference to ask, with the picture that the answers of the reference make. `samples` returns the
+    /// colours, from 0 to 1, of the samples of each pixel.
+    #[track_caller]
+    pub fn check(&self, trial: &Trial<'_>, samples: impl Fn(&dyn Kit) -> Vec<Vec<Vec3>>) -> CheckResult {
+        let yours = samples(trial.kit);
+        let mean = |samples: &Vec<Vec3>| samples.iter().sum::<Vec3>() / samples.len().max(1) as f32;
+        let film_of =
+            |samples: &[Vec<Vec3>]| film_of_width(self.size.width, samples.iter().map(mean).collect());
+        let film = film_of(&yours);
+        let golden = match trial.expected(&samples) {
+            Some(expected) => image_of(&film_of(&expected)),
+            None => match golden_picture(trial, self.name, &film)? {
+                Some((golden, _)) => golden,
+                None => return Ok(()),
+            },
+        };
+        self.judge(trial, &yours, &Pair { name: self.name, film: &film, golden: &golden })
+    }
+
+    /// Adds up the pixels of each block, and the colours that are expected there. Rows that were left out are missing in both.
+    fn blocks(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], golden: &RgbImage) -> Vec<Block> {
+        let width = self.size.width;
+        let per_row = width.div_ceil(BLOCK);
+        let mut blocks = vec![Block::default(); (per_row * self.size.height.div_ceil(BLOCK)) as usize];
+        for (index, (samples, (x, y))) in samples.iter().zip(super::pixels(trial, self.size)).enumerate() {
+            let block = &mut blocks[(y / BLOCK * per_row + x / BLOCK) as usize];
+            let n = samples.len() as f64;
+            let mean = samples.iter().map(|sample| sample.as_dvec3()).sum::<DVec3>() / n;
+            let squares: DVec3 = samples.iter().map(|sample| (sample.as_dvec3() - mean).powf(2.0)).sum();
+            let missed = if block.pixels == 0.0 { MISSED } else { 0.0 };
+            block.pixels += 1.0;
+            block.means += mean;
+            block.squared_errors += (squares + missed) / (n * (n - 1.0));
+            block.expected += linear(golden, index as u32 % width, index as u32 / width).as_dvec3();
+        }
+        blocks
+    }
+
+    fn judge(&self, trial: &Trial<'_>, samples: &[Vec<Vec3>], pair: &Pair<'_>) -> CheckResult {
+        let per_row = self.size.width.div_ceil(BLOCK);
+        let blocks = self.blocks(trial, samples, pair.golden);
+        let used: Vec<usize> = (0..blocks.len()).filter(|&block| blocks[block].pixels > 0.0).collect();
+        let n_off = used.iter().filter(|&&block| blocks[block].score() > 1.0).count();
+        let worst = used.iter().copied().max_by(|&p, &q| blocks[p].score().total_cmp(&blocks[q].score()));
+        let Some(worst) = worst.filter(|_| n_off > 0) else { return Ok(()) };
+        let block = &blocks[worst];
+        let (column, row) = (worst as u32 % per_row * BLOCK, worst as u32 / per_row * BLOCK);
+        let rgb = pair.film.to_bytes(super::gamma()).rgb;
+        Err(pair.broken(&rgb, |written| {
+            Broken::with_texts(
+                format!("{}\n{}", pair.input(), written.trim_end()).trim_end(),
+                format!(
+                    "the mean colours of {n_off} of {} blocks of {BLOCK} × {BLOCK} pixels differ, most from ({column}, \
+                     {row}) on: {:.3}",
+                    used.len(),
+                    block.means / block.pixels
+                ),
+                format!("there: {:.3}", block.expected / block.pixels),
+                "the golden picture, 1 false alarm in a million",
+            )
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SMALL;
+    use super::*;
+    use crate::statistics::pairs;
+    use raykata::frame::Watch;
+    use raykata::kit::{Answer, Door, KitError, Request, Transport, kit_error};
+
+    /// A kit that is never called.
+    struct Silent;
+
+    impl Transport for Silent {
+        fn call(&self, _: Request, _: &dyn Watch) -> Answer {
+            kit_error::unwind(KitError::Crashed { how: "this kit does not answer".into() })
+        }
+    }
+
+    /// Samples of which each is white with the probability that its column has, from 0 to `most`.
+    fn samples(seed: u64, most: f32) -> Vec<Vec<Vec3>> {
+        let n_pixels = (SMALL.width * SMALL.height) as usize;
+        let numbers = pairs(seed, 16 * n_pixels);
+        let share = |pixel: usize| most * (pixel as u32 % SMALL.width) as f32 / SMALL.width as f32;
+        let white = |pixel: usize, u: f32| if u < share(pixel) { Vec3::ONE } else { Vec3::ZERO };
+        let pixel = |(pixel, us): (usize, &[glam::Vec2])| us.iter().map(|u| white(pixel, u.x)).collect();
+        numbers.chunks(16).enumerate().map(pixel).collect()
+    }
+
+    #[test]
+    fn other_random_numbers_make_an_equal_picture_and_other_probabilities_do_not() {
+        let door = Door(Silent);
+        let trial = Trial::new(&door, "a_check", 0);
+        let sampled = Sampled { name: "none", size: SMALL };
+        let score = |yours: (u64, f32), golden: (u64, f32)| {
+            let mean = |samples: &Vec<Vec3>| samples.iter().sum::<Vec3>() / 16.0;
+            let golden = samples(golden.0, golden.1).iter().map(mean).collect();
+            let golden = image_of(&film_of_width(SMALL.width, golden));
+            let blocks = sampled.blocks(&trial, &samples(yours.0, yours.1), &golden);
+            blocks.iter().map(Block::score).fold(0.0, f64::max)
+        };
+        // Of 20 pictures with other numbers none comes near the bound, in no block.
+        let scores = (1..=20).map(|seed| score((seed, 0.8), (0, 0.8)));
+        assert!(scores.clone().all(|score| score < 0.8), "{:?}", scores.collect::<Vec<f64>>());
+        assert!(score((1, 0.6), (0, 0.8)) > 1.0);
+        assert!(score((1, f32::NAN), (0, 0.8)) > 1.0);
+    }
+}
