@@ -30,7 +30,5 @@ use raykata::ray::Ray;
 ///
 /// Slide: "Octree" (trace rays through neighbor cells).
 pub fn closest_hit_by_neighbours(octree: &Octree, probe: &mut impl Cells, ray: &Ray) -> Option<PrimitiveHit> {
-    todo!(
-        "keep the nodes from the root to the leaf; at the exit go up while the face is the node's, then down"
-    )
+    todo!("keep the nodes from the root to the leaf; at the exit go up while the face is shared, then down")
 }

@@ -80,7 +80,7 @@ pub fn closest_hit_by_neighbours(octree: &Octree, probe: &mut impl Cells, ray: &
         }
     }
     best
-    // <stub> todo!("keep the nodes from the root to the leaf; at the exit go up while the face is the node's, then down")
+    // <stub> todo!("keep the nodes from the root to the leaf; at the exit go up while the face is shared, then down")
     // </solution>
 }
 
