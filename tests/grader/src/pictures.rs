@@ -97,6 +97,7 @@ impl Scenes {
             "effects, SpatialMedian",
             "methods",
             "one_sided",
+            "nurbs",
             "effects, no lens, all smooth",
             "stage8",
         ];
