@@ -240,6 +240,9 @@ const WRONG: &[Wrong] = &[
     ("jitter: one u for x and y", "jittered_samples_cover_the_pixel_evenly", |r| {
         cells(r, |u| vec2(u.x, u.x))
     }),
+    ("disk: half of it, in the picture", "picture_of_soft_edges", |r| {
+        disk(r, |u| polar(u.x.sqrt(), 0.5 * u.y))
+    }),
     ("time: u² in each slot", "times_are_even", |r| times(r, |u| u * u)),
     ("time: always the middle of the slot", "times_are_even", |r| times(r, |_| 0.5)),
 ];

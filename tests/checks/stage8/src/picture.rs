@@ -117,7 +117,9 @@ fn colors(kit: &dyn Kit, rays: &[Ray], parts: &[Part]) -> Vec<Vec3> {
             seen.iter().map(|(_, hit)| NormalQuery { normal: hit.normal, to_object }).collect();
         for ((pixel, hit), normal) in seen.into_iter().zip(kit.normal_to_world(&normals)) {
             // A disk and a polygon are seen from either side.
-            let facing = if normal.dot(rays[pixel].direction) > 0.0 { -normal } else { normal };
+            let is_flat = matches!(part.solid, Solid::Disk(_) | Solid::Polygon(_));
+            let is_behind = is_flat && normal.dot(rays[pixel].direction) > 0.0;
+            let facing = if is_behind { -normal } else { normal };
             nearest[pixel] = (hit.t, part.color * (0.3 + 0.7 * facing.dot(light).max(0.0)));
         }
     }
