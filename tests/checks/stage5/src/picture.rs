@@ -11,7 +11,7 @@ use raykata::ray::Ray;
 
 /// A sphere and its material.
 #[derive(Clone, Debug)]
-struct Ball {
+struct Sphere {
     center: Vec3,
     radius: f32,
     material: Material,
@@ -34,32 +34,32 @@ fn sky(direction: Vec3) -> Vec3 {
         + sun * vec3(0.6, 0.5, 0.2)
 }
 
-/// The light of the floor at a point: soft squares, darker under the balls. It has no edges, so that rays with a small
+/// The light of the floor at a point: soft squares, darker under the spheres. It has no edges, so that rays with a small
 /// rounding error see the same.
-fn floor(point: Vec3, balls: &[Ball]) -> Vec3 {
+fn floor(point: Vec3, spheres: &[Sphere]) -> Vec3 {
     let squares = 0.5 + 0.5 * (3.0 * (2.7 * point.x).sin() * (2.7 * point.z).sin()).tanh();
-    let shade: f32 = balls
+    let shade: f32 = spheres
         .iter()
-        .map(|ball| 1.0 - 0.7 / (1.0 + 2.5 * (point - ball.center).reject_from(Vec3::Y).length_squared()))
+        .map(|sphere| 1.0 - 0.7 / (1.0 + 2.5 * (point - sphere.center).reject_from(Vec3::Y).length_squared()))
         .product();
     let far = (-0.12 * point.length()).exp();
     (shade * vec3(0.55, 0.12, 0.08).lerp(vec3(0.85, 0.8, 0.7), squares)).lerp(sky(Vec3::X), 1.0 - far)
 }
 
-/// The nearest ball on the way of a ray, with the point that is hit.
-fn nearest<'a>(ray: &Ray, balls: &'a [Ball]) -> Option<(f64, &'a Ball)> {
-    let hits = balls.iter().filter_map(|ball| {
-        let (to_center, direction) = ((ball.center - ray.origin).as_dvec3(), ray.direction.as_dvec3());
+/// The nearest sphere on the way of a ray, with the point that is hit.
+fn nearest<'a>(ray: &Ray, spheres: &'a [Sphere]) -> Option<(f64, &'a Sphere)> {
+    let hits = spheres.iter().filter_map(|sphere| {
+        let (to_center, direction) = ((sphere.center - ray.origin).as_dvec3(), ray.direction.as_dvec3());
         let middle = to_center.dot(direction);
         let half =
-            (f64::from(ball.radius).powi(2) - (to_center - middle * direction).length_squared()).sqrt();
-        [middle - half, middle + half].into_iter().find(|t| *t > f64::from(ray.t_min)).map(|t| (t, ball))
+            (f64::from(sphere.radius).powi(2) - (to_center - middle * direction).length_squared()).sqrt();
+        [middle - half, middle + half].into_iter().find(|t| *t > f64::from(ray.t_min)).map(|t| (t, sphere))
     });
     hits.min_by(|(p, _), (q, _)| p.total_cmp(q))
 }
 
 /// Follows all rays of the picture, one level of their trees after the other.
-fn colors(kit: &dyn Kit, rays: &[Ray], balls: &[Ball]) -> Vec<Vec3> {
+fn colors(kit: &dyn Kit, rays: &[Ray], spheres: &[Sphere]) -> Vec<Vec3> {
     let mut pixels = vec![Vec3::ZERO; rays.len()];
     let camera_ray = |(pixel, ray): (usize, &Ray)| Way { pixel, ray: *ray, weight: Vec3::ONE, depth: 0 };
     let mut level: Vec<Way> = rays.iter().enumerate().map(camera_ray).collect();
@@ -68,18 +68,18 @@ fn colors(kit: &dyn Kit, rays: &[Ray], balls: &[Ball]) -> Vec<Vec3> {
         let (mut hit, mut queries) = (Vec::new(), Vec::new());
         for way in &level {
             let direction = way.ray.direction;
-            let Some((t, ball)) = nearest(&way.ray, balls) else {
+            let Some((t, sphere)) = nearest(&way.ray, spheres) else {
                 // Every ray ends at the floor or in the sky.
                 let t = -way.ray.origin.y / direction.y;
-                let light = if direction.y < 0.0 { floor(way.ray.at(t), balls) } else { sky(direction) };
+                let light = if direction.y < 0.0 { floor(way.ray.at(t), spheres) } else { sky(direction) };
                 pixels[way.pixel] += way.weight * light;
                 continue;
             };
             let point = (way.ray.origin.as_dvec3() + t * direction.as_dvec3()).as_vec3();
-            let outwards = (point - ball.center) / ball.radius;
+            let outwards = (point - sphere.center) / sphere.radius;
             let entering = outwards.dot(direction) < 0.0;
             let normal = if entering { outwards } else { -outwards };
-            let (weight, depth, material) = (way.weight, way.depth, ball.material.clone());
+            let (weight, depth, material) = (way.weight, way.depth, sphere.material.clone());
             queries.push(ScatterQuery {
                 direction,
                 normal,
@@ -89,7 +89,7 @@ fn colors(kit: &dyn Kit, rays: &[Ray], balls: &[Ball]) -> Vec<Vec3> {
                 depth,
                 limits: LIMITS,
             });
-            // A point of a ball near the origin, rounded once.
+            // A point of a sphere near the origin, rounded once.
             let error = Vec3::splat(1e-6);
             hit.push((way, Surface { point, error, geometric_normal: normal, shading_normal: normal }));
         }
@@ -123,21 +123,21 @@ pub(super) fn picture_of_a_mirror_and_glass(trial: &Trial<'_>) -> CheckResult {
         ..Material::default()
     };
     let mirror = |mirror: Vec3| Material { mirror, fresnel: Fresnel::None, ..Material::default() };
-    let balls = |x: f32, z: f32, index: f32, gold: Vec3| {
-        let ball = |center: Vec3, material: Material| Ball { center, radius: center.y, material };
+    let spheres = |x: f32, z: f32, index: f32, gold: Vec3| {
+        let sphere = |center: Vec3, material: Material| Sphere { center, radius: center.y, material };
         vec![
-            ball(vec3(-1.05 + x, 1.0, -0.4), mirror(gold)),
-            ball(vec3(0.95, 0.85, 0.5 + z), glass(index)),
-            ball(vec3(-0.15 + x, 0.35, 1.25), mirror(vec3(0.85, 0.87, 0.9))),
+            sphere(vec3(-1.05 + x, 1.0, -0.4), mirror(gold)),
+            sphere(vec3(0.95, 0.85, 0.5 + z), glass(index)),
+            sphere(vec3(-0.15 + x, 0.35, 1.25), mirror(vec3(0.85, 0.87, 0.9))),
         ]
     };
     let public = (0.0, 0.0, 1.5, vec3(0.95, 0.75, 0.4));
     let color = (0.3..0.95f32, 0.3..0.95f32, 0.3..0.95f32).prop_map(Vec3::from);
     let (x, z, index, gold) = trial.composed(public, (-0.3..0.1f32, -0.3..0.3f32, 1.2..1.8f32, color));
-    let balls = balls(x, z, index, gold);
+    let spheres = spheres(x, z, index, gold);
     let rays = picture::rays_of(trial, LARGE, vec3(0.3, 1.9, 5.4), vec3(0.0, 0.75, 0.0));
-    // The rims of the balls and of what is seen in them cross about 400 of 4800 pixels. There rounding decides which ray hits;
+    // The rims of the spheres and of what is seen in them cross about 400 of 4800 pixels. There rounding decides which ray hits;
     // for a wrong pixel a ray must pass a rim at a ten-millionth of the size of the picture.
     let composed = Composed { name: "stage5_mirror_and_glass", size: LARGE, rays: &rays, may_differ: 0.002 };
-    composed.check(trial, |kit| colors(kit, &rays, &balls))
+    composed.check(trial, |kit| colors(kit, &rays, &spheres))
 }
