@@ -124,9 +124,12 @@ pub struct Program {
 impl Program {
     /// The worker of a kit.
     pub fn worker(which: Which, need: Need) -> Program {
-        let name = match which {
-            Which::Exercises => "exercises-worker",
-            Which::Solutions => "solutions-worker",
+        // The two have different names, so that two builds at the same time do not overwrite each other.
+        let name = match (which, need) {
+            (Which::Exercises, Need::Checks) => "exercises-worker",
+            (Which::Exercises, Need::Frames) => "exercises-frames",
+            (Which::Solutions, Need::Checks) => "solutions-worker",
+            (Which::Solutions, Need::Frames) => "solutions-frames",
         };
         Program { package: which.package(), name, feature: need.feature() }
     }
@@ -180,7 +183,7 @@ pub fn build(root: &Path, what: &str, programs: &[Program]) -> Result<Vec<PathBu
         cargo.arg("--target-dir").arg(target);
     }
     run_cargo(cargo, what)?;
-    programs.iter().map(|program| placed(folder, program)).collect()
+    Ok(programs.iter().map(|program| folder.join(program.file())).collect())
 }
 
 /// Runs a build by cargo and returns what it writes to standard output. If something has to be built, or if the build waits for
@@ -213,27 +216,6 @@ pub fn run_cargo(mut cargo: Command, what: &str) -> Result<Vec<u8>> {
         .join()
         .map_err(|_| anyhow!("the output of cargo is lost"))?
         .context("the output of cargo cannot be read")
-}
-
-/// The path of a program that cargo has built. A program that was built with a feature is copied to a name of
-/// its own, because a build without the feature would overwrite it.
-fn placed(folder: &Path, program: &Program) -> Result<PathBuf> {
-    let built = folder.join(program.file());
-    let Some(feature) = program.feature else { return Ok(built) };
-    let kept = folder.join(format!("{}-{feature}{}", program.name, std::env::consts::EXE_SUFFIX));
-    let time = |file: &Path| std::fs::metadata(file).and_then(|file| file.modified()).ok();
-    if time(&built).is_none() || time(&built) != time(&kept) {
-        let draft = folder.join(format!("{}-{feature}.{}", program.name, std::process::id()));
-        let copy = || {
-            std::fs::copy(&built, &draft)?;
-            if let Some(time) = time(&built) {
-                std::fs::File::options().append(true).open(&draft)?.set_modified(time)?;
-            }
-            std::fs::rename(&draft, &kept)
-        };
-        copy().with_context(|| format!("cannot write {}", kept.display()))?;
-    }
-    Ok(kept)
 }
 
 /// Filters the output of cargo: it shows nothing while everything is up to date.
