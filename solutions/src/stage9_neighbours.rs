@@ -13,6 +13,7 @@ use raykata::ray::Ray;
 
 // <solution>
 use crate::stage9_cells::{Exit, first_exit};
+use crate::stage9_octree::octant_at;
 // </solution>
 
 /// Finds the closest hit from leaf to leaf, like `closest_hit_by_cells`, but without a return to the root for each leaf:
@@ -83,13 +84,3 @@ pub fn closest_hit_by_neighbours(octree: &Octree, probe: &mut impl Cells, ray: &
     // <stub> todo!("keep the nodes from the root to the leaf; at the exit go up while the face is shared, then down")
     // </solution>
 }
-
-// <solution>
-/// The octant of a cell that contains `point`. On a middle plane, the direction decides which one the ray is about to enter.
-fn octant_at(cell: &Cell, point: DVec3, direction: DVec3) -> usize {
-    let middle = cell.middle();
-    let is_upper =
-        |axis: usize| point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0);
-    (0..3).map(|axis| usize::from(is_upper(axis)) << axis).sum()
-}
-// </solution>

@@ -139,16 +139,20 @@ fn leaf_at(octree: &Octree, probe: &mut impl Cells, point: DVec3, direction: DVe
         match octree.nodes[node as usize] {
             OctreeNode::Leaf { first, count } => return (first, count, cell),
             OctreeNode::Inner { first } => {
-                // Go to the octant that contains the point. On the middle plane, the direction decides.
-                let middle = cell.middle();
-                let upper = |axis: usize| {
-                    point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0)
-                };
-                let octant = (0..3).map(|axis| usize::from(upper(axis)) << axis).sum::<usize>();
+                // Go to the octant that contains the point.
+                let octant = octant_at(&cell, point, direction);
                 (node, cell) = (first + octant as u32, cell.octant(octant));
             }
         }
     }
+}
+
+/// The octant of a cell that contains `point`. On a middle plane, the direction decides which one the ray is about to enter.
+pub fn octant_at(cell: &Cell, point: DVec3, direction: DVec3) -> usize {
+    let middle = cell.middle();
+    let is_upper =
+        |axis: usize| point[axis] > middle[axis] || point[axis] == middle[axis] && !(direction[axis] < 0.0);
+    (0..3).map(|axis| usize::from(is_upper(axis)) << axis).sum()
 }
 // </solution>
 
