@@ -61,7 +61,7 @@ struct Structure {
 }
 
 /// Every structure that finds hits of single rays in another way.
-const STRUCTURES: [Structure; 10] = {
+const STRUCTURES: [Structure; 14] = {
     const fn new(name: &'static str, accelerator: Accelerator, split: Split) -> Structure {
         Structure { name, accelerator, split }
     }
@@ -70,12 +70,16 @@ const STRUCTURES: [Structure; 10] = {
         new("bvh, object median", Accelerator::Bvh, Split::ObjectMedian),
         new("bvh, spatial median", Accelerator::Bvh, Split::SpatialMedian),
         new("bvh, surface area", Accelerator::Bvh, Split::SurfaceArea),
+        new("bvh, both children", Accelerator::BvhBothChildren, Split::SurfaceArea),
+        new("bvh, last hit first", Accelerator::CachedBvh, Split::SurfaceArea),
+        new("bvh, packets of eight", Accelerator::PacketBvh, Split::SurfaceArea),
         new("grid", Accelerator::Grid, Split::SurfaceArea),
         new("octree", Accelerator::Octree, Split::SurfaceArea),
         new("octree by cells", Accelerator::OctreeByCells, Split::SurfaceArea),
         new("octree by neighbours", Accelerator::OctreeByNeighbours, Split::SurfaceArea),
         new("kd-tree", Accelerator::KdTree, Split::SurfaceArea),
         new("bsp tree", Accelerator::Bsp, Split::SurfaceArea),
+        new("bsp tree, polygons in nodes", Accelerator::PolygonBsp, Split::SurfaceArea),
     ]
 };
 
