@@ -2,6 +2,7 @@
 //! with each sampler ("Antialiasing", "Generate pixel samples"), side by side.
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
+use crate::caption;
 use crate::kits::{Choice, Need, Source, root};
 use crate::quality_options::{QualityOptions, SAMPLERS};
 use crate::render::write_png;
@@ -68,7 +69,7 @@ impl Options {
     }
 }
 
-/// Renders the strip and prints what each picture cost.
+/// Renders the strip, with the depth or sampler below each picture, and prints what each picture cost.
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene, options.quality.limits())?;
     options.quality.apply(&mut scene)?;
@@ -81,7 +82,7 @@ pub fn run(options: &Options) -> Result<()> {
     let pictures = pictures(options, &scene);
     let (width, height) = (scene.film.width, scene.film.height);
     let n = pictures.len() as u32;
-    let mut strip = Film::new(n * width + (n - 1) * GAP, height);
+    let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
     println!("{:>15}  {:>14}  {:>14}  {:>9}", "picture", "reflected rays", "refracted rays", "seconds");
     for (column, (what, scene)) in pictures.into_iter().enumerate() {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
@@ -93,7 +94,9 @@ pub fn run(options: &Options) -> Result<()> {
             Thousands(counts.reflection),
             Thousands(counts.transmission)
         );
-        paste(&rendering.film, &mut strip, column as u32 * (width + GAP));
+        let left = column as u32 * (width + GAP);
+        paste(&rendering.film, &mut strip, left);
+        caption::write(&mut strip, &what, [left, height], width);
     }
     write_png(&strip, &out, scene.film.encoding, &*kit)
         .with_context(|| format!("cannot write {}", out.display()))?;

@@ -185,7 +185,8 @@ fn a_strip_shows_one_picture_a_depth() {
     // Width and height follow the first 16 bytes of a PNG.
     let number =
         |at: usize| u32::from_be_bytes([picture[at], picture[at + 1], picture[at + 2], picture[at + 3]]);
-    assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32));
+    // A caption of 24 rows is below each picture.
+    assert_eq!((number(16), number(20)), (3 * 32 + 2 * 4, 32 + 24));
 }
 
 #[test]
