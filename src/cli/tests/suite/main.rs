@@ -2,6 +2,7 @@
 
 mod compare;
 mod cost;
+mod curriculum;
 mod program;
 mod program_runs;
 mod slides;

@@ -1,0 +1,76 @@
+//! The table of the lectures names every function of the exercises, and commands that work.
+
+use super::program_runs::{printed, raykata, root};
+use raykata::kit::Function;
+use std::process::{Command, Output};
+
+/// The rows of the table: their names and commands.
+fn rows() -> Vec<(String, String)> {
+    let named = |line: &&str| line.starts_with("| ") && !line.starts_with("| row");
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let [name, _, _, command] = cells[..] else { panic!("four cells: {line}") };
+        (name.to_owned(), command.trim_matches('`').to_owned())
+    };
+    table().lines().filter(named).map(row).collect()
+}
+
+fn table() -> String {
+    std::fs::read_to_string(root().join("slides/curriculum.md")).expect("the table")
+}
+
+/// Runs a command of the table.
+fn run(command: &str) -> Output {
+    let words: Vec<&str> = command.split_whitespace().collect();
+    match words.split_first() {
+        Some((&"cargo", arguments)) => {
+            let cargo = Command::new(env!("CARGO")).current_dir(root()).args(arguments).output();
+            cargo.expect("cargo starts")
+        }
+        _ => raykata(&words),
+    }
+}
+
+#[test]
+fn the_table_names_every_system_and_every_function_of_the_exercises() {
+    let rows: Vec<String> = rows().into_iter().map(|(name, _)| name).collect();
+    let systems = [('R', 10), ('X', 15), ('M', 8), ('C', 12)];
+    let expected = systems.iter().flat_map(|&(part, n)| (1..=n).map(move |row| format!("{part}{row}")));
+    assert_eq!(rows, expected.collect::<Vec<_>>());
+    let table = table();
+    let missing = Function::ALL.iter().map(|one| format!("`{}::{}`", one.file(), one.name()));
+    assert_eq!(missing.filter(|name| !table.contains(name)).collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+#[test]
+fn the_commands_of_the_table_have_the_options_that_they_use() {
+    for (row, command) in rows() {
+        let mut words = command.split_whitespace();
+        let name = words.next().expect("a command");
+        if name == "cargo" {
+            continue;
+        }
+        let (help, complaint) = printed(&run(&format!("{name} --help")));
+        assert_eq!(complaint, "", "{row}");
+        let known: Vec<&str> =
+            help.split(|sign: char| sign.is_whitespace() || "[],.;".contains(sign)).collect();
+        for word in words.flat_map(|word| word.split(',')) {
+            let is_file =
+                word.starts_with("out/") || root().join(word).is_file() && word.starts_with("scenes/");
+            let is_number = word.parse::<u32>().is_ok();
+            assert!(is_file || is_number || known.contains(&word), "{row}: `{name}` does not know {word}");
+        }
+    }
+}
+
+/// Runs all commands. This takes minutes, so it runs only with `CI_LONG=1`.
+#[test]
+fn the_commands_of_the_table_work() {
+    if std::env::var_os("CI_LONG").is_none() {
+        return println!("run only with CI_LONG=1");
+    }
+    for (row, command) in rows() {
+        let output = run(&command);
+        assert!(output.status.success(), "{row}: {command}\n{}", printed(&output).1);
+    }
+}
