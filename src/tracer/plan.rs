@@ -5,7 +5,7 @@ use super::written::Written;
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::material::{Emitter, Light, Material};
-use crate::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod};
+use crate::scene::{Accelerator, Node, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod};
 use crate::shape::Shape;
 use crate::world::WorldFunctions;
 use glam::Vec3;
@@ -150,9 +150,16 @@ impl Plan {
     fn leave_out_normals<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
         let mut smooth = scene.meshes.iter().filter(|mesh| mesh.smooth);
         let averaged = smooth.clone().any(|mesh| mesh.mesh.normals.is_empty());
+        let is_curved = |node: &Node| matches!(node.shape, Some(Shape::Bezier { .. } | Shape::Nurbs { .. }));
+        let curved = scene.nodes.iter().any(is_curved);
+        let is_missing = self.smooth && self.world.vertex_normals.is_none();
         self.note_if(
-            self.smooth && self.world.vertex_normals.is_none() && averaged,
+            is_missing && averaged,
             "smooth meshes whose files have no normals are flat: `vertex_normals` of stage 2 is not written yet",
+        );
+        self.note_if(
+            is_missing && curved,
+            "curved surfaces have flat parts: `vertex_normals` of stage 2 is not written yet",
         );
         let missing = [Function::shading_normal, Function::interpolate];
         if let Some(missing) = missing.into_iter().find(|&function| !written.has(function)) {
@@ -160,6 +167,7 @@ impl Plan {
                 smooth.next().is_some(),
                 &format!("smooth meshes are flat: {missing} is not written yet"),
             );
+            self.note_if(curved, &format!("curved surfaces have flat parts: {missing} is not written yet"));
         }
     }
 

@@ -5,6 +5,7 @@ use raykata::camera::Lens;
 use raykata::count::Counts;
 use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, kit_error};
+use raykata::material::Fresnel;
 use raykata::scene::{
     Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod, load,
 };
@@ -99,6 +100,7 @@ impl Scenes {
             "one_sided",
             "nurbs",
             "effects, no lens, all smooth",
+            "effects, Schlick",
             "stage8",
         ];
         let is_asked = |name: &str| asked.contains(&name) || name.starts_with(&format!("{SEARCHED}, "));
@@ -179,6 +181,9 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
     idle.camera.lens = idle.camera.lens.map(|lens| Lens { aperture: 0.0, ..lens });
     idle.materials.iter_mut().for_each(|material| material.roughness = 0.0);
     turned.push((format!("{TURNED}, no lens, all smooth"), idle));
+    let mut schlick = scene.clone();
+    schlick.materials.iter_mut().for_each(|material| material.fresnel = Fresnel::Schlick);
+    turned.push((format!("{TURNED}, Schlick"), schlick));
     turned
 }
 

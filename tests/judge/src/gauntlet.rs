@@ -136,7 +136,8 @@ pub fn tables(rows: Vec<Row<'_>>, n_inputs: u64, seed: u64) -> Result<Vec<Table>
     Ok(vec![wrong, margins, ulps, leak_table::table(&rows, seed, n_inputs)?])
 }
 
-fn percent(share: f64) -> String {
+/// A share in %, with two digits after the point.
+pub(crate) fn percent(share: f64) -> String {
     match share {
         0.0 => "0".into(),
         share if share < 0.01 => "<0.01".into(),

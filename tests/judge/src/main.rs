@@ -2,7 +2,7 @@
 //! gauntlet ROOT WORKER INPUTS SEED`, and `judge hits`, which reads requests from standard input.
 
 use anyhow::{Result, bail};
-use judge::{gauntlet, hits, scorecard};
+use judge::{boxes_and_offsets, gauntlet, hits, scorecard};
 use raykata_cli::kits::{Source, Which};
 use std::path::Path;
 use std::process::ExitCode;
@@ -29,7 +29,9 @@ fn run() -> Result<bool> {
         ["status", root, worker] => scorecard::status(Path::new(root), &source(worker)).map(|()| true),
         ["gauntlet", _, worker, inputs, seed] => {
             let kit = source(worker).fresh();
-            for table in gauntlet::tables(gauntlet::rows_of_kit(&*kit), inputs.parse()?, seed.parse()?)? {
+            let (inputs, seed) = (inputs.parse()?, seed.parse()?);
+            let triangles = gauntlet::tables(gauntlet::rows_of_kit(&*kit), inputs, seed)?;
+            for table in triangles.into_iter().chain(boxes_and_offsets::tables(&*kit, inputs, seed)) {
                 raykata_cli::report::say(format_args!("{}\n", table.text()));
             }
             Ok(true)

@@ -1,6 +1,7 @@
 //! `raykata explain`: the effects that a scene needs and the parts that need them, the cost of each effect,
 //! and the effects that are left out.
 
+mod needs;
 mod subsets;
 mod why;
 
@@ -110,6 +111,8 @@ pub fn run(options: &Options) -> Result<()> {
         return subsets::print(&measured);
     }
     cost(&measured, options.rounds)?;
+    needs::samples(&measured)?;
+    needs::rays_per_hit(&measured)?;
     bounds(&measured)
 }
 

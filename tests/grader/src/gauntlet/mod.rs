@@ -15,6 +15,7 @@ use crate::kits::{Need, Source, Which};
 use crate::report::Thousands;
 use agreement::Agreement;
 use anyhow::Result;
+use judge::boxes_and_offsets;
 use judge::gauntlet::{Input, Row, rows_of_kit, tables};
 use judge::table::Table;
 use methods::METHODS;
@@ -106,6 +107,7 @@ pub fn run(root: &Path, options: &Options) -> Result<bool> {
             let source = Source::prepare(root, options.kit, Need::Checks)?;
             let kit = source.fresh();
             let mut tables = tables(rows(&*kit), options.inputs, options.seed)?;
+            tables.extend(boxes_and_offsets::tables(&*kit, options.inputs, options.seed));
             let (table, succeeded) = agreement_table(&reference, options)?;
             tables.push(table);
             (tables, succeeded)
