@@ -46,6 +46,8 @@ pub struct Measured {
     pub slice: u32,
     /// Number of pixels that differ from the picture of the hierarchy by surface area at the same size.
     pub different_pixels: u64,
+    /// The largest difference of a channel of these pixels, in linear brightness.
+    pub largest_difference: f32,
     /// What the picture lacks, one sentence each.
     pub notes: Vec<String>,
     #[serde(skip)]
@@ -112,7 +114,8 @@ impl Bench<'_> {
         };
         let bits = |pixel: &Vec3| pixel.to_array().map(f32::to_bits);
         let pairs = frame.film.pixels.iter().zip(&reference.pixels);
-        let different = pairs.filter(|(yours, right)| bits(yours) != bits(right)).count();
+        let different = pairs.clone().filter(|(yours, right)| bits(yours) != bits(right)).count();
+        let distances = pairs.map(|(yours, right)| (*yours - *right).abs().max_element());
         Ok(Measured {
             row: row.clone(),
             name: row.name.clone(),
@@ -125,6 +128,7 @@ impl Bench<'_> {
             spread: 0.0,
             slice,
             different_pixels: different as u64,
+            largest_difference: distances.fold(0.0, f32::max),
             notes: frame.notes,
             film: frame.film,
         })

@@ -87,7 +87,10 @@ pub fn print(title: &str, rows: &[Measured]) {
         let text = format!("with fewer columns and rows, because the whole picture takes too long: {sliced}");
         println!("{}", wrapped(&text, 2));
     }
-    let off = list(&|row| (row.different_pixels > 0).then(|| Thousands(row.different_pixels).to_string()));
+    let off = list(&|row| {
+        let pixels = Thousands(row.different_pixels);
+        (row.different_pixels > 0).then(|| format!("{pixels}, by at most {:.2e}", row.largest_difference))
+    });
     let off = if off.is_empty() {
         "all pictures are the same, bit by bit".to_owned()
     } else {
