@@ -232,19 +232,22 @@ pub(super) fn polygon_bsp_build_ends(trial: &Trial<'_>) -> CheckResult {
         vec![vec3(x, y, -1.0), vec3(-x, -y, -1.0), vec3(-x, -y, 1.0), vec3(x, y, 1.0)]
     });
     let line = (0..20).map(|i| [0.0, 0.5, 0.7].map(|x| vec3(i as f32 + x, 0.0, 0.0)).to_vec());
-    let hulls: [(&str, Vec<Vec<Vec3>>, usize); 4] = [
+    type Case = (&'static str, Vec<Vec<Vec3>>, usize, usize);
+    let hulls: [Case; 4] = [
         // One node lists all of them.
-        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1),
-        ("thirty sheets through one line", star.collect(), MOST_REFERENCES),
-        ("twenty slivers in a line", line.collect(), MOST_REFERENCES),
-        ("400 large triangles that cross each other", crossing_triangles(400), MOST_REFERENCES),
+        ("forty squares in one plane", (1..=40).map(|i| square(i as f32)).collect(), 1, 20),
+        ("thirty sheets through one line", star.collect(), MOST_REFERENCES, 20),
+        ("twenty slivers in a line", line.collect(), MOST_REFERENCES, 20),
+        // So deep a tree would split each triangle into more than `MOST_REFERENCES` parts.
+        ("400 large triangles that cross each other", crossing_triangles(400), MOST_REFERENCES, 32),
     ];
     let boxes = |all: Vec<Aabb>| -> Vec<Vec<Vec3>> { all.iter().map(corners).collect() };
-    let sets = super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES));
-    for (name, hulls, most) in hulls.into_iter().chain(sets) {
+    let sets =
+        super::lists::infinite().into_iter().map(|(name, all)| (name, boxes(all), MOST_REFERENCES, 20));
+    for (name, hulls, most, max_depth) in hulls.into_iter().chain(sets) {
         let n = hulls.len();
-        let query = BspQuery { hulls, leaf_size: 1, max_depth: 20 };
-        let input = format!("build of {name}, leaf_size 1, max_depth 20");
+        let query = BspQuery { hulls, leaf_size: 1, max_depth };
+        let input = format!("build of {name}, leaf_size 1, max_depth {max_depth}");
         let too_deep = "stop at max_depth, and where no plane divides the solids";
         let too_many = "you divide where that repeats too many primitives: make a leaf where `Growth::divide` returns `None`";
         let build = || trial.kit.polygon_bsp_build(std::slice::from_ref(&query)).remove(0);
