@@ -30,7 +30,8 @@ pub struct Material {
     pub fresnel: Fresnel,
     /// The roughness of glossy reflection and refraction, `0..=1`; 0 is a perfectly smooth surface (stage 6).
     pub roughness: f32,
-    /// The radiance that the surface emits by itself (stage 11).
+    /// The radiance that the surface emits by itself, on both sides and evenly in all directions. Camera rays, reflected
+    /// and refracted rays see it; direct light comes from [`Light`] alone.
     pub emission: Vec3,
     /// The index in [`crate::scene::Scene::textures`] of an image that multiplies `diffuse` and `ambient`
     /// (stage 7).

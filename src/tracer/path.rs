@@ -99,8 +99,8 @@ impl<F: StudentFunctions> Frame<'_, F> {
         self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.cache)
     }
 
-    /// The light that the surface at `hit` sends back along the path; its secondary rays are added to the
-    /// waiting rays.
+    /// The light that the surface at `hit` sends back along the path, its own emission included; its secondary rays
+    /// are added to the waiting rays.
     #[inline(always)]
     fn light_from<T: Tally>(
         &self,
@@ -116,9 +116,13 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let material = self.material(&path.ray, hit, &at, &mut scratch.tally);
         // Shade the point with direct light, tracing shadow rays.
         self.sample_lights(path, &at, scratch);
-        let color = self.shade(path, &at, &material, scratch, |ray, blocked| {
+        let mut color = self.shade(path, &at, &material, scratch, |ray, blocked| {
             record.shadow(path, number, ray, blocked);
         });
+        // Add the light that the surface emits by itself. The plan knows whether any surface does.
+        if self.plan.emission {
+            color += material.emission;
+        }
         // Queue the secondary rays.
         self.scatter(path, number, &at, &material, scratch);
         color

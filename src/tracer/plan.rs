@@ -37,6 +37,8 @@ pub struct Plan {
     pub positions: bool,
     /// Whether the filter functions are written; otherwise all samples of a pixel have the same weight.
     pub weights: bool,
+    /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
+    pub emission: bool,
     /// What the picture will lack, one sentence each; empty if nothing.
     pub notes: Vec<String>,
 }
@@ -63,6 +65,7 @@ impl Plan {
             facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
             weights: written.has_all(&[Function::filter_pixel, Function::gaussian_weight]),
+            emission: !scene.emitters().is_empty(),
             effects,
             notes,
         };

@@ -10,6 +10,7 @@ mod edges;
 mod frames;
 mod instances;
 mod leaks;
+mod light;
 mod methods;
 mod partitions;
 mod precision;

@@ -142,6 +142,9 @@ fn asked(explained: &Explained<'_>) {
             println!("  {effect:<14}  {}", wrapped(&why::list(&asking), REASON_COLUMN));
         }
     }
+    for (what, parts) in why::seen(scene) {
+        println!("  {what:<14}  {}", wrapped(&format!("{parts}; this costs no ray"), REASON_COLUMN));
+    }
     println!("\nnot simulated     because");
     for effect in Effect::ALL.into_iter().filter(|&effect| !effects.calls_for(effect)) {
         println!("  {effect:<14}  {}", wrapped(&why::not_asked(effect, scene), REASON_COLUMN));

@@ -48,6 +48,12 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
     }
 }
 
+/// What rays see for nothing, each with its parts in words: surfaces that emit light.
+pub fn seen(scene: &Scene) -> Vec<(&'static str, String)> {
+    let emitters: Vec<String> = scene.emitters().into_iter().map(|index| material(scene, index)).collect();
+    if emitters.is_empty() { Vec::new() } else { vec![("emission", list(&emitters))] }
+}
+
 /// The reason why no part of `scene` needs `effect`.
 pub fn not_asked(effect: Effect, scene: &Scene) -> String {
     let shown = scene.shown();

@@ -1,0 +1,102 @@
+//! Light that rays see directly: surfaces that emit it, area lights that are visible, and the background.
+
+use crate::frames::render;
+use crate::scene::scene;
+use glam::Vec3;
+use raykata::count::Counts;
+use raykata::scene::Scene;
+
+/// The emission of the material `glow`.
+const GLOW: Vec3 = Vec3::new(0.5, 0.25, 2.0);
+
+/// A small black picture, with what `rest` adds.
+fn dark(rest: &str) -> Scene {
+    scene(&format!(
+        "[film]\nwidth = 24\nheight = 18\n\
+         [camera]\nposition = [0.1, 0.2, 6]\nlook_at = [0, 0, 0]\n\
+         [materials.glow]\ndiffuse = 0\nemission = [0.5, 0.25, 2]\n{rest}"
+    ))
+}
+
+#[test]
+fn every_shape_shows_its_emission_and_nothing_else() {
+    let patch = "[[-1, -1, 0], [0, -1, 1], [1, -1, 0], [2, -1, 0]], [[-1, 0, 0], [0, 0, 1], [1, 0, 0], [2, 0, 0]], \
+                 [[-1, 1, 0], [0, 1, 1], [1, 1, 0], [2, 1, 0]], [[-1, 2, 0], [0, 2, 1], [1, 2, 0], [2, 2, 0]]";
+    let shapes = [
+        "sphere = { center = [0, 0, 0], radius = 1 }",
+        "plane = { point = [0, 0, 0], normal = [0, 1, 1] }",
+        "plane = { coefficients = [0, 1, 1, 0.5] }",
+        "triangle = { a = [-1, -1, 0], b = [1, -1, 0], c = [0, 1, 0] }",
+        "box = { min = [-1, -1, -1], max = [1, 1, 1] }",
+        "cylinder = { base = [0, -1, 0], top = [0, 1, 0], radius = 1 }",
+        "cone = { base = [0, -1, 0], apex = [0, 1, 0], radius = 1 }",
+        "disk = { center = [0, 0, 0], normal = [0, 0.2, -1], radius = 1 }",
+        "polygon = { corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]] }",
+        "polygon = { corners = [[-1, -1, 0], [1, -1, 0], [0, 0, 0], [-1, 1, 0]] }",
+        &format!("bezier = {{ rows = [{patch}], steps = 4 }}"),
+        &format!("bspline = {{ rows = [{patch}], steps = 4 }}"),
+        "mesh = \"vase\"",
+    ];
+    // Each shape alone, turned and stretched, and twice, so that a mesh is shared.
+    let nodes = [
+        "[[nodes]]\nmaterial = \"glow\"\nshape = { SHAPE }\n",
+        "[[nodes]]\nmaterial = \"glow\"\nshape = { SHAPE }\ntransform = [{ scale = [1, 1.5, 1] }]\n",
+        "[[nodes]]\nname = \"one\"\nshape = { SHAPE }\n\
+         [[nodes]]\nmaterial = \"glow\"\nchildren = [\"one\"]\ntransform = [{ translate = [0.5, 0, 0] }]\n\
+         [[nodes]]\nmaterial = \"glow\"\nchildren = [\"one\"]\ntransform = [{ translate = [-0.5, 0, 0] }]\n",
+    ];
+    for shape in shapes {
+        for node in nodes {
+            let mesh = "[meshes.vase]\nfile = \"meshes/vase.ply\"\n";
+            let scene = dark(&format!("{mesh}{}", node.replace("SHAPE", shape)));
+            let rendering = render(&scene);
+            let bright = rendering.film.pixels.iter().filter(|pixel| **pixel == GLOW).count();
+            let black = rendering.film.pixels.iter().filter(|pixel| **pixel == Vec3::ZERO).count();
+            assert!(bright > 10 && bright + black == 24 * 18, "{bright} + {black} pixels of {shape}\n{node}");
+            assert_eq!(rendering.counts.hits, bright as u64, "{shape}");
+        }
+    }
+}
+
+#[test]
+fn mirror_glass_and_glossy_rays_see_emission_once_with_their_weight() {
+    // The wall behind the camera glows. The disk in front of the camera reflects it; glass shows the other wall.
+    let walls = "[[nodes]]\nmaterial = \"glow\"\nshape = { plane = { point = [0, 0, 9], normal = [0, 0, -1] } }\n\
+                 [[nodes]]\nmaterial = \"glow\"\nshape = { plane = { point = [0, 0, -9], normal = [0, 0, 1] } }\n";
+    let disk = "[[nodes]]\nmaterial = \"disk\"\nshape = { disk = { center = [0, 0, 0], normal = [0, 0, 1], radius = 9 } }\n";
+    for (material, weight) in [
+        ("mirror = 0.5", 0.5),
+        ("mirror = [0.5, 0.5, 0.5]\nroughness = 0.2", 0.5),
+        ("transmission = 0.25", 0.25),
+        ("transmission = 0.25\nmirror = 0.5", 0.75),
+        ("emission = [0.5, 0.25, 2]\nmirror = 0.5", 1.5),
+    ] {
+        let scene = dark(&format!("[materials.disk]\ndiffuse = 0\n{material}\n{walls}{disk}"));
+        let film = render(&scene).film;
+        for pixel in &film.pixels {
+            assert!((*pixel - weight * GLOW).length() < 1e-5, "{pixel} with {material}");
+        }
+    }
+}
+
+/// The scene with black materials in place of those that emit light.
+fn without_emission(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    scene
+}
+
+#[test]
+fn emission_costs_no_ray_and_no_random_number() {
+    let rest = "[quality]\nsamples_per_pixel = 4\n[materials.glass]\ndiffuse = 0.3\ntransmission = 0.5\nmirror = 0.3\n\
+                roughness = 0.1\n[[lights]]\narea = { sphere = { center = [3, 5, 4], radius = 1 } }\n\
+                [[nodes]]\nmaterial = \"glow\"\nshape = { sphere = { center = [-1, 0, 0], radius = 1 } }\n\
+                [[nodes]]\nmaterial = \"glass\"\nshape = { sphere = { center = [1, 0, 0], radius = 1 } }\n\
+                [[nodes]]\nshape = { plane = { point = [0, -1, 0], normal = [0, 1, 0] } }\n";
+    let scene = dark(rest);
+    let [with, without] = [render(&scene), render(&without_emission(&scene))];
+    assert!(with.counts.shadow > 0 && with.counts.reflection > 0 && with.counts.random_numbers > 0);
+    assert_eq!(with.counts, without.counts);
+    assert_ne!(with.film, without.film);
+    assert_ne!(with.counts, Counts::default());
+}
