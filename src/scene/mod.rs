@@ -67,6 +67,15 @@ pub struct SceneMesh {
     pub materials: Vec<usize>,
 }
 
+/// A visible area light, with the material of the node that shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisibleLight {
+    /// Index into [`Scene::lights`] of an area light.
+    pub light: usize,
+    /// Index into [`Scene::materials`]. The material is black, and emits [`Light::visible_radiance`].
+    pub material: usize,
+}
+
 /// A node of the scene graph. Nodes may have several parents; they never form a cycle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Node {
@@ -98,6 +107,7 @@ impl Scene {
             ambient: Vec3::ZERO,
             indirect_light: false,
             lights: Vec::new(),
+            visible_lights: Vec::new(),
             materials: vec![Material::default()],
             material_names: vec!["default".into()],
             textures: Vec::new(),
@@ -152,6 +162,8 @@ pub struct Scene {
     pub indirect_light: bool,
     /// All lights in world space, in the order of the scene file.
     pub lights: Vec<Light>,
+    /// The area lights that rays can see, in ascending order. Each has a node with its shape, and a material of its own.
+    pub visible_lights: Vec<VisibleLight>,
     /// All materials; index 0 is the default for shapes that name none.
     pub materials: Vec<Material>,
     /// The name of each material by index, for messages. A material that comes with the mesh `box` is called

@@ -100,3 +100,65 @@ fn emission_costs_no_ray_and_no_random_number() {
     assert_ne!(with.film, without.film);
     assert_ne!(with.counts, Counts::default());
 }
+
+/// A floor under an area light, the floor straight below, and the light seen in a mirror; `visible` is a line of the light.
+fn under_a_light(area: &str, visible: &str) -> Scene {
+    let mut scene = dark(&format!(
+        "[materials.mirror]\ndiffuse = 0\nmirror = 0.5\n\
+         [[lights]]\narea = {{ {area}, falloff = \"inverse_square\" }}\nintensity = 3\n{visible}\n\
+         [[nodes]]\nshape = {{ plane = {{ point = [0, -2, 0], normal = [0, 1, 0] }} }}\n\
+         [[nodes]]\nmaterial = \"mirror\"\nshape = {{ plane = {{ point = [0, 0, -5], normal = [0, 0, 1] }} }}\n\
+         [quality]\nlight_samples = 4\n"
+    ));
+    (scene.film.width, scene.film.height) = (72, 54);
+    scene
+}
+
+#[test]
+fn a_visible_light_shows_its_radiance_and_blocks_none_of_its_own_light() {
+    let areas = [
+        ("sphere = { center = [1.2, 0.5, 0], radius = 0.5 }", 12.0),
+        ("disk = { center = [1.2, 0.5, 0], normal = [0, 1, 3], radius = 0.5 }", 12.0),
+        (
+            "rectangle = { corner = [0.7, 0.2, 0], edges = [[1, 0, 0], [0, 0.5, 0.1]] }",
+            3.0 * std::f32::consts::PI / 0.26f32.sqrt(),
+        ),
+    ];
+    for (area, radiance) in areas {
+        let scenes = ["", "visible = false", "visible = true"].map(|visible| under_a_light(area, visible));
+        assert_eq!(scenes[0], scenes[1]);
+        let [hidden, _, seen] = scenes.map(|scene| render(&scene));
+        let (mut direct, mut mirrored, mut same) = (0, 0, 0);
+        for (hidden, seen) in hidden.film.pixels.iter().zip(&seen.film.pixels) {
+            match () {
+                () if (*seen - radiance).abs().max_element() < 1e-4 * radiance => direct += 1,
+                () if (*seen - 0.5 * radiance).abs().max_element() < 1e-4 * radiance => mirrored += 1,
+                () => {
+                    assert!((*seen - *hidden).abs().max_element() <= 1e-5, "{hidden} and {seen} of {area}");
+                    same += 1;
+                }
+            }
+        }
+        assert!(direct >= 20 && mirrored >= 5 && same > 3000, "{direct}, {mirrored}, {same} of {area}");
+    }
+}
+
+#[test]
+fn a_sphere_that_shows_its_radiance_gives_its_light() {
+    // Light from a sphere of radiance L and radius R, at distance d: L (R / d)² cos θ.
+    let scene = dark(
+        "[[lights]]\narea = { sphere = { center = [0, 3, 0], radius = 0.5 }, falloff = \"inverse_square\" }\n\
+         intensity = 5\nvisible = true\n[materials.white]\ndiffuse = 1\n\
+         [[nodes]]\nmaterial = \"white\"\nshape = { plane = { point = [0, 0, 0], normal = [0, 1, 0] } }\n",
+    );
+    let radiance = scene.materials.last().expect("the light").emission;
+    assert_eq!(radiance, Vec3::splat(20.0));
+    let mut below = scene.clone();
+    below.camera.position = Vec3::new(0.0, 0.5, 0.0);
+    (below.camera.towards, below.camera.right, below.camera.up) = (Vec3::NEG_Y, Vec3::X, Vec3::Z);
+    (below.film.width, below.film.height, below.quality.light_samples) = (1, 1, 4096);
+    // The mean over the cone of directions is that of a point in the centre up to (R / d)².
+    let seen = render(&below).film.pixels[0];
+    let expected = radiance * (0.5f32 / 3.0).powi(2);
+    assert!((seen - expected).length() < 0.02 * expected.length(), "{seen}, and {expected} is expected");
+}

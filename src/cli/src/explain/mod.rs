@@ -143,7 +143,7 @@ fn asked(explained: &Explained<'_>) {
         }
     }
     for (what, parts) in why::seen(scene) {
-        println!("  {what:<14}  {}", wrapped(&format!("{parts}; this costs no ray"), REASON_COLUMN));
+        println!("  {what:<14}  {}", wrapped(&parts, REASON_COLUMN));
     }
     println!("\nnot simulated     because");
     for effect in Effect::ALL.into_iter().filter(|&effect| !effects.calls_for(effect)) {

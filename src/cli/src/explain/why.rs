@@ -48,10 +48,17 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
     }
 }
 
-/// What rays see for nothing, each with its parts in words: surfaces that emit light.
+/// What rays see that costs no ray, each with its parts in words: surfaces that emit light, visible lights, and a
+/// background of more than one colour.
 pub fn seen(scene: &Scene) -> Vec<(&'static str, String)> {
-    let emitters: Vec<String> = scene.emitters().into_iter().map(|index| material(scene, index)).collect();
-    if emitters.is_empty() { Vec::new() } else { vec![("emission", list(&emitters))] }
+    let of_light = |index: &usize| scene.visible_lights.iter().any(|light| light.material == *index);
+    let emitters = scene.emitters().into_iter().filter(|index| !of_light(index));
+    let emitters: Vec<String> = emitters.map(|index| material(scene, index)).collect();
+    let lights: Vec<String> =
+        scene.visible_lights.iter().map(|visible| light_name(scene, visible.light)).collect();
+    let parts = [("emission", emitters), ("visible lights", lights)];
+    let some = parts.into_iter().filter(|(_, parts)| !parts.is_empty());
+    some.map(|(what, parts)| (what, format!("{}; costs no ray", list(&parts)))).collect()
 }
 
 /// The reason why no part of `scene` needs `effect`.
