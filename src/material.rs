@@ -98,6 +98,15 @@ pub struct Texture {
     pub wrap: Wrap,
 }
 
+impl Texture {
+    /// The colour of the pixel in which `uv` lies, both in `0..=1`; `(0, 0)` is the lower left corner.
+    pub(crate) fn pixel_at(&self, uv: Vec2) -> Vec3 {
+        let index = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1) as usize;
+        let (column, row) = (index(uv.x, self.width), index(1.0 - uv.y, self.height));
+        self.pixels[row * self.width as usize + column]
+    }
+}
+
 /// How light from a point or area light depends on the distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

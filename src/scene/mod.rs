@@ -3,6 +3,7 @@
 //! [`load`] reads a scene from a TOML file and checks it. A scene that [`load`] returns holds everything that
 //! a frame needs: all its indices are in range, and its graph has no cycle.
 
+mod background;
 pub mod error;
 mod gamma2;
 pub mod load;
@@ -12,7 +13,8 @@ mod quality;
 mod shown;
 mod triangulate;
 
-pub use gamma2::{ColorPlace, Gamma2, MaterialColor};
+pub use background::{Background, EnvironmentMap, Gradient};
+pub use gamma2::{ColorPlace, Gamma2, GradientColor, MaterialColor};
 pub use quality::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod};
 pub use shown::Shown;
 
@@ -103,7 +105,7 @@ impl Scene {
         Scene {
             film: FilmSettings { width: 1, height: 1, encoding: Encoding::default() },
             camera,
-            background: Vec3::ZERO,
+            background: Background::Color(Vec3::ZERO),
             ambient: Vec3::ZERO,
             indirect_light: false,
             lights: Vec::new(),
@@ -154,8 +156,8 @@ pub struct Scene {
     pub film: FilmSettings,
     /// The camera in world space, with its lens and its shutter.
     pub camera: Camera,
-    /// Linear radiance of rays that hit nothing, at least 0 in each channel.
-    pub background: Vec3,
+    /// The radiance of rays that hit nothing.
+    pub background: Background,
     /// `A`, the ambient light of the Phong model in linear RGB, at least 0 in each channel.
     pub ambient: Vec3,
     /// Whether the scene asks for light that bounces between surfaces (stage 11).

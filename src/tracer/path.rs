@@ -13,6 +13,7 @@ use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
 use crate::random::Points;
 use crate::ray::Ray;
+use crate::scene::{Background, EnvironmentMap};
 use glam::Vec3;
 use std::borrow::Cow;
 
@@ -84,13 +85,42 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 color += path.weight * self.light_from(&path, &hit, scratch, record);
             } else {
                 record.miss(&path);
-                color += path.weight * self.job.scene.background;
+                color += path.weight * self.background(path.ray.direction, scratch);
             }
             // Continue with the ray that was queued last.
             let Some(next) = scratch.waiting.pop() else { return color };
             path = next;
             hit = self.closest_hit(&path.ray, scratch);
         }
+    }
+
+    /// The radiance of a ray along `direction` that hits nothing.
+    #[inline(always)]
+    fn background<T: Tally>(&self, direction: Vec3, scratch: &mut Scratch<T>) -> Vec3 {
+        match &self.job.scene.background {
+            Background::Color(color) => *color,
+            Background::Gradient(gradient) => gradient.color(direction),
+            Background::Map(map) => self.environment_color(map, direction, scratch),
+        }
+    }
+
+    /// The colour of the environment map in `direction`, by `texture_color` of stage 7. Until that is written, it is the
+    /// colour of the pixel in which the direction lies.
+    #[cold]
+    fn environment_color<T: Tally>(
+        &self,
+        map: &EnvironmentMap,
+        direction: Vec3,
+        scratch: &mut Scratch<T>,
+    ) -> Vec3 {
+        scratch.note(Event::TextureRead);
+        let image = &self.intersector.scene.world.textures[map.texture];
+        let uv = map.texture_coordinates(direction, image.height);
+        map.scale
+            * match self.plan.images {
+                true => F::texture_color(image, uv),
+                false => image.pixel_at(uv),
+            }
     }
 
     /// The closest hit of `ray` within its range, or `None`; counted in `scratch`.
@@ -281,7 +311,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     ) -> Vec3 {
         let Some(hit) = hit else {
             record.miss(path);
-            return self.job.scene.background;
+            return self.background(path.ray.direction, scratch);
         };
         scratch.note(Event::Hit);
         let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, &hit);

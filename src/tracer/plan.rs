@@ -5,7 +5,9 @@ use super::written::Written;
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::material::{Emitter, Light, Material};
-use crate::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod};
+use crate::scene::{
+    Accelerator, Background, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod,
+};
 use crate::shape::Shape;
 use crate::world::WorldFunctions;
 use glam::Vec3;
@@ -37,6 +39,8 @@ pub struct Plan {
     pub positions: bool,
     /// Whether the filter functions are written; otherwise all samples of a pixel have the same weight.
     pub weights: bool,
+    /// Whether `texture_color` is written, which reads images.
+    pub images: bool,
     /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
     pub emission: bool,
     /// What the picture will lack, one sentence each; empty if nothing.
@@ -65,6 +69,7 @@ impl Plan {
             facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
             weights: written.has_all(&[Function::filter_pixel, Function::gaussian_weight]),
+            images: written.has(Function::texture_color),
             emission: !scene.emitters().is_empty(),
             effects,
             notes,
@@ -232,9 +237,13 @@ impl Plan {
             !scene.gamma2.is_empty() && !written.has(Function::decode_gamma),
             "gamma 2 is decoded with the sRGB curve: `decode_gamma` of stage 4 is not written yet",
         );
-        if written.has(Function::texture_color) {
+        if self.images {
             return;
         }
+        self.note_if(
+            matches!(scene.background, Background::Map(_)),
+            "the environment map is not interpolated: `texture_color` of stage 7 is not written yet",
+        );
         self.note_if(
             scene.materials.iter().any(|material| material.texture.is_some()),
             "images are left out: `texture_color` of stage 7 is not written yet",

@@ -4,7 +4,9 @@ use crate::frames::render;
 use crate::scene::scene;
 use glam::Vec3;
 use raykata::count::Counts;
-use raykata::scene::Scene;
+use raykata::material::{Texture, Wrap};
+use raykata::scene::{Background, EnvironmentMap, Gradient, Scene};
+use std::sync::Arc;
 
 /// The emission of the material `glow`.
 const GLOW: Vec3 = Vec3::new(0.5, 0.25, 2.0);
@@ -161,4 +163,73 @@ fn a_sphere_that_shows_its_radiance_gives_its_light() {
     let seen = render(&below).film.pixels[0];
     let expected = radiance * (0.5f32 / 3.0).powi(2);
     assert!((seen - expected).length() < 0.02 * expected.length(), "{seen}, and {expected} is expected");
+}
+
+/// A scene without lights in which everything that is seen is the background: behind, in a mirror on the left, and through
+/// glass that does not bend light on the right.
+fn only_background() -> Scene {
+    let mut scene = dark(
+        "[materials.mirror]\ndiffuse = 0\nmirror = 1\n[materials.glass]\ndiffuse = 0\ntransmission = 1\n\
+         [[nodes]]\nmaterial = \"mirror\"\nshape = { sphere = { center = [-1.5, 0, 0], radius = 1 } }\n\
+         [[nodes]]\nmaterial = \"glass\"\nshape = { sphere = { center = [1.5, 0, 0], radius = 1 } }\n",
+    );
+    (scene.film.width, scene.film.height) = (48, 36);
+    scene
+}
+
+#[test]
+fn every_ray_that_leaves_the_scene_sees_the_gradient() {
+    let mut with = only_background();
+    let gradient = Gradient { zenith: Vec3::X, horizon: Vec3::Y, nadir: Vec3::Z };
+    with.background = Background::Gradient(gradient);
+    let seen = render(&with);
+    // The camera is a little above the middle: its rays look at their own elevation, and glass changes nothing.
+    let camera = raykata::world::camera_for(&with);
+    let (mut straight, mut reflected) = (0, 0);
+    for row in 0..36 {
+        for column in 0..48 {
+            let ray = camera.ray((column as f32 + 0.5) / 48.0, (row as f32 + 0.5) / 36.0);
+            let off = (seen.film.at(column, row) - gradient.color(ray.direction)).length();
+            if off < 1e-3 { straight += 1 } else { reflected += 1 }
+        }
+    }
+    assert!(reflected > 100 && straight > 1200, "{straight} and {reflected}");
+    // Every pixel is a mixture of the three colours.
+    assert!(seen.film.pixels.iter().all(|pixel| (pixel.element_sum() - 1.0).abs() < 1e-3));
+    // A constant gradient is the colour, at the same cost.
+    with.background = Background::Gradient(Gradient { zenith: GLOW, horizon: GLOW, nadir: GLOW });
+    let constant = render(&with);
+    with.background = Background::Color(GLOW);
+    let color = render(&with);
+    assert_eq!(constant.counts, color.counts);
+    let same = |(p, q): (&Vec3, &Vec3)| (*p - *q).length() < 1e-5;
+    assert!(constant.film.pixels.iter().zip(&color.film.pixels).all(same));
+}
+
+#[test]
+fn every_ray_that_leaves_the_scene_sees_the_environment_map() {
+    // The left half of the image is red, the right half green, and the rows get darker downwards.
+    let mut with = only_background();
+    let pixel = |index: u32| {
+        let (column, row) = (index % 16, index / 16);
+        (1.0 - row as f32 / 8.0) * if column < 8 { Vec3::X } else { Vec3::Y }
+    };
+    let pixels = Arc::new((0..128).map(pixel).collect());
+    with.textures.push(Texture { width: 16, height: 8, pixels, wrap: Wrap::Repeat });
+    with.background = Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale: 2.0 });
+    let seen = render(&with);
+    // The middle of the image lies straight ahead: red is on the left, and the upper edge of the picture is brighter.
+    let (left, right) = (seen.film.at(8, 1), seen.film.at(40, 1));
+    assert!(left.x > 0.5 && left.y == 0.0 && right.y > 0.5 && right.x == 0.0, "{left} and {right}");
+    assert!(seen.film.at(40, 34).y < right.y);
+    assert!(seen.film.pixels.iter().all(|pixel| pixel.max_element() > 0.0 && pixel.z == 0.0));
+    // One image read for each ray that hits nothing.
+    let counts = &seen.counts;
+    let rays = counts.primary + counts.reflection + counts.transmission;
+    assert_eq!(counts.texture_reads, rays - counts.hits);
+    // Half a turn exchanges the colours.
+    with.background =
+        Background::Map(EnvironmentMap { texture: 0, rotation: std::f32::consts::PI, scale: 1.0 });
+    let turned = render(&with).film.at(8, 1);
+    assert!((turned.y - 0.5 * left.x).abs() < 1e-3, "{turned} and {left}");
 }

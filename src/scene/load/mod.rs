@@ -126,10 +126,10 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
             return Err(root.error("the scene lacks `[camera]`").help(help));
         }
     };
-    let environment = settings::environment(root.get("environment"))?;
     let quality = settings::quality(root.get("quality"))?;
 
     let (mut textures, texture_names) = textures::textures(root.get("textures"))?;
+    let environment = settings::environment(root.get("environment"), &mut textures)?;
     let mut materials = materials::materials(root.get("materials"), &texture_names)?;
     let (mut meshes, mesh_names) = meshes::meshes(root.get("meshes"), &mut materials, &mut textures)?;
     let lights = lights::lights(root.get("lights"))?;

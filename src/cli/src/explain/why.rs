@@ -3,7 +3,7 @@
 use glam::Vec3;
 use raykata::effects::{Effect, Effects};
 use raykata::material::{AreaShape, Emitter, Fresnel, Light, Material};
-use raykata::scene::Scene;
+use raykata::scene::{Background, Scene};
 use raykata::shape::Shape;
 
 /// The parts of `scene` that need `effect`, in words; none if the scene does not need it.
@@ -56,7 +56,16 @@ pub fn seen(scene: &Scene) -> Vec<(&'static str, String)> {
     let emitters: Vec<String> = emitters.map(|index| material(scene, index)).collect();
     let lights: Vec<String> =
         scene.visible_lights.iter().map(|visible| light_name(scene, visible.light)).collect();
-    let parts = [("emission", emitters), ("visible lights", lights)];
+    let background = match scene.background {
+        Background::Color(_) => None,
+        Background::Gradient(_) => Some("vertical gradient".to_owned()),
+        Background::Map(_) => Some("environment map, one image read per ray that hits nothing".to_owned()),
+    };
+    let parts = [
+        ("emission", emitters),
+        ("visible lights", lights),
+        ("background", background.into_iter().collect()),
+    ];
     let some = parts.into_iter().filter(|(_, parts)| !parts.is_empty());
     some.map(|(what, parts)| (what, format!("{}; costs no ray", list(&parts)))).collect()
 }
