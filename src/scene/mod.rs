@@ -19,6 +19,7 @@ pub use quality::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split,
 pub use shown::Shown;
 
 use crate::camera::Camera;
+use crate::film::Tone;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::shape::Shape;
@@ -37,8 +38,8 @@ pub enum Encoding {
     Gamma2,
 }
 
-/// Size of the picture in pixels, and encoding of its 8-bit files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Size of the picture in pixels, and how its light becomes the numbers of 8-bit files.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilmSettings {
     /// Pixels per row, at least 1; a scene file may ask for up to 65 536.
     pub width: u32,
@@ -47,6 +48,15 @@ pub struct FilmSettings {
     pub height: u32,
     /// Encoding of 8-bit image files; the film itself holds linear radiance.
     pub encoding: Encoding,
+    /// Exposure of 8-bit image files and the tone curve for them.
+    pub tone: Tone,
+}
+
+impl Default for FilmSettings {
+    /// 640 by 360 pixels in sRGB, without exposure, clamped.
+    fn default() -> Self {
+        FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb, tone: Tone::default() }
+    }
 }
 
 /// A mesh of the scene, with the settings that the scene file gives for it.
@@ -103,7 +113,7 @@ impl Scene {
     /// black, and its only material is the default at index 0.
     pub fn empty(camera: Camera) -> Scene {
         Scene {
-            film: FilmSettings { width: 1, height: 1, encoding: Encoding::default() },
+            film: FilmSettings { width: 1, height: 1, ..FilmSettings::default() },
             camera,
             background: Background::Color(Vec3::ZERO),
             ambient: Vec3::ZERO,

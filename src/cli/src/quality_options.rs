@@ -2,6 +2,7 @@
 
 use crate::args::{Given, Misuse, Opt, names};
 use anyhow::{Result, anyhow};
+use raykata::film::ToneCurve;
 use raykata::scene::load::Limits;
 use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod};
 
@@ -44,6 +45,41 @@ impl Memory {
     /// The limits for a scene.
     pub fn limits(self) -> Limits {
         self.0
+    }
+}
+
+/// How bright a picture file is, the same for all commands that write a picture of a scene.
+#[derive(Clone, Copy, Default)]
+pub struct ToneOptions {
+    exposure: Option<f32>,
+    curve: Option<ToneCurve>,
+}
+
+impl ToneOptions {
+    /// The options.
+    pub const OPTIONS: &[Opt] = &[
+        Opt::value(
+            "--exposure",
+            "STOPS",
+            "Of the PNG file: each stop doubles the light [default: the scene's, as for --tone].",
+        ),
+        Opt::value("--tone", "NAME", "How the PNG file shows light above 1.")
+            .choices(&names(&ToneCurve::ALL)),
+    ];
+
+    /// Reads the options.
+    pub fn read(given: &Given) -> Result<ToneOptions, Misuse> {
+        Ok(ToneOptions {
+            exposure: given.parsed("--exposure", parse_exposure)?,
+            curve: given.choice("--tone", &ToneCurve::ALL)?,
+        })
+    }
+
+    /// Sets the given options in the scene.
+    pub fn apply(self, scene: &mut Scene) {
+        let tone = &mut scene.film.tone;
+        tone.exposure = self.exposure.unwrap_or(tone.exposure);
+        tone.curve = self.curve.unwrap_or(tone.curve);
     }
 }
 
@@ -226,6 +262,11 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
     };
     let differ = values(own).into_iter().zip(values(wanted)).filter(|(own, wanted)| own != wanted);
     differ.map(|(_, (name, value))| format!(" {name} {value}")).collect()
+}
+
+fn parse_exposure(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops| (-100.0..=100.0).contains(stops));
+    stops.ok_or_else(|| "an exposure is a number of stops from -100 to 100, such as -0.5".into())
 }
 
 fn parse_share(text: &str) -> Result<f32, String> {

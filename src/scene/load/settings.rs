@@ -3,6 +3,7 @@
 use super::reader::{Table, Value};
 use super::{files, textures};
 use crate::camera::{Camera, Lens, Shutter};
+use crate::film::ToneCurve;
 use crate::graph::Savings;
 use crate::material::{Texture, Wrap};
 use crate::partition::KdHeuristics;
@@ -30,9 +31,9 @@ const MAX_GRID: u32 = 1024;
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
 /// range or the picture needs more memory than the limit.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
-    let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
+    let mut film = FilmSettings::default();
     let Some(value) = value else { return Ok(film) };
-    let table = value.table(&["width", "height", "encoding"])?;
+    let table = value.table(&["width", "height", "encoding", "exposure", "tone"])?;
     if let Some(width) = table.get("width") {
         film.width = width.whole(1..=MAX_SIDE)?;
     }
@@ -41,6 +42,13 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     }
     if let Some(encoding) = table.get("encoding") {
         film.encoding = encoding.choice(&ENCODINGS)?;
+    }
+    if let Some(exposure) = table.get("exposure") {
+        film.tone.exposure =
+            exposure.number_that("from -100 to 100", |stops| (-100.0..=100.0).contains(&stops))?;
+    }
+    if let Some(curve) = table.get("tone") {
+        film.tone.curve = curve.choice(&ToneCurve::ALL)?;
     }
     value.source.budget.film(value, film.width, film.height)?;
     Ok(film)

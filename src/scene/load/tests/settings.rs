@@ -2,6 +2,7 @@
 
 use super::{CAMERA, check_refused, check_refused_with, scene, scene as scene_from, scene_with};
 use crate::camera::{Lens, Shutter};
+use crate::film::{Tone, ToneCurve};
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::scene::{
@@ -13,7 +14,7 @@ use glam::Vec3;
 #[test]
 fn a_scene_of_only_a_camera_is_its_background() {
     let scene = scene_with("");
-    assert_eq!(scene.film, FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb });
+    assert_eq!(scene.film, FilmSettings::default());
     assert_eq!(scene.camera.position, Vec3::new(0.0, 0.0, 5.0));
     assert_eq!(scene.camera.towards, Vec3::NEG_Z);
     assert_eq!(scene.camera.aspect, 640.0 / 360.0);
@@ -31,7 +32,7 @@ fn a_scene_of_only_a_camera_is_its_background() {
 #[test]
 fn every_setting_arrives() {
     let scene = scene(
-        "[film]\nwidth = 0x20\nheight = 16\nencoding = 'gamma2'\n\
+        "[film]\nwidth = 0x20\nheight = 16\nencoding = 'gamma2'\nexposure = -1.5\ntone = 'aces'\n\
          [camera]\nposition = [1, 0, 0]\ndirection = [3, 0, 0]\nup = [0, 0, 2]\nvertical_fov = 90\n\
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
@@ -40,7 +41,8 @@ fn every_setting_arrives() {
          triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
-    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2 });
+    let tone = Tone { exposure: -1.5, curve: ToneCurve::Aces };
+    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2, tone });
     assert_eq!((scene.camera.towards, scene.camera.up), (Vec3::X, Vec3::Z));
     assert_eq!((scene.camera.half_height, scene.camera.aspect), (1.0, 2.0));
     assert_eq!(scene.camera.lens, Some(Lens { aperture: 0.1, focal_distance: 5.0 }));
@@ -206,6 +208,19 @@ fn an_environment_has_colours() {
     check_refused_with(
         "[environment]\nindirect_light = 1",
         "s.toml:3:18: `indirect_light` must be true or false, but is 1",
+    );
+}
+
+#[test]
+fn a_film_has_an_exposure_and_a_tone_curve() {
+    assert_eq!(scene_with("[film]\ntone = 'reinhard'").film.tone.curve, ToneCurve::Reinhard);
+    check_refused_with(
+        "[film]\nexposure = 101",
+        "s.toml:3:12: `exposure` must be from -100 to 100, but is 101",
+    );
+    check_refused_with(
+        "[film]\ntone = 'filmic'",
+        "s.toml:3:8: unknown value of `tone`: `filmic`\nhelp: known names are `clamp`, `reinhard`, `aces`",
     );
 }
 
