@@ -6,7 +6,7 @@ use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::material::{Emitter, Light, Material};
 use crate::scene::{
-    Accelerator, Background, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod,
+    Accelerator, Background, Precision, Quality, Sampler, Scene, SphereMethod, TextureFilter, TriangleMethod,
 };
 use crate::shape::Shape;
 use crate::world::WorldFunctions;
@@ -39,8 +39,12 @@ pub struct Plan {
     pub positions: bool,
     /// Whether the filter functions are written; otherwise all samples of a pixel have the same weight.
     pub weights: bool,
+    /// For each light of the scene whether it is visible.
+    pub visible_lights: Vec<bool>,
     /// Whether `texture_color` is written, which reads images.
     pub images: bool,
+    /// Whether images are filtered, because the scene asks for it and a surface that is shown has an image.
+    pub mipmaps: bool,
     /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
     pub emission: bool,
     /// What the picture will lack, one sentence each; empty if nothing.
@@ -69,7 +73,11 @@ impl Plan {
             facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
             weights: written.has_all(&[Function::filter_pixel, Function::gaussian_weight]),
+            visible_lights: (0..scene.lights.len())
+                .map(|light| scene.visible_lights.iter().any(|visible| visible.light == light))
+                .collect(),
             images: written.has(Function::texture_color),
+            mipmaps: false,
             emission: !scene.emitters().is_empty(),
             effects,
             notes,
@@ -81,6 +89,8 @@ impl Plan {
         plan.leave_out_distribution(scene, written);
         plan.leave_out_images(scene, written);
         plan.leave_out_spaces(scene);
+        let images = plan.effects.materials.iter().any(|material| material.texture);
+        plan.mipmaps = images && scene.quality.texture_filter == TextureFilter::Mipmap;
         plan
     }
 

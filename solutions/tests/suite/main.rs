@@ -22,4 +22,5 @@ mod specials;
 mod stages;
 mod subsets;
 mod textbook;
+mod texture_filter;
 mod watertight;

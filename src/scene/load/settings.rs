@@ -10,7 +10,7 @@ use crate::partition::KdHeuristics;
 use crate::scene::error::LoadError;
 use crate::scene::{
     Accelerator, Background, ColorPlace, Encoding, EnvironmentMap, FilmSettings, Gradient, GradientColor,
-    Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod,
+    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
 
@@ -196,11 +196,12 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
     Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
 }
 
-const QUALITY_KEYS: [&str; 16] = [
+const QUALITY_KEYS: [&str; 17] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
     "glossy_samples",
+    "texture_filter",
     "max_depth",
     "min_contribution",
     "accelerator",
@@ -225,6 +226,9 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
             "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
             "glossy_samples" => quality.glossy_samples = value.whole(1..=MAX_SAMPLES)?,
+            "texture_filter" => {
+                quality.texture_filter = value.choice(&TextureFilter::ALL)?;
+            }
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
             "accelerator" => {

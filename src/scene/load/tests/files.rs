@@ -95,10 +95,10 @@ fn an_environment_map_is_an_image_around_the_scene() {
     folder.write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9 +X 9\n");
     let (_, message, _) = trouble(folder.parse("environment.background.file = 'broken.hdr'"));
     assert!(message.starts_with("cannot use `broken.hdr` as a texture: "), "{message}");
-    // The size of the image is known from its header; 4 GB are enough for 111 million pixels.
+    // The size of the image is known from its header; 4 GB are enough for 100 million pixels.
     folder.write("large.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n");
     let (_, message, _) = trouble(folder.parse("environment.background.file = 'large.hdr'"));
-    assert!(message.starts_with("an image of 40000 by 20000 pixels takes about 28.8 GB"), "{message}");
+    assert!(message.starts_with("an image of 40000 by 20000 pixels takes about 32.0 GB"), "{message}");
     let (_, message, _) = trouble(folder.parse("environment.background = { file = 'sky.hdr', scale = -1 }"));
     assert_eq!(message, "`scale` must be at least 0, but is -1");
 }
@@ -270,7 +270,7 @@ fn memory_is_bounded_before_it_is_allocated() {
     let (place, message, help) = refused("textures.wood.file = 'large.png'");
     assert_eq!(place, Some((3, 22)));
     assert!(
-        message.starts_with("an image of 1000 by 1000 pixels takes about 36.0 MB, and with"),
+        message.starts_with("an image of 1000 by 1000 pixels takes about 40.0 MB, and with"),
         "{message}"
     );
     assert_eq!(help, "make it smaller, or allow more memory: at least `--memory 1`");

@@ -7,7 +7,7 @@ use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::scene::{
     Accelerator, Background, ColorPlace, Encoding, FilmSettings, Gradient, GradientColor, MaterialColor,
-    Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod,
+    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
 
@@ -36,7 +36,7 @@ fn every_setting_arrives() {
          [camera]\nposition = [1, 0, 0]\ndirection = [3, 0, 0]\nup = [0, 0, 2]\nvertical_fov = 90\n\
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
-         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\nmax_depth = 0\n\
+         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\ntexture_filter = 'mipmap'\nmax_depth = 0\n\
          min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
@@ -55,6 +55,7 @@ fn every_setting_arrives() {
         sampler: Sampler::Jittered,
         light_samples: 8,
         glossy_samples: 7,
+        texture_filter: TextureFilter::Mipmap,
         max_depth: 0,
         min_contribution: 0.0,
         accelerator: Accelerator::KdTree,
