@@ -142,7 +142,7 @@ fn asked(explained: &Explained<'_>) {
             println!("  {effect:<14}  {}", wrapped(&why::list(&asking), REASON_COLUMN));
         }
     }
-    for (what, parts) in why::seen(scene) {
+    for (what, parts) in why::seen(scene, effects) {
         println!("  {what:<14}  {}", wrapped(&parts, REASON_COLUMN));
     }
     println!("\nnot simulated     because");
