@@ -20,6 +20,56 @@ pub struct Film {
     pub pixels: Vec<Vec3>,
 }
 
+/// How radiance above 1 is brought into the range that a screen can show. A curve is applied to each channel by itself, so
+/// that no channel exceeds 1; very bright colours become white.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ToneCurve {
+    /// `min(x, 1)`: no curve. All graded pictures are made with it.
+    #[default]
+    Clamp,
+    /// `x / (1 + x)`, equation 3 of Reinhard, Stark, Shirley and Ferwerda, "Photographic Tone Reproduction for Digital
+    /// Images", 2002, where it is applied to the luminance.
+    Reinhard,
+    /// `x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14)`, at most 1: a fit to the curve of the Academy Color Encoding System
+    /// (ACES), which has more contrast, by Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+    Aces,
+}
+
+impl ToneCurve {
+    /// All curves, with their names in scene files.
+    pub const ALL: [(&str, ToneCurve); 3] =
+        [("clamp", ToneCurve::Clamp), ("reinhard", ToneCurve::Reinhard), ("aces", ToneCurve::Aces)];
+
+    /// The value in `0..=1` that is shown for `x` of linear light. Negative values count as 0; NaN stays NaN.
+    pub fn apply(self, x: f32) -> f32 {
+        // At 1e6 all curves are within two millionths of their end, and the square of a much larger number overflows.
+        let x = x.clamp(0.0, 1e6);
+        let shown = match self {
+            ToneCurve::Clamp => x,
+            ToneCurve::Reinhard => x / (1.0 + x),
+            ToneCurve::Aces => x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14),
+        };
+        shown.clamp(0.0, 1.0)
+    }
+}
+
+/// Exposure and tone curve of a picture: `curve(2^exposure · x)` for each channel x of linear light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Tone {
+    /// Exposure in stops: each stop doubles the light; 0 by default.
+    pub exposure: f32,
+    /// The curve, clamp by default.
+    pub curve: ToneCurve,
+}
+
+impl Tone {
+    /// The value in `0..=1` that is shown for `x` of linear light. Negative values count as 0; NaN stays NaN.
+    pub fn apply(self, x: f32) -> f32 {
+        self.curve.apply(self.exposure.exp2() * x)
+    }
+}
+
 /// A picture of 8 bits per component and three components per pixel, as in a PNG file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bytes {
@@ -54,6 +104,13 @@ impl Film {
     /// The number of pixels that have an infinite component and no NaN.
     pub fn infinite(&self) -> usize {
         self.pixels.iter().filter(|pixel| !pixel.is_finite() && !pixel.is_nan()).count()
+    }
+
+    /// The same picture as a screen shows it: each component is passed through `tone`, and lies in `0..=1` afterwards. Pixels
+    /// with NaN components stay as they are.
+    pub fn toned(&self, tone: Tone) -> Film {
+        let shown = |pixel: &Vec3| if pixel.is_nan() { *pixel } else { pixel.map(|x| tone.apply(x)) };
+        Film { pixels: self.pixels.iter().map(shown).collect(), ..*self }
     }
 
     /// The picture in bytes, each component of linear light passed through `encode`, for example
@@ -186,6 +243,40 @@ mod tests {
         assert_eq!(encode_srgb(-1.0), 0);
         assert_eq!(encode_srgb(7.0), 255);
         assert_eq!(encode_srgb(0.002), 7); // on the straight part: 12.92 · 0.002 · 255 = 6.6
+    }
+
+    #[test]
+    fn tone_curves_meet_the_points_of_their_formulas() {
+        let [clamp, reinhard, aces] = ToneCurve::ALL.map(|(_, curve)| move |x: f32| curve.apply(x));
+        assert_eq!([0.0, 0.25, 1.0, 7.0].map(clamp), [0.0, 0.25, 1.0, 1.0]);
+        assert_eq!([0.0, 1.0, 3.0].map(reinhard), [0.0, 0.5, 0.75]);
+        assert!((reinhard(f32::INFINITY) - 1.0).abs() < 2e-6);
+        // 2.54 / 3.16 at 1; middle grey, 0.18, at 0.086724 / 0.324932; the curve reaches 1 a little above 7.
+        for (x, shown) in [(0.0, 0.0), (0.18, 0.266_899), (1.0, 0.803_797), (8.0, 1.0), (f32::INFINITY, 1.0)]
+        {
+            assert!((aces(x) - shown).abs() < 1e-6, "{} at {x}", aces(x));
+        }
+        for (_, curve) in ToneCurve::ALL {
+            assert_eq!(curve.apply(-1.0), 0.0);
+            assert!(curve.apply(f32::NAN).is_nan());
+            let values: Vec<f32> = (-40..=40).map(|stop| curve.apply((stop as f32 / 2.0).exp2())).collect();
+            assert!(values.is_sorted() && values.iter().all(|shown| (0.0..=1.0).contains(shown)));
+        }
+    }
+
+    #[test]
+    fn a_stop_of_exposure_doubles_the_light() {
+        let mut film = Film::new(3, 1);
+        film.pixels[0] = Vec3::new(0.1, 0.2, 0.7);
+        film.pixels[1] = Vec3::new(f32::NAN, 2.0, 0.5);
+        film.pixels[2] = Vec3::splat(f32::INFINITY);
+        let toned = film.toned(Tone { exposure: 1.0, curve: ToneCurve::Clamp });
+        assert_eq!(toned.pixels[0], Vec3::new(0.2, 0.4, 1.0));
+        assert_eq!((toned.not_a_number(), toned.pixels[2]), (1, Vec3::ONE));
+        let darker = film.toned(Tone { exposure: -1.0, curve: ToneCurve::Reinhard });
+        assert!((darker.pixels[0].z - 0.35 / 1.35).abs() < 1e-7);
+        // Without exposure and curve the bytes are those of the film.
+        assert_eq!(film.toned(Tone::default()).to_bytes(encode_srgb), film.to_bytes(encode_srgb));
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! What surfaces do with light, and where light comes from, as data.
 
+use crate::shape::{Polygon, Shape};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The optical properties of a surface, by the Phong model with reflection and refraction (Whitted):
@@ -30,7 +32,8 @@ pub struct Material {
     pub fresnel: Fresnel,
     /// The roughness of glossy reflection and refraction, `0..=1`; 0 is a perfectly smooth surface (stage 6).
     pub roughness: f32,
-    /// The radiance that the surface emits by itself (stage 11).
+    /// The radiance that the surface emits by itself, on both sides and evenly in all directions. Camera rays, reflected
+    /// and refracted rays see it; direct light comes from [`Light`] alone.
     pub emission: Vec3,
     /// The index in [`crate::scene::Scene::textures`] of an image that multiplies `diffuse` and `ambient`
     /// (stage 7).
@@ -95,6 +98,15 @@ pub struct Texture {
     pub wrap: Wrap,
 }
 
+impl Texture {
+    /// The colour of the pixel in which `uv` lies, both in `0..=1`; `(0, 0)` is the lower left corner.
+    pub(crate) fn pixel_at(&self, uv: Vec2) -> Vec3 {
+        let index = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1) as usize;
+        let (column, row) = (index(uv.x, self.width), index(1.0 - uv.y, self.height));
+        self.pixels[row * self.width as usize + column]
+    }
+}
+
 /// How light from a point or area light depends on the distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -147,6 +159,28 @@ pub enum AreaShape {
 }
 
 impl AreaShape {
+    /// The area that the light shows from straight ahead: that of its disk for a sphere.
+    fn frontal_area(&self) -> f64 {
+        let disk = |radius: f32| PI * f64::from(radius) * f64::from(radius);
+        match self {
+            AreaShape::Rectangle { edges, .. } => edges.0.as_dvec3().cross(edges.1.as_dvec3()).length(),
+            AreaShape::Disk(light) => disk(light.radius),
+            AreaShape::Sphere(sphere) => disk(sphere.radius),
+        }
+    }
+
+    /// The light as a shape of the scene.
+    pub fn to_shape(&self) -> Shape {
+        match self {
+            AreaShape::Rectangle { corner, edges: (u, v) } => {
+                let corners = vec![*corner, corner + u, corner + u + v, corner + v];
+                Shape::Polygon(Polygon { corners })
+            }
+            AreaShape::Disk(disk) => Shape::Disk(*disk),
+            AreaShape::Sphere(sphere) => Shape::Sphere(*sphere),
+        }
+    }
+
     /// The centre of the light, in world units.
     pub fn center(&self) -> Vec3 {
         match self {
@@ -177,7 +211,50 @@ impl Light {
     pub fn radiance(&self) -> Vec3 {
         self.intensity * self.color
     }
+
+    /// The radiance that a ray sees which hits the light, if the light is visible; zero for point lights and directional
+    /// lights, which no ray can hit.
+    ///
+    /// With [`Falloff::InverseSquare`] it is `π I / A` with `I` of [`Light::radiance`] and the area `A` that the light shows
+    /// from straight ahead: `π R²` for a sphere or a disk of radius `R`, so that `I = L R²`. A spherical light then gives
+    /// exactly the light of a sphere that emits this radiance. Samples of rectangles and disks have no cosine at the light,
+    /// so these agree straight ahead, and give `1 / cos θ` times as much light at an angle θ from there.
+    ///
+    /// With [`Falloff::None`] no radiance agrees with the light at all distances. Then it is `I`, as on Heckbert's business
+    /// card: the light looks as bright as a white surface that faces it.
+    pub fn visible_radiance(&self) -> Vec3 {
+        let Emitter::Area { shape, falloff } = &self.emitter else { return Vec3::ZERO };
+        match falloff {
+            Falloff::None => self.radiance(),
+            // Use double precision, in which no square of an `f32` overflows or vanishes.
+            Falloff::InverseSquare => (PI / shape.frontal_area() * self.radiance().as_dvec3()).as_vec3(),
+        }
+    }
 }
 
 /// A texture coordinate; `(0, 0)` is the lower left corner of the image and `(1, 1)` the upper right one.
 pub type Uv = Vec2;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::{Disk, Sphere};
+
+    fn light(shape: AreaShape, falloff: Falloff) -> Light {
+        Light { emitter: Emitter::Area { shape, falloff }, color: Vec3::X, intensity: 8.0, shadows: true }
+    }
+
+    #[test]
+    fn a_visible_light_is_as_bright_as_the_light_that_it_gives() {
+        let sphere = AreaShape::Sphere(Sphere { center: Vec3::ZERO, radius: 2.0 });
+        let disk = AreaShape::Disk(Disk { center: Vec3::ZERO, normal: Vec3::Y, radius: 2.0 });
+        let rectangle =
+            AreaShape::Rectangle { corner: Vec3::ZERO, edges: (Vec3::X, 2.0 * Vec3::Y + Vec3::X) };
+        // I = L R² for sphere and disk; a rectangle of area 2 has π · 8 / 2.
+        for (shape, radiance) in [(sphere, 2.0), (disk, 2.0), (rectangle, 4.0 * std::f32::consts::PI)] {
+            let seen = light(shape.clone(), Falloff::InverseSquare).visible_radiance();
+            assert!((seen - radiance * Vec3::X).length() < 1e-6 * radiance, "{seen} of {shape:?}");
+            assert_eq!(light(shape, Falloff::None).visible_radiance(), 8.0 * Vec3::X);
+        }
+    }
+}

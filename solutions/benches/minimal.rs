@@ -15,7 +15,7 @@ use raykata::frame::Unwatched;
 use raykata::kit::{LightSample, RenderJob, StudentKit, Surface, View};
 use raykata::material::{Emitter, Light};
 use raykata::ray::Ray;
-use raykata::scene::{Scene, load};
+use raykata::scene::{Background, Scene, load};
 use raykata::shape::{Shape, Triangle};
 use raykata::world::camera_for;
 use solutions::{stage3_boxes, stage3_build, stage3_traversal, stage4_shading, stage10_stability};
@@ -83,6 +83,7 @@ struct Caster<'a> {
     lights: Vec<(Vec3, Vec3, bool)>,
     ambient: Vec3,
     diffuse: Vec3,
+    background: Vec3,
 }
 
 impl<'a> Caster<'a> {
@@ -110,6 +111,10 @@ impl<'a> Caster<'a> {
             lights: scene.lights.iter().map(light).collect(),
             ambient: scene.ambient * material.ambient,
             diffuse: material.diffuse,
+            background: match scene.background {
+                Background::Color(color) => color,
+                _ => panic!("a background of one colour"),
+            },
         }
     }
 
@@ -129,7 +134,7 @@ impl<'a> Caster<'a> {
     fn color(&self, ray: &Ray, rays: &mut u64) -> Vec3 {
         *rays += 1;
         let Some(hit) = stage3_traversal::closest_hit(&self.bvh, &mut self.probe(ray), ray) else {
-            return self.scene.background;
+            return self.background;
         };
         let triangle = &self.triangles[hit.primitive as usize];
         let surface = surface(ray, triangle);

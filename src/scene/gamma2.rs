@@ -1,6 +1,6 @@
 //! Which colours and images of a scene are encoded with gamma 2, the gamma of the lecture notes.
 
-use crate::scene::Scene;
+use crate::scene::{Background, Scene};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ impl Gamma2 {
 /// The place of a colour in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ColorPlace {
-    /// The background.
+    /// The background, if it is one colour.
     Background,
     /// The ambient light.
     AmbientLight,
@@ -32,6 +32,19 @@ pub enum ColorPlace {
     Light(usize),
     /// A colour of the material with this index.
     Material(usize, MaterialColor),
+    /// A colour of the background, if it is a gradient.
+    Gradient(GradientColor),
+}
+
+/// One of the colours of a gradient.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum GradientColor {
+    /// The colour straight up.
+    Zenith,
+    /// The colour in horizontal directions.
+    Horizon,
+    /// The colour straight down.
+    Nadir,
 }
 
 /// One of the colours of a material.
@@ -52,10 +65,19 @@ pub enum MaterialColor {
 }
 
 impl Scene {
-    /// The colour at `place`, which can be changed; `None` if the scene has no such light or material.
+    /// The colour at `place`, which can be changed; `None` if the scene has no such light, material or background.
     pub fn color_mut(&mut self, place: ColorPlace) -> Option<&mut Vec3> {
         Some(match place {
-            ColorPlace::Background => &mut self.background,
+            ColorPlace::Background => match &mut self.background {
+                Background::Color(color) => color,
+                _ => return None,
+            },
+            ColorPlace::Gradient(color) => match (&mut self.background, color) {
+                (Background::Gradient(gradient), GradientColor::Zenith) => &mut gradient.zenith,
+                (Background::Gradient(gradient), GradientColor::Horizon) => &mut gradient.horizon,
+                (Background::Gradient(gradient), GradientColor::Nadir) => &mut gradient.nadir,
+                _ => return None,
+            },
             ColorPlace::AmbientLight => &mut self.ambient,
             ColorPlace::Light(index) => &mut self.lights.get_mut(index)?.color,
             ColorPlace::Material(index, color) => {

@@ -3,6 +3,7 @@
 //! [`load`] reads a scene from a TOML file and checks it. A scene that [`load`] returns holds everything that
 //! a frame needs: all its indices are in range, and its graph has no cycle.
 
+mod background;
 pub mod error;
 mod gamma2;
 pub mod load;
@@ -12,11 +13,15 @@ mod quality;
 mod shown;
 mod triangulate;
 
-pub use gamma2::{ColorPlace, Gamma2, MaterialColor};
-pub use quality::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod};
+pub use background::{Background, EnvironmentMap, Gradient};
+pub use gamma2::{ColorPlace, Gamma2, GradientColor, MaterialColor};
+pub use quality::{
+    Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+};
 pub use shown::Shown;
 
 use crate::camera::Camera;
+use crate::film::Tone;
 use crate::material::{Light, Material, Texture};
 use crate::mesh::Mesh;
 use crate::shape::Shape;
@@ -35,8 +40,8 @@ pub enum Encoding {
     Gamma2,
 }
 
-/// Size of the picture in pixels, and encoding of its 8-bit files.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+/// Size of the picture in pixels, and how its light becomes the numbers of 8-bit files.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FilmSettings {
     /// Pixels per row, at least 1; a scene file may ask for up to 65 536.
     pub width: u32,
@@ -45,6 +50,15 @@ pub struct FilmSettings {
     pub height: u32,
     /// Encoding of 8-bit image files; the film itself holds linear radiance.
     pub encoding: Encoding,
+    /// Exposure of 8-bit image files and the tone curve for them.
+    pub tone: Tone,
+}
+
+impl Default for FilmSettings {
+    /// 640 by 360 pixels in sRGB, without exposure, clamped.
+    fn default() -> Self {
+        FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb, tone: Tone::default() }
+    }
 }
 
 /// A mesh of the scene, with the settings that the scene file gives for it.
@@ -65,6 +79,15 @@ pub struct SceneMesh {
     /// For each of the mesh's own material names, an index into [`Scene::materials`]. Empty if all triangles
     /// take the material of the node that shows the mesh.
     pub materials: Vec<usize>,
+}
+
+/// A visible area light, with the material of the node that shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisibleLight {
+    /// Index into [`Scene::lights`] of an area light.
+    pub light: usize,
+    /// Index into [`Scene::materials`]. The material is black, and emits [`Light::visible_radiance`].
+    pub material: usize,
 }
 
 /// A node of the scene graph. Nodes may have several parents; they never form a cycle.
@@ -92,12 +115,13 @@ impl Scene {
     /// black, and its only material is the default at index 0.
     pub fn empty(camera: Camera) -> Scene {
         Scene {
-            film: FilmSettings { width: 1, height: 1, encoding: Encoding::default() },
+            film: FilmSettings { width: 1, height: 1, ..FilmSettings::default() },
             camera,
-            background: Vec3::ZERO,
+            background: Background::Color(Vec3::ZERO),
             ambient: Vec3::ZERO,
             indirect_light: false,
             lights: Vec::new(),
+            visible_lights: Vec::new(),
             materials: vec![Material::default()],
             material_names: vec!["default".into()],
             textures: Vec::new(),
@@ -144,14 +168,16 @@ pub struct Scene {
     pub film: FilmSettings,
     /// The camera in world space, with its lens and its shutter.
     pub camera: Camera,
-    /// Linear radiance of rays that hit nothing, at least 0 in each channel.
-    pub background: Vec3,
+    /// The radiance of rays that hit nothing.
+    pub background: Background,
     /// `A`, the ambient light of the Phong model in linear RGB, at least 0 in each channel.
     pub ambient: Vec3,
     /// Whether the scene asks for light that bounces between surfaces (stage 11).
     pub indirect_light: bool,
     /// All lights in world space, in the order of the scene file.
     pub lights: Vec<Light>,
+    /// The area lights that rays can see, in ascending order. Each has a node with its shape, and a material of its own.
+    pub visible_lights: Vec<VisibleLight>,
     /// All materials; index 0 is the default for shapes that name none.
     pub materials: Vec<Material>,
     /// The name of each material by index, for messages. A material that comes with the mesh `box` is called

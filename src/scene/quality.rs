@@ -208,6 +208,24 @@ impl Sampler {
     }
 }
 
+/// How images are read (stage 7).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TextureFilter {
+    /// One read per hit, between the four nearest pixels of the image.
+    #[default]
+    Bilinear,
+    /// By cone tracing: from smaller copies of the image (mip levels), over the part of the surface that the ray's cone
+    /// covers, with 1 to 32 reads per hit. A distant image does not sparkle.
+    Mipmap,
+}
+
+impl TextureFilter {
+    /// All filters, with their names in scene files.
+    pub const ALL: [(&str, TextureFilter); 2] =
+        [("bilinear", TextureFilter::Bilinear), ("mipmap", TextureFilter::Mipmap)];
+}
+
 /// Floating-point precision of the ray tests against triangles and spheres (stage 10).
 ///
 /// Rays and shapes themselves are stored in single precision. Infinite planes, boxes, cylinders, cones, disks
@@ -236,6 +254,8 @@ pub struct Quality {
     /// Rays for each glossy reflection or transmission at a hit on a rough surface, at least 1 (stage 6); 1
     /// by default.
     pub glossy_samples: u32,
+    /// How images are read (stage 7); bilinear by default.
+    pub texture_filter: TextureFilter,
     /// Largest number of reflections and refractions on a path from the camera (stage 5); 5 by default.
     pub max_depth: u32,
     /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
@@ -273,6 +293,7 @@ impl Default for Quality {
             sampler: Sampler::default(),
             light_samples: 1,
             glossy_samples: 1,
+            texture_filter: TextureFilter::default(),
             max_depth: 5,
             min_contribution: 0.001,
             accelerator: Accelerator::default(),

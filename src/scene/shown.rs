@@ -2,6 +2,7 @@
 
 use super::{Node, Scene};
 use crate::shape::Shape;
+use glam::Vec3;
 use std::collections::BTreeSet;
 
 /// A shape that the scene shows, with the materials and the motion that it has there.
@@ -34,6 +35,17 @@ impl Scene {
             walk.node(root, 0, false);
         }
         walk.shown
+    }
+
+    /// The indices of all materials that are shown and emit light, in ascending order, each once.
+    ///
+    /// # Panics
+    ///
+    /// If an index of the scene into its nodes, meshes or materials is out of range.
+    pub fn emitters(&self) -> Vec<usize> {
+        let emits = |material: &usize| self.materials[*material].emission != Vec3::ZERO;
+        let materials = self.shown().into_iter().flat_map(|shape| shape.materials).filter(emits);
+        materials.collect::<BTreeSet<usize>>().into_iter().collect()
     }
 
     fn materials_of(&self, shape: &Shape, otherwise: usize) -> Vec<usize> {

@@ -2,6 +2,7 @@
 //! functions of stage 6.
 
 use super::plan::Plan;
+use super::texture_filter::Cone;
 use crate::camera::Camera;
 use crate::frame::CameraSample;
 use crate::kit::{StudentFunctions, WeightedColor};
@@ -22,14 +23,21 @@ pub struct CameraSampler<F> {
     positions: bool,
     /// Whether the samples of a pixel are weighted.
     weights: bool,
+    /// The cone of each camera ray.
+    cone: Cone,
     functions: PhantomData<F>,
 }
 
 impl<F: StudentFunctions> CameraSampler<F> {
     /// The sampler for the camera and the film of `scene`.
     pub fn new(scene: &Scene, plan: &Plan) -> Self {
+        let camera = camera_for(scene);
+        // The samples of a pixel share its width.
+        let samples = scene.quality.samples_per_pixel.max(1) as f32;
+        let spread = 2.0 * camera.half_height / scene.film.height as f32 / samples.sqrt();
         CameraSampler {
-            camera: camera_for(scene),
+            cone: Cone { width: 0.0, spread },
+            camera,
             sampler: scene.quality.sampler,
             film: uvec2(scene.film.width, scene.film.height).as_vec2(),
             positions: plan.positions,
@@ -50,6 +58,13 @@ impl<F: StudentFunctions> CameraSampler<F> {
         }
         ray.time = self.time(sample);
         ray
+    }
+
+    /// The cone that a camera ray stands for: as wide as a pixel in the middle of the film, divided by the root of the number
+    /// of samples.
+    #[inline(always)]
+    pub fn cone(&self) -> Cone {
+        self.cone
     }
 
     /// The weight of a sample in its pixel: 1, or that of the Gaussian filter at its distance from the

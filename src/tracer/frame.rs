@@ -4,6 +4,7 @@ use super::camera_sampler::CameraSampler;
 use super::interaction::Looks;
 use super::intersector::Intersector;
 use super::plan::Plan;
+use super::texture_filter::Pyramids;
 use super::written::Written;
 use crate::building;
 use crate::frame::{FrameSettings, Watch};
@@ -23,6 +24,8 @@ pub struct Frame<'a, F> {
     pub intersector: Intersector<F>,
     /// By which functions and with which normals hits become surface interactions.
     pub looks: Looks,
+    /// The smaller copies of all images, if images are filtered.
+    pub pyramids: Option<Pyramids>,
     /// At which depth and weight a path ends.
     pub limits: Limits,
 }
@@ -35,12 +38,13 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let quality = &scene.quality;
         let plan = Plan::new(job, written);
         let world = World::new(scene, &plan.effects, &plan.world);
+        let pyramids = plan.mipmaps.then(|| Pyramids::new(&world, &plan.effects));
         let n_primitives = world.primitives.len() as u64;
         let intersector = building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality));
         let camera = CameraSampler::new(scene, &plan);
         let looks = Looks { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
-        Frame { job, plan, camera, intersector, looks, limits }
+        Frame { job, plan, camera, intersector, looks, pyramids, limits }
     }
 
     /// The quality settings of the scene that is rendered.

@@ -3,6 +3,7 @@
 use super::written::Written;
 use crate::film::encode_srgb;
 use crate::kit::{Function, RenderJob, StudentFunctions};
+use crate::scene::VisibleLight;
 use glam::Vec3;
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -20,6 +21,10 @@ pub fn decoded<'a, F: StudentFunctions>(job: &'a RenderJob, written: &Written<F>
         if let Some(color) = decoded.scene.color_mut(*place) {
             *color = Vec3::from_array(bytes.map(F::decode_gamma));
         }
+    }
+    // A visible light emits its colour.
+    for VisibleLight { light, material } in decoded.scene.visible_lights.clone() {
+        decoded.scene.materials[material].emission = decoded.scene.lights[light].visible_radiance();
     }
     // Replace the images: encode each component again, which gives the byte of the file, and decode that.
     let table: [f32; 256] = std::array::from_fn(|byte| F::decode_gamma(byte as u8));

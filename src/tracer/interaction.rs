@@ -105,7 +105,7 @@ fn in_instance<F: StudentFunctions>(
 
 /// The instance that is primitive `outer` of the world, primitive `inner` of its shared mesh, and the index
 /// of the material there.
-fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32) {
+pub fn inside(world: &World, outer: u32, inner: u32) -> (&Instance, &Primitive, u32) {
     let outer = &world.primitives[outer as usize];
     let Geometry::Instance(index) = outer.geometry else { unreachable!("only instances have an inside") };
     let instance = &world.instances[index as usize];

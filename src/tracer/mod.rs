@@ -7,7 +7,7 @@
 //! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
 //! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
 //! through the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a
-//! pixel, `outlines` draws structures, and `gamma2` decodes colours.
+//! pixel, `outlines` draws structures, `gamma2` decodes colours, and `texture_filter` filters images.
 
 mod camera_sampler;
 mod frame;
@@ -28,6 +28,7 @@ mod random_choices;
 mod record;
 mod solids;
 mod structure;
+mod texture_filter;
 mod written;
 
 use crate::bvh::PrimitiveHit;
@@ -155,7 +156,7 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
             frame.closest_hit(&ray, scratch)
         };
         // Compute what the pixel shows: normals, light or work.
-        let path = Path::from_camera(ray, sample.points);
+        let path = Path::from_camera(ray, sample.points, frame.camera.cone());
         let mut color = match frame.plan.view {
             View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
             View::Shaded | View::Work => frame.radiance(path, hit, scratch, &mut NoRecord),
@@ -180,7 +181,7 @@ fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: 
     // Make the camera ray of the first sample.
     let frame = Frame::new(job, written, &Unwatched);
     let sample = CameraSample::draw(&frame.settings(), x, y, 0);
-    let path = Path::from_camera(frame.camera.ray(&sample), sample.points);
+    let path = Path::from_camera(frame.camera.ray(&sample), sample.points, frame.camera.cone());
     // Follow it as a frame does, and record all rays.
     let mut record = Rays { material_names: &job.scene.material_names, rays: Vec::new() };
     let mut scratch = Scratch::<Uncounted>::default();

@@ -6,14 +6,16 @@ use super::hit::Hit;
 use super::interaction::{SurfaceInteraction, texture_coordinates};
 use super::intersector::Cache;
 use super::packets::Packets;
-use super::random_choices::{area_of, sample_area_light, sample_rough_surface};
+use super::random_choices::{area_of, before_its_surface, sample_area_light, sample_rough_surface};
 use super::record::Record;
+use super::texture_filter::{Cone, Pyramids, curvature, footprint, uv_change};
 use crate::count::{Counts, Event, Tally};
 use crate::kit::{Bounce, LightSample, RayKind, StudentFunctions, Surface};
 use crate::material::Material;
 use crate::random::Points;
 use crate::ray::Ray;
-use glam::Vec3;
+use crate::scene::{Background, EnvironmentMap};
+use glam::{Vec2, Vec3};
 use std::borrow::Cow;
 
 /// A ray that is followed, with the weight of its light in the pixel.
@@ -31,12 +33,14 @@ pub struct Path {
     pub kind: RayKind,
     /// Index of its parent ray in the record; `None` for a camera ray.
     pub parent: Option<usize>,
+    /// The cone that the ray stands for, if images are filtered.
+    pub cone: Cone,
 }
 
 impl Path {
     /// The path of the camera ray `ray`, with weight 1 and depth 0.
-    pub fn from_camera(ray: Ray, points: Points) -> Path {
-        Path { ray, points, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None }
+    pub fn from_camera(ray: Ray, points: Points, cone: Cone) -> Path {
+        Path { ray, points, weight: Vec3::ONE, depth: 0, kind: RayKind::Primary, parent: None, cone }
     }
 }
 
@@ -84,7 +88,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 color += path.weight * self.light_from(&path, &hit, scratch, record);
             } else {
                 record.miss(&path);
-                color += path.weight * self.job.scene.background;
+                color += path.weight * self.background(path.ray.direction, scratch);
             }
             // Continue with the ray that was queued last.
             let Some(next) = scratch.waiting.pop() else { return color };
@@ -93,14 +97,43 @@ impl<F: StudentFunctions> Frame<'_, F> {
         }
     }
 
+    /// The radiance of a ray along `direction` that hits nothing.
+    #[inline(always)]
+    fn background<T: Tally>(&self, direction: Vec3, scratch: &mut Scratch<T>) -> Vec3 {
+        match &self.job.scene.background {
+            Background::Color(color) => *color,
+            Background::Gradient(gradient) => gradient.color(direction),
+            Background::Map(map) => self.environment_color(map, direction, scratch),
+        }
+    }
+
+    /// The colour of the environment map in `direction`, by `texture_color` of stage 7. Until that is written, it is the
+    /// colour of the pixel in which the direction lies.
+    #[cold]
+    fn environment_color<T: Tally>(
+        &self,
+        map: &EnvironmentMap,
+        direction: Vec3,
+        scratch: &mut Scratch<T>,
+    ) -> Vec3 {
+        scratch.note(Event::TextureRead);
+        let image = &self.intersector.scene.world.textures[map.texture];
+        let uv = map.texture_coordinates(direction, image.height);
+        map.scale
+            * match self.plan.images {
+                true => F::texture_color(image, uv),
+                false => image.pixel_at(uv),
+            }
+    }
+
     /// The closest hit of `ray` within its range, or `None`; counted in `scratch`.
     #[inline(always)]
     pub fn closest_hit<T: Tally>(&self, ray: &Ray, scratch: &mut Scratch<T>) -> Option<Hit> {
         self.intersector.closest_hit(ray, &mut scratch.tally, &mut scratch.cache)
     }
 
-    /// The light that the surface at `hit` sends back along the path; its secondary rays are added to the
-    /// waiting rays.
+    /// The light that the surface at `hit` sends back along the path, its own emission included; its secondary rays
+    /// are added to the waiting rays.
     #[inline(always)]
     fn light_from<T: Tally>(
         &self,
@@ -113,14 +146,18 @@ impl<F: StudentFunctions> Frame<'_, F> {
         scratch.note(Event::Hit);
         let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, hit);
         let number = record.hit(path, hit.t, at.material);
-        let material = self.material(&path.ray, hit, &at, &mut scratch.tally);
+        let material = self.material(path, hit, &at, &mut scratch.tally);
         // Shade the point with direct light, tracing shadow rays.
         self.sample_lights(path, &at, scratch);
-        let color = self.shade(path, &at, &material, scratch, |ray, blocked| {
+        let mut color = self.shade(path, &at, &material, scratch, |ray, blocked| {
             record.shadow(path, number, ray, blocked);
         });
+        // Add the light that the surface emits by itself. The plan knows whether any surface does.
+        if self.plan.emission {
+            color += material.emission;
+        }
         // Queue the secondary rays.
-        self.scatter(path, number, &at, &material, scratch);
+        self.scatter(path, hit, number, &at, &material, scratch);
         color
     }
 
@@ -128,23 +165,70 @@ impl<F: StudentFunctions> Frame<'_, F> {
     #[inline(always)]
     fn material<T: Tally>(
         &self,
-        ray: &Ray,
+        path: &Path,
         hit: &Hit,
         at: &SurfaceInteraction,
         tally: &mut T,
     ) -> Cow<'_, Material> {
         let world = &self.intersector.scene.world;
         let material = &world.materials[at.material];
-        let image = match material.texture {
-            Some(texture) if self.plan.effects.materials[at.material].texture => &world.textures[texture],
+        let texture = match material.texture {
+            Some(texture) if self.plan.effects.materials[at.material].texture => texture,
             _ => return Cow::Borrowed(material),
         };
-        // Look up the colour of the image at the hit.
-        tally.note(Event::TextureRead);
-        let uv = texture_coordinates::<F>(world, self.looks.tests, ray, hit, at.surface.point);
-        let color = F::texture_color(image, uv);
+        // Look up the colour of the image at the hit, or around it.
+        let uv = texture_coordinates::<F>(world, self.looks.tests, &path.ray, hit, at.surface.point);
+        let color = match &self.pyramids {
+            Some(pyramids) => self.filtered_color(pyramids, texture, uv, path, hit, at, tally),
+            None => {
+                tally.note(Event::TextureRead);
+                F::texture_color(&world.textures[texture], uv)
+            }
+        };
         let (ambient, diffuse) = (color * material.ambient, color * material.diffuse);
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })
+    }
+
+    /// The mean colour of the image `texture` over the part of the surface that the cone of `path` covers.
+    #[cold]
+    #[allow(clippy::too_many_arguments)]
+    fn filtered_color<T: Tally>(
+        &self,
+        pyramids: &Pyramids,
+        texture: usize,
+        uv: Vec2,
+        path: &Path,
+        hit: &Hit,
+        at: &SurfaceInteraction,
+        tally: &mut T,
+    ) -> Vec3 {
+        let world = &self.intersector.scene.world;
+        let width = path.cone.width_at(hit.t * path.ray.direction.length());
+        let axes = footprint(path.ray.direction, at.surface.geometric_normal, width);
+        let axes = axes.map(|axis| uv_change::<F>(world, &path.ray, hit, at, axis));
+        pyramids.color::<F, T>(world, texture, uv, axes, tally)
+    }
+
+    /// The cone of a secondary ray, if images are filtered.
+    #[inline(always)]
+    fn cone_beyond(
+        &self,
+        path: &Path,
+        hit: &Hit,
+        at: &SurfaceInteraction,
+        material: &Material,
+        bounce: Bounce,
+    ) -> Cone {
+        if self.pyramids.is_none() {
+            return path.cone;
+        }
+        let turn = match (bounce, at.entering) {
+            (Bounce::Reflection, _) => 2.0,
+            (Bounce::Transmission, true) => (1.0 / material.index_of_refraction - 1.0).abs(),
+            (Bounce::Transmission, false) => (material.index_of_refraction - 1.0).abs(),
+        };
+        let curvature = curvature::<F>(&self.intersector.scene.world, &path.ray, hit);
+        path.cone.beyond(hit.t * path.ray.direction.length(), curvature, turn)
     }
 
     /// Puts a sample of each light that can reach the surface into `scratch.lights`.
@@ -155,6 +239,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         let effects = &self.plan.effects;
         for &index in &effects.materials[at.material].lights {
             let (light, takes) = (&self.intersector.scene.world.lights[index], effects.lights[index]);
+            let first = scratch.lights.len();
             match area_of(light) {
                 // Sample random points of an area light.
                 Some(shape) if takes.area => {
@@ -171,6 +256,12 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 _ => {}
             }
             scratch.shadows.resize(scratch.lights.len(), takes.shadows);
+            // Keep the surface that shows a visible light out of its own shadow rays.
+            if let Some(shape) = area_of(light).filter(|_| self.plan.visible_lights[index]) {
+                for sample in &mut scratch.lights[first..] {
+                    *sample = before_its_surface(*sample, shape, at.surface.point);
+                }
+            }
         }
     }
 
@@ -206,6 +297,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     fn scatter<T: Tally>(
         &self,
         path: &Path,
+        hit: &Hit,
         number: usize,
         at: &SurfaceInteraction,
         material: &Material,
@@ -226,6 +318,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 Bounce::Reflection => (Event::Reflection, RayKind::Reflection),
                 Bounce::Transmission => (Event::Transmission, RayKind::Transmission),
             };
+            let cone = self.cone_beyond(path, hit, at, material, child.bounce);
             // Spread each ideal ray over the glossy lobe, and queue the rays.
             for part in 0..parts {
                 scratch.note(event);
@@ -241,7 +334,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
                 let ray = self.off_surface(at, ray);
                 let points = path.points.beyond(child.bounce, part, parts);
                 let (weight, depth) = (child.weight, path.depth + 1);
-                scratch.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(number) });
+                scratch.waiting.push(Path { ray, points, weight, depth, kind, parent: Some(number), cone });
             }
         }
     }
@@ -277,7 +370,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     ) -> Vec3 {
         let Some(hit) = hit else {
             record.miss(path);
-            return self.job.scene.background;
+            return self.background(path.ray.direction, scratch);
         };
         scratch.note(Event::Hit);
         let at = SurfaceInteraction::new::<F>(&self.intersector.scene.world, self.looks, &path.ray, &hit);

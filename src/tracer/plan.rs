@@ -5,7 +5,10 @@ use super::written::Written;
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
 use crate::material::{Emitter, Light, Material};
-use crate::scene::{Accelerator, Node, Precision, Quality, Sampler, Scene, SphereMethod, TriangleMethod};
+use crate::scene::{
+    Accelerator, Background, Node, Precision, Quality, Sampler, Scene, SphereMethod, TextureFilter,
+    TriangleMethod,
+};
 use crate::shape::Shape;
 use crate::world::WorldFunctions;
 use glam::Vec3;
@@ -37,6 +40,14 @@ pub struct Plan {
     pub positions: bool,
     /// Whether the filter functions are written; otherwise all samples of a pixel have the same weight.
     pub weights: bool,
+    /// For each light of the scene whether it is visible.
+    pub visible_lights: Vec<bool>,
+    /// Whether `texture_color` is written, which reads images.
+    pub images: bool,
+    /// Whether images are filtered, because the scene asks for it and a surface that is shown has an image.
+    pub mipmaps: bool,
+    /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
+    pub emission: bool,
     /// What the picture will lack, one sentence each; empty if nothing.
     pub notes: Vec<String>,
 }
@@ -63,6 +74,12 @@ impl Plan {
             facing: written.has(Function::face_forward),
             positions: written.has(Function::pixel_position),
             weights: written.has_all(&[Function::filter_pixel, Function::gaussian_weight]),
+            visible_lights: (0..scene.lights.len())
+                .map(|light| scene.visible_lights.iter().any(|visible| visible.light == light))
+                .collect(),
+            images: written.has(Function::texture_color),
+            mipmaps: false,
+            emission: !scene.emitters().is_empty(),
             effects,
             notes,
         };
@@ -73,6 +90,8 @@ impl Plan {
         plan.leave_out_distribution(scene, written);
         plan.leave_out_images(scene, written);
         plan.leave_out_spaces(scene);
+        let images = plan.effects.materials.iter().any(|material| material.texture);
+        plan.mipmaps = images && scene.quality.texture_filter == TextureFilter::Mipmap;
         plan
     }
 
@@ -237,9 +256,13 @@ impl Plan {
             !scene.gamma2.is_empty() && !written.has(Function::decode_gamma),
             "gamma 2 is decoded with the sRGB curve: `decode_gamma` of stage 4 is not written yet",
         );
-        if written.has(Function::texture_color) {
+        if self.images {
             return;
         }
+        self.note_if(
+            matches!(scene.background, Background::Map(_)),
+            "the environment map is not interpolated: `texture_color` of stage 7 is not written yet",
+        );
         self.note_if(
             scene.materials.iter().any(|material| material.texture.is_some()),
             "images are left out: `texture_color` of stage 7 is not written yet",

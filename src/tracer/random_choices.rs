@@ -4,6 +4,8 @@
 use crate::kit::{Bounce, LightSample, SecondaryRay, StudentFunctions, Surface};
 use crate::material::{AreaShape, Emitter, Light};
 use crate::random::{Points, Purpose};
+use crate::rounding::gamma;
+use glam::Vec3;
 
 /// Sample `part` of `parts` of the area light `light`, number `index` in the scene, with outline `shape`: the
 /// light that arrives at `surface` from a random point of it, divided by `parts`.
@@ -24,6 +26,25 @@ pub fn sample_area_light<F: StudentFunctions>(
         AreaShape::Sphere(sphere) => light.sample_toward_sphere(sphere, F::sample_sphere(sphere, at, u), at),
     };
     LightSample { radiance: sample.radiance / parts as f32, ..sample }
+}
+
+/// The sample of a visible light at `point`, ending before the surface that shows the light.
+///
+/// A shadow ray ends a little before its light. Where it runs almost along a flat light, that is less than the rounding error
+/// of its hit with the light, which would block its own light. The end moves by that error: some roundings of the
+/// coordinates, divided by the cosine at the light. It stays in the second half of the distance.
+#[cold]
+pub fn before_its_surface(sample: LightSample, shape: &AreaShape, point: Vec3) -> LightSample {
+    let normal = match shape {
+        AreaShape::Rectangle { edges, .. } => edges.0.as_dvec3().cross(edges.1.as_dvec3()),
+        AreaShape::Disk(disk) => disk.normal.as_dvec3(),
+        // A ray ends at the near side of a sphere. Less than one in a million of the directions to it is so grazing.
+        AreaShape::Sphere(_) => return sample,
+    };
+    let cosine = normal.normalize_or_zero().as_vec3().dot(sample.direction).abs();
+    let reach = point.abs().max_element() + sample.distance;
+    let error = gamma(16) * reach / cosine;
+    LightSample { distance: (sample.distance - error).max(0.5 * sample.distance), ..sample }
 }
 
 /// The outline of an area light; `None` for point lights and directional lights.

@@ -2,8 +2,11 @@
 
 use crate::args::{Given, Misuse, Opt, names};
 use anyhow::{Result, anyhow};
+use raykata::film::ToneCurve;
 use raykata::scene::load::Limits;
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod};
+use raykata::scene::{
+    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter, TriangleMethod,
+};
 
 /// The number of threads that render, the same for all commands.
 pub struct Threads(u16);
@@ -47,6 +50,41 @@ impl Memory {
     }
 }
 
+/// How bright a picture file is, the same for all commands that write a picture of a scene.
+#[derive(Clone, Copy, Default)]
+pub struct ToneOptions {
+    exposure: Option<f32>,
+    curve: Option<ToneCurve>,
+}
+
+impl ToneOptions {
+    /// The options.
+    pub const OPTIONS: &[Opt] = &[
+        Opt::value(
+            "--exposure",
+            "STOPS",
+            "Of the PNG file: each stop doubles the light [default: the scene's, as for --tone].",
+        ),
+        Opt::value("--tone", "NAME", "How the PNG file shows light above 1.")
+            .choices(&names(&ToneCurve::ALL)),
+    ];
+
+    /// Reads the options.
+    pub fn read(given: &Given) -> Result<ToneOptions, Misuse> {
+        Ok(ToneOptions {
+            exposure: given.parsed("--exposure", parse_exposure)?,
+            curve: given.choice("--tone", &ToneCurve::ALL)?,
+        })
+    }
+
+    /// Sets the given options in the scene.
+    pub fn apply(self, scene: &mut Scene) {
+        let tone = &mut scene.film.tone;
+        tone.exposure = self.exposure.unwrap_or(tone.exposure);
+        tone.curve = self.curve.unwrap_or(tone.curve);
+    }
+}
+
 /// Parameters that trade accuracy for time. Those that are not given keep the value of the scene.
 #[derive(Default)]
 pub struct QualityOptions {
@@ -55,6 +93,7 @@ pub struct QualityOptions {
     sampler: Option<Sampler>,
     light_samples: Option<u32>,
     glossy_samples: Option<u32>,
+    texture_filter: Option<TextureFilter>,
     depth: Option<u32>,
     split: Option<Split>,
     leaf_size: Option<u32>,
@@ -130,6 +169,7 @@ impl QualityOptions {
         Opt::value("--sampler", "NAME", "Positions of the samples in a pixel.").choices(&names(&SAMPLERS)),
         Opt::value("--light-samples", "N", "Samples per area light and hit."),
         Opt::value("--glossy-samples", "N", "Rays per glossy reflection or refraction."),
+        Opt::value("--texture-filter", "NAME", "How images are read.").choices(&names(&TextureFilter::ALL)),
         Opt::value("--depth", "N", "The most reflections and refractions on a path."),
         Opt::value("--split", "NAME", "Split strategy of the hierarchy.").choices(&names(&SPLITS)),
         Opt::value("--leaf-size", "N", "The most primitives in a leaf."),
@@ -154,6 +194,7 @@ impl QualityOptions {
             sampler: given.choice("--sampler", &SAMPLERS)?,
             light_samples: given.number("--light-samples", 0..=65_536)?,
             glossy_samples: given.number("--glossy-samples", 1..=65_536)?,
+            texture_filter: given.choice("--texture-filter", &TextureFilter::ALL)?,
             depth: given.number("--depth", 0..=1000)?,
             split: given.choice("--split", &SPLITS)?,
             leaf_size: given.number("--leaf-size", 1..=u32::MAX)?,
@@ -188,6 +229,7 @@ impl QualityOptions {
         quality.sampler = self.sampler.unwrap_or(quality.sampler);
         quality.light_samples = self.light_samples.unwrap_or(quality.light_samples);
         quality.glossy_samples = self.glossy_samples.unwrap_or(quality.glossy_samples);
+        quality.texture_filter = self.texture_filter.unwrap_or(quality.texture_filter);
         quality.max_depth = self.depth.unwrap_or(quality.max_depth);
         quality.leaf_size = self.leaf_size.unwrap_or(quality.leaf_size);
         quality.split = self.split.unwrap_or(quality.split);
@@ -213,6 +255,7 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
             ("--sampler", named(serde_json::to_value(quality.sampler))),
             ("--light-samples", quality.light_samples.to_string()),
             ("--glossy-samples", quality.glossy_samples.to_string()),
+            ("--texture-filter", named(serde_json::to_value(quality.texture_filter))),
             ("--depth", quality.max_depth.to_string()),
             ("--min-contribution", quality.min_contribution.to_string()),
             ("--triangles", named(serde_json::to_value(quality.triangle_method))),
@@ -226,6 +269,11 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
     };
     let differ = values(own).into_iter().zip(values(wanted)).filter(|(own, wanted)| own != wanted);
     differ.map(|(_, (name, value))| format!(" {name} {value}")).collect()
+}
+
+fn parse_exposure(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops| (-100.0..=100.0).contains(stops));
+    stops.ok_or_else(|| "an exposure is a number of stops from -100 to 100, such as -0.5".into())
 }
 
 fn parse_share(text: &str) -> Result<f32, String> {
@@ -288,6 +336,7 @@ mod tests {
             sampler: Sampler::Jittered,
             light_samples: 7,
             glossy_samples: 3,
+            texture_filter: TextureFilter::Mipmap,
             max_depth: 9,
             min_contribution: 0.03,
             triangle_method: TriangleMethod::InsideByDirection,

@@ -2,7 +2,7 @@
 
 use crate::args::{Argument, Given, Misuse, Opt, Spec};
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{QualityOptions, Threads};
+use crate::quality_options::{QualityOptions, Threads, ToneOptions};
 use crate::report::{Bytes, FrameBar, Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result, bail};
 use raykata::film::{Film, encode_srgb};
@@ -26,6 +26,7 @@ pub static SPEC: Spec = Spec {
             Opt::flag("--no-counts", "Do not count rays and tests; a little faster."),
         ],
         QualityOptions::OPTIONS,
+        ToneOptions::OPTIONS,
     ],
 };
 
@@ -37,6 +38,7 @@ pub struct Options {
     threads: Threads,
     seed: u64,
     quality: QualityOptions,
+    tone: ToneOptions,
     normals: bool,
     no_counts: bool,
 }
@@ -51,6 +53,7 @@ impl Options {
             threads: Threads::read(given)?,
             seed: given.number("--seed", 0..=u64::MAX)?.unwrap_or(0),
             quality: QualityOptions::read(given)?,
+            tone: ToneOptions::read(given)?,
             normals: given.has("--normals"),
             no_counts: given.has("--no-counts"),
         })
@@ -82,6 +85,7 @@ fn format_of(file: &Path) -> Result<Format> {
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene, options.quality.limits())?;
     options.quality.apply(&mut scene)?;
+    options.tone.apply(&mut scene);
     let out = match &options.out {
         Some(out) => out.clone(),
         None => Path::new("out")
@@ -110,7 +114,12 @@ pub fn run(options: &Options) -> Result<()> {
 
     // Write the file, and print what the picture cost.
     let write = match format {
-        Format::Png => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
+        // Normals are no light, so they have no exposure.
+        Format::Png if options.normals => write_png(&rendering.film, &out, job.scene.film.encoding, &*kit),
+        Format::Png => {
+            let shown = rendering.film.toned(job.scene.film.tone);
+            write_png(&shown, &out, job.scene.film.encoding, &*kit)
+        }
         Format::Hdr => rendering.film.write_hdr(&out).map_err(Into::into),
         Format::Exr => write_exr(&rendering.film, &out),
     };

@@ -4,7 +4,7 @@
 use crate::args::{Argument, Given, Misuse, Opt, Spec, names, whole_number};
 use crate::caption;
 use crate::kits::{Choice, Need, Source, root};
-use crate::quality_options::{QualityOptions, SAMPLERS};
+use crate::quality_options::{QualityOptions, SAMPLERS, ToneOptions};
 use crate::render::write_png;
 use crate::report::{Thousands, load_scene, make_folder_of};
 use anyhow::{Context, Result};
@@ -37,6 +37,7 @@ pub static SPEC: Spec = Spec {
         ],
         Choice::OPTIONS,
         QualityOptions::OPTIONS,
+        ToneOptions::OPTIONS,
     ],
 };
 
@@ -46,6 +47,7 @@ pub struct Options {
     depths: Vec<u32>,
     samplers: Vec<Sampler>,
     quality: QualityOptions,
+    tone: ToneOptions,
     out: Option<PathBuf>,
     kit: Choice,
 }
@@ -63,6 +65,7 @@ impl Options {
             depths,
             samplers: given.choices("--samplers", &SAMPLERS)?,
             quality: QualityOptions::read(given)?,
+            tone: ToneOptions::read(given)?,
             out: given.path("--out"),
             kit: Choice::read(given)?,
         })
@@ -73,6 +76,7 @@ impl Options {
 pub fn run(options: &Options) -> Result<()> {
     let mut scene = load_scene(&options.scene, options.quality.limits())?;
     options.quality.apply(&mut scene)?;
+    options.tone.apply(&mut scene);
     let name = options.scene.file_stem().context("the scene has no name")?.to_string_lossy();
     let out = options.out.clone().unwrap_or_else(|| Path::new("out").join(format!("{name}-strip.png")));
     make_folder_of(&out)?;
@@ -98,7 +102,7 @@ pub fn run(options: &Options) -> Result<()> {
         paste(&rendering.film, &mut strip, left);
         caption::write(&mut strip, &what, [left, height], width);
     }
-    write_png(&strip, &out, scene.film.encoding, &*kit)
+    write_png(&strip.toned(scene.film.tone), &out, scene.film.encoding, &*kit)
         .with_context(|| format!("cannot write {}", out.display()))?;
     println!("{}", out.display());
     Ok(())

@@ -22,8 +22,9 @@ impl Default for Limits {
 const GIGABYTE: u64 = 1_000_000_000;
 /// Bytes per pixel of the film: the worker and the program have a film each, and a message is between them.
 const FILM_PIXEL: u64 = 28;
-/// Bytes per pixel of a texture: the program and the worker have one copy each, and a message is between them.
-const TEXTURE_PIXEL: u64 = 36;
+/// Bytes per pixel of a texture: the program and the worker have one copy each, and a message is between them. Smaller copies for
+/// filtering have a third of the pixels of one.
+const TEXTURE_PIXEL: u64 = 40;
 /// Bytes per triangle: vertices, primitive, normals, texture coordinates, and its part of an acceleration structure.
 const TRIANGLE: u64 = 200;
 

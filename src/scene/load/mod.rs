@@ -126,21 +126,22 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
             return Err(root.error("the scene lacks `[camera]`").help(help));
         }
     };
-    let environment = settings::environment(root.get("environment"))?;
     let quality = settings::quality(root.get("quality"))?;
 
     let (mut textures, texture_names) = textures::textures(root.get("textures"))?;
+    let environment = settings::environment(root.get("environment"), &mut textures)?;
     let mut materials = materials::materials(root.get("materials"), &texture_names)?;
     let (mut meshes, mesh_names) = meshes::meshes(root.get("meshes"), &mut materials, &mut textures)?;
     let lights = lights::lights(root.get("lights"))?;
     let (nodes, roots) = nodes::nodes(root.get("nodes"), &materials.names, &mesh_names, &mut meshes)?;
-    let scene = Scene {
+    let mut scene = Scene {
         film,
         camera,
         background: environment.background,
         ambient: environment.ambient,
         indirect_light: environment.indirect_light,
-        lights,
+        lights: lights.list.clone(),
+        visible_lights: Vec::new(),
         materials: materials.list,
         material_names: materials.list_names,
         textures,
@@ -151,5 +152,6 @@ pub fn parse_within(file: &Path, text: &str, limits: Limits) -> Result<Loaded, L
         quality,
         max_primitives: limits.triangles(),
     };
+    lights::show(&mut scene, &lights);
     Ok(Loaded { scene, warnings: source.warnings.take() })
 }

@@ -1,13 +1,16 @@
 //! The tables that occur at most once in a scene: `film`, `camera`, `environment` and `quality`.
 
 use super::reader::{Table, Value};
+use super::{files, textures};
 use crate::camera::{Camera, Lens, Shutter};
+use crate::film::ToneCurve;
 use crate::graph::Savings;
+use crate::material::{Texture, Wrap};
 use crate::partition::KdHeuristics;
 use crate::scene::error::LoadError;
 use crate::scene::{
-    Accelerator, ColorPlace, Encoding, FilmSettings, Precision, Quality, Sampler, SphereMethod, Split,
-    TriangleMethod,
+    Accelerator, Background, ColorPlace, Encoding, EnvironmentMap, FilmSettings, Gradient, GradientColor,
+    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
 
@@ -28,9 +31,9 @@ const MAX_GRID: u32 = 1024;
 /// The film of `[film]`, 640 by 360 pixels in sRGB where nothing else is given; fails if a value is out of
 /// range or the picture needs more memory than the limit.
 pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
-    let mut film = FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb };
+    let mut film = FilmSettings::default();
     let Some(value) = value else { return Ok(film) };
-    let table = value.table(&["width", "height", "encoding"])?;
+    let table = value.table(&["width", "height", "encoding", "exposure", "tone"])?;
     if let Some(width) = table.get("width") {
         film.width = width.whole(1..=MAX_SIDE)?;
     }
@@ -39,6 +42,13 @@ pub(super) fn film(value: Option<Value>) -> Result<FilmSettings, LoadError> {
     }
     if let Some(encoding) = table.get("encoding") {
         film.encoding = encoding.choice(&ENCODINGS)?;
+    }
+    if let Some(exposure) = table.get("exposure") {
+        film.tone.exposure =
+            exposure.number_that("from -100 to 100", |stops| (-100.0..=100.0).contains(&stops))?;
+    }
+    if let Some(curve) = table.get("tone") {
+        film.tone.curve = curve.choice(&ToneCurve::ALL)?;
     }
     value.source.budget.film(value, film.width, film.height)?;
     Ok(film)
@@ -130,10 +140,9 @@ fn shutter(value: Value) -> Result<Shutter, LoadError> {
 }
 
 /// Light that comes from no light source, from the table `[environment]`.
-#[derive(Default)]
 pub(super) struct Environment {
-    /// Linear radiance of rays that hit nothing, at least 0.
-    pub background: Vec3,
+    /// The radiance of rays that hit nothing.
+    pub background: Background,
     /// Ambient light of the Phong model in linear RGB, at least 0.
     pub ambient: Vec3,
     /// Whether light that bounces between surfaces is wanted.
@@ -141,26 +150,58 @@ pub(super) struct Environment {
 }
 
 /// The values of `[environment]`, black and `false` where nothing else is given; fails if one is of the wrong
-/// type or below 0.
-pub(super) fn environment(value: Option<Value>) -> Result<Environment, LoadError> {
-    let Some(value) = value else { return Ok(Environment::default()) };
-    let table = value.table(&["background", "ambient", "indirect_light"])?;
-    Ok(Environment {
-        background: table
-            .get("background")
-            .map_or(Ok(Vec3::ZERO), |color| color.color(ColorPlace::Background))?,
-        ambient: table
-            .get("ambient")
-            .map_or(Ok(Vec3::ZERO), |color| color.color(ColorPlace::AmbientLight))?,
-        indirect_light: table.get("indirect_light").map_or(Ok(false), |wanted| wanted.truth())?,
-    })
+/// type or below 0, or if the file of a background is missing or is not an image. The image of an environment map is
+/// added to `textures`.
+pub(super) fn environment(
+    value: Option<Value>,
+    textures: &mut Vec<Texture>,
+) -> Result<Environment, LoadError> {
+    let mut environment =
+        Environment { background: Background::Color(Vec3::ZERO), ambient: Vec3::ZERO, indirect_light: false };
+    let Some(value) = value else { return Ok(environment) };
+    for value in value.table(&["background", "ambient", "indirect_light"])?.values() {
+        match value.key {
+            "background" => environment.background = background(value, textures)?,
+            "ambient" => environment.ambient = value.color(ColorPlace::AmbientLight)?,
+            _ => environment.indirect_light = value.truth()?,
+        }
+    }
+    Ok(environment)
 }
 
-const QUALITY_KEYS: [&str; 16] = [
+/// A background: a colour, or a table with the colours of a gradient or with the file of an environment map.
+fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, LoadError> {
+    let Ok(table) = value.any_table() else {
+        return Ok(Background::Color(value.color(ColorPlace::Background)?));
+    };
+    if table.one_of(&["horizon", "file"])?.key == "horizon" {
+        let table = table.knowing(&["zenith", "horizon", "nadir"])?;
+        let color = |key: &str, place| {
+            table.get(key).map(|value| value.color(ColorPlace::Gradient(place))).transpose()
+        };
+        let horizon = color("horizon", GradientColor::Horizon)?.unwrap_or_default();
+        let zenith = table.need("zenith", "[0.2, 0.4, 0.8]")?;
+        let zenith = zenith.color(ColorPlace::Gradient(GradientColor::Zenith))?;
+        // Without a colour of its own the ground is that of the horizon, whose encoded bytes are kept for it as well.
+        let nadir = table.get("nadir").or(table.get("horizon"));
+        let nadir = nadir.map(|value| value.color(ColorPlace::Gradient(GradientColor::Nadir))).transpose()?;
+        return Ok(Background::Gradient(Gradient { zenith, horizon, nadir: nadir.unwrap_or(horizon) }));
+    }
+    let table = table.knowing(&["file", "rotation", "scale"])?;
+    let file = table.need("file", "\"sky.hdr\"")?;
+    let rotation = table.get("rotation").map_or(Ok(0.0), |degrees| degrees.number())?.to_radians();
+    let scale = table.get("scale").map_or(Ok(1.0), |scale| scale.not_negative())?;
+    let (image, _) = textures::read(&files::find(file)?, Wrap::Repeat, file)?;
+    textures.push(image);
+    Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
+}
+
+const QUALITY_KEYS: [&str; 17] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
     "glossy_samples",
+    "texture_filter",
     "max_depth",
     "min_contribution",
     "accelerator",
@@ -185,6 +226,9 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             "samples_per_pixel" => quality.samples_per_pixel = value.whole(1..=MAX_SAMPLES)?,
             "light_samples" => quality.light_samples = value.whole(0..=MAX_SAMPLES)?,
             "glossy_samples" => quality.glossy_samples = value.whole(1..=MAX_SAMPLES)?,
+            "texture_filter" => {
+                quality.texture_filter = value.choice(&TextureFilter::ALL)?;
+            }
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
             "accelerator" => {

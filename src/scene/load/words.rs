@@ -42,10 +42,10 @@ pub(super) fn one_line(text: &str) -> String {
     line
 }
 
-/// The names for a sentence, each between backticks: "`a`, `b`, `c`". After 16 names only the number of the
+/// The names for a sentence, each between backticks: "`a`, `b`, `c`". After 17 names only the number of the
 /// others is given.
 pub(super) fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> String {
-    const MOST: usize = 16; // the most keys that a table has; a scene may define hundreds of materials
+    const MOST: usize = 17; // the most keys that a table has; a scene may define hundreds of materials
     let mut names = names.into_iter();
     let shown: Vec<String> = names.by_ref().take(MOST).map(quoted).collect();
     match names.count() {
@@ -72,6 +72,6 @@ mod tests {
     fn a_name_stays_on_its_line() {
         assert_eq!(quoted("a\nb\u{1b}[31m"), "`a\\nb\\u{1b}[31m`");
         assert_eq!(quoted(&"é".repeat(61)), format!("`{}…`", "é".repeat(60)));
-        assert_eq!(listed(["a"; 18]).matches('a').count(), 16 + 1); // the `a` of "and"
+        assert_eq!(listed(["a"; 19]).matches('a').count(), 17 + 1); // the `a` of "and"
     }
 }

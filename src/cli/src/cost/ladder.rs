@@ -4,7 +4,9 @@ use super::called::Called;
 use super::setting::Setting;
 use crate::report::Thousands;
 use raykata::effects::Effect;
-use raykata::scene::{Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TriangleMethod};
+use raykata::scene::{
+    Accelerator, Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
+};
 use serde::Serialize;
 
 /// A parameter that trades accuracy for time.
@@ -23,6 +25,8 @@ pub enum Parameter {
     Depth,
     /// The weight below which rays are not traced.
     MinContribution,
+    /// How images are read.
+    TextureFilter,
     /// Whether normals are interpolated over triangles.
     SmoothNormals,
     /// The ray/triangle test.
@@ -65,13 +69,14 @@ pub const LEAST_DEPTH: u32 = 8;
 
 impl Parameter {
     /// All parameters by their names on the command line.
-    pub const NAMES: [(&str, Parameter); 14] = [
+    pub const NAMES: [(&str, Parameter); 15] = [
         ("samples", Parameter::Samples),
         ("sampler", Parameter::Sampler),
         ("light-samples", Parameter::LightSamples),
         ("glossy-samples", Parameter::GlossySamples),
         ("depth", Parameter::Depth),
         ("min-contribution", Parameter::MinContribution),
+        ("texture-filter", Parameter::TextureFilter),
         ("smooth-normals", Parameter::SmoothNormals),
         ("intersection", Parameter::Intersection),
         ("sphere-test", Parameter::SphereTest),
@@ -91,6 +96,7 @@ impl Parameter {
             Parameter::GlossySamples => "glossy samples",
             Parameter::Depth => "depth",
             Parameter::MinContribution => "minimum contribution",
+            Parameter::TextureFilter => "texture filter",
             Parameter::SmoothNormals => "smooth normals",
             Parameter::Intersection => "intersection",
             Parameter::SphereTest => "sphere test",
@@ -113,6 +119,7 @@ impl Parameter {
                 | Parameter::GlossySamples
                 | Parameter::Depth
                 | Parameter::MinContribution
+                | Parameter::TextureFilter
                 | Parameter::SmoothNormals
         )
     }
@@ -181,6 +188,13 @@ impl Parameter {
                     (min_contribution.to_string(), Quality { min_contribution, ..quality })
                 };
                 vec![ladder(least.into_iter().map(with).collect())]
+            }
+            Parameter::TextureFilter => {
+                needs(effects.calls_for(Effect::Textures), "no surface shows an image")?;
+                let with = |(name, texture_filter): (&str, _)| {
+                    (name.to_owned(), Quality { texture_filter, ..quality })
+                };
+                vec![ladder(TextureFilter::ALL.into_iter().map(with).collect())]
             }
             Parameter::SmoothNormals => {
                 needs(effects.calls_for(Effect::SmoothNormals), "no mesh has smooth normals")?;

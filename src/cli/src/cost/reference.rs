@@ -10,7 +10,7 @@ use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
 use raykata::film::{Film, write_atomically};
-use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split};
+use raykata::scene::{Accelerator, Quality, Sampler, Scene, Split, TextureFilter};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -47,6 +47,7 @@ pub fn converged(scene: &Scene) -> Scene {
         samples_per_pixel: BATCH,
         sampler: Sampler::LowDiscrepancy,
         light_samples: scene.quality.light_samples.max(1),
+        texture_filter: TextureFilter::Bilinear,
         max_depth: scene.quality.max_depth.max(LEAST_DEPTH),
         min_contribution: scene.quality.min_contribution.min(0.0003),
         accelerator: Accelerator::Bvh,

@@ -35,6 +35,7 @@ impl Setting {
             Parameter::GlossySamples => quality.glossy_samples = from.glossy_samples,
             Parameter::Depth => quality.max_depth = from.max_depth,
             Parameter::MinContribution => quality.min_contribution = from.min_contribution,
+            Parameter::TextureFilter => quality.texture_filter = from.texture_filter,
             Parameter::SmoothNormals => turned.smooth = to.smooth,
             Parameter::Intersection => quality.triangle_method = from.triangle_method,
             Parameter::SphereTest => quality.sphere_method = from.sphere_method,

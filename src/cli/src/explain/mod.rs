@@ -145,6 +145,9 @@ fn asked(explained: &Explained<'_>) {
             println!("  {effect:<14}  {}", wrapped(&why::list(&asking), REASON_COLUMN));
         }
     }
+    for (what, parts) in why::seen(scene, effects) {
+        println!("  {what:<14}  {}", wrapped(&parts, REASON_COLUMN));
+    }
     println!("\nnot simulated     because");
     for effect in Effect::ALL.into_iter().filter(|&effect| !effects.calls_for(effect)) {
         println!("  {effect:<14}  {}", wrapped(&why::not_asked(effect, scene), REASON_COLUMN));

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use raykata::effects::{Effect, Effects};
 use raykata::material::{AreaShape, Emitter, Fresnel, Light, Material};
-use raykata::scene::Scene;
+use raykata::scene::{Background, Scene, TextureFilter};
 use raykata::shape::Shape;
 
 /// The parts of `scene` that need `effect`, in words; none if the scene does not need it.
@@ -46,6 +46,32 @@ pub fn asked_by(effect: Effect, scene: &Scene, effects: &Effects) -> Vec<String>
         Effect::IndirectLight if effects.indirect_light => vec!["[environment]: indirect_light".into()],
         Effect::Motion | Effect::IndirectLight => Vec::new(),
     }
+}
+
+/// What changes the picture and costs no ray, each with its parts in words: surfaces that emit light, visible lights, a
+/// background of more than one colour, and filtered images.
+pub fn seen(scene: &Scene, effects: &Effects) -> Vec<(&'static str, String)> {
+    let of_light = |index: &usize| scene.visible_lights.iter().any(|light| light.material == *index);
+    let emitters = scene.emitters().into_iter().filter(|index| !of_light(index));
+    let emitters: Vec<String> = emitters.map(|index| material(scene, index)).collect();
+    let lights: Vec<String> =
+        scene.visible_lights.iter().map(|visible| light_name(scene, visible.light)).collect();
+    let background = match scene.background {
+        Background::Color(_) => None,
+        Background::Gradient(_) => Some("vertical gradient".to_owned()),
+        Background::Map(_) => Some("environment map, one image read per ray that hits nothing".to_owned()),
+    };
+    let filtered =
+        effects.calls_for(Effect::Textures) && scene.quality.texture_filter == TextureFilter::Mipmap;
+    let filter = filtered.then(|| "mip levels, 1 to 32 image reads per hit".to_owned());
+    let parts = [
+        ("emission", emitters),
+        ("visible lights", lights),
+        ("background", background.into_iter().collect()),
+        ("texture filter", filter.into_iter().collect()),
+    ];
+    let some = parts.into_iter().filter(|(_, parts)| !parts.is_empty());
+    some.map(|(what, parts)| (what, format!("{}; costs no ray", list(&parts)))).collect()
 }
 
 /// The reason why no part of `scene` needs `effect`.

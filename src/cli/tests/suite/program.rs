@@ -190,6 +190,53 @@ fn a_strip_shows_one_picture_a_depth() {
 }
 
 #[test]
+fn exposure_and_tone_curve_change_png_files_and_no_others() {
+    let out = tempfile::tempdir().expect("a folder");
+    let render = |name: &str, more: &[&str]| {
+        let file = out.path().join(name);
+        let path = file.to_string_lossy().into_owned();
+        let line = ["render", "scenes/stage4.toml", "--size", "24x18", "--out", &path];
+        let output = raykata(&[&line, more].concat());
+        assert!(output.status.success(), "{}", printed(&output).1);
+        std::fs::read(&file).expect("a picture")
+    };
+    let plain = render("plain.png", &[]);
+    assert_eq!(render("clamp.png", &["--tone", "clamp", "--exposure", "0"]), plain);
+    assert_ne!(render("stop.png", &["--exposure", "-1.5"]), plain);
+    assert_ne!(render("aces.png", &["--tone", "aces"]), plain);
+    let all = ["--tone", "reinhard", "--exposure", "2"];
+    assert_eq!(render("all.hdr", &all), render("plain.hdr", &[]));
+    // Normals are no light.
+    let normals = [&["--normals"][..], &all].concat();
+    assert_eq!(render("all.png", &normals), render("normals.png", &["--normals"]));
+    let output = raykata(&["render", "scenes/stage4.toml", "--exposure", "bright"]);
+    assert!(printed(&output).1.contains("an exposure is a number of stops from -100 to 100"));
+}
+
+#[test]
+fn light_that_is_seen_and_filtered_images_are_explained() {
+    let explain = |scene: &str| {
+        let output = raykata(&["explain", scene, "--size", "24x15", "--spp", "1", "--rounds", "1"]);
+        assert!(output.status.success(), "{}", printed(&output).1);
+        printed(&output).0
+    };
+    let said = explain("scenes/lamps.toml");
+    for line in [
+        "  emission        `neon` (neon tube); costs no ray",
+        "  visible lights  light 1 (sphere), light 2 (disk), light 3 (rectangle); costs",
+        "  background      vertical gradient; costs no ray",
+    ] {
+        assert!(said.contains(line), "no `{line}` in\n{said}");
+    }
+    let said = explain("scenes/tiles.toml");
+    assert!(
+        said.contains("  texture filter  mip levels, 1 to 32 image reads per hit; costs no ray"),
+        "{said}"
+    );
+    assert!(!said.contains("  emission"), "{said}");
+}
+
+#[test]
 fn a_scene_is_explained_and_predictions_hold() {
     let output =
         raykata(&["explain", "scenes/effects.toml", "--size", "24x15", "--spp", "2", "--rounds", "1"]);

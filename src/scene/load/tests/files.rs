@@ -2,9 +2,9 @@
 
 use super::CAMERA;
 use crate::material::{Material, Wrap};
-use crate::scene::Scene;
 use crate::scene::error::LoadError;
 use crate::scene::load::{Limits, Loaded, parse, parse_within};
+use crate::scene::{Background, EnvironmentMap, Scene};
 use glam::Vec3;
 use std::path::PathBuf;
 
@@ -75,6 +75,32 @@ fn finer_images_keep_their_fineness() {
     assert!((scene.textures[0].pixels[0] - Vec3::splat(0.214_053)).abs().max_element() < 1e-5);
     assert_eq!(scene.textures[1].pixels[0], Vec3::new(4.0, 0.5, 0.0)); // powers of two are exact in RGBE
     assert_eq!(scene.textures[1].wrap, Wrap::Clamp);
+}
+
+#[test]
+fn an_environment_map_is_an_image_around_the_scene() {
+    let folder = Folder::new("environment");
+    let bright = image::Rgb32FImage::from_pixel(2, 1, image::Rgb([4.0, 0.5, 0.0]));
+    bright.save(folder.path("sky.hdr")).expect("an image");
+    let scene = folder
+        .parse("[environment]\nbackground = { file = 'sky.hdr', rotation = 180, scale = 2 }")
+        .expect("a scene");
+    let map = EnvironmentMap { texture: 0, rotation: std::f32::consts::PI, scale: 2.0 };
+    assert_eq!(scene.background, Background::Map(map));
+    assert_eq!(scene.textures[0].pixels[..], [Vec3::new(4.0, 0.5, 0.0); 2]);
+
+    let (place, message, help) = trouble(folder.parse("environment.background.file = 'skyy.hdr'"));
+    assert_eq!((place, message.as_str()), (Some((2, 31)), "there is no file `skyy.hdr`"));
+    assert!(help.ends_with("did you mean `sky.hdr`?"), "{help}");
+    folder.write("broken.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 9 +X 9\n");
+    let (_, message, _) = trouble(folder.parse("environment.background.file = 'broken.hdr'"));
+    assert!(message.starts_with("cannot use `broken.hdr` as a texture: "), "{message}");
+    // The size of the image is known from its header; 4 GB are enough for 100 million pixels.
+    folder.write("large.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 20000 +X 40000\n");
+    let (_, message, _) = trouble(folder.parse("environment.background.file = 'large.hdr'"));
+    assert!(message.starts_with("an image of 40000 by 20000 pixels takes about 32.0 GB"), "{message}");
+    let (_, message, _) = trouble(folder.parse("environment.background = { file = 'sky.hdr', scale = -1 }"));
+    assert_eq!(message, "`scale` must be at least 0, but is -1");
 }
 
 #[test]
@@ -244,7 +270,7 @@ fn memory_is_bounded_before_it_is_allocated() {
     let (place, message, help) = refused("textures.wood.file = 'large.png'");
     assert_eq!(place, Some((3, 22)));
     assert!(
-        message.starts_with("an image of 1000 by 1000 pixels takes about 36.0 MB, and with"),
+        message.starts_with("an image of 1000 by 1000 pixels takes about 40.0 MB, and with"),
         "{message}"
     );
     assert_eq!(help, "make it smaller, or allow more memory: at least `--memory 1`");

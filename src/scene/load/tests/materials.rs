@@ -2,6 +2,7 @@
 
 use super::{check_refused_with, scene_with};
 use crate::material::{AreaShape, Emitter, Falloff, Light, Material};
+use crate::scene::VisibleLight;
 use crate::scene::load::parse;
 use crate::shape::{Disk, Sphere};
 use glam::Vec3;
@@ -97,6 +98,40 @@ fn lights_have_limits() {
         "point = { position = [0, 0, 0], falloff = 'linear' }",
         "3:43: unknown value of `falloff`: `linear`\nhelp: known names are `none`, `inverse_square`",
     );
+    light(
+        "point = { position = [0, 0, 0] }\nvisible = true",
+        "4:11: a point light has no surface that a ray could hit\nhelp: only area lights can be visible: delete the key",
+    );
+    light(
+        "area = { sphere = { center = [0, 0, 0], radius = 1e-20 }, falloff = 'inverse_square' }\nvisible = true",
+        "4:11: the light is so small or so strong that its radiance exceeds the largest number, 3.4e38\n\
+         help: make it larger, or its intensity lower",
+    );
+    light(
+        "area = { disk = { center = [3e38, 0, 0], normal = [0, 1, 0], radius = 2e38 } }\nvisible = true",
+        "3:8: the light exceeds the largest number, 3.4e38, so it cannot be visible",
+    );
+}
+
+#[test]
+fn a_visible_light_is_a_node_with_a_black_material_that_emits() {
+    let text = "[[lights]]\npoint = { position = [1, 2, 3] }\n\
+                [[lights]]\narea = { disk = { center = [0, 1, 0], normal = [0, 1, 0], radius = 2 }, \
+                falloff = 'inverse_square' }\nintensity = 8\ncolor = [1, 0.5, 0]\nvisible = true\n\
+                [[nodes]]\nname = 'one'\nshape = { sphere = { center = [0, 0, 0], radius = 1 } }\n";
+    let scene = scene_with(text);
+    assert_eq!(scene.visible_lights, [VisibleLight { light: 1, material: 1 }]);
+    assert_eq!((scene.roots.as_slice(), scene.nodes[1].material), ([0, 1].as_slice(), Some(1)));
+    assert_eq!(
+        scene.nodes[1].shape.as_ref().and_then(|shape| shape.bounds(&[])).map(|b| b.max.x > 1.9),
+        Some(true)
+    );
+    let material = &scene.materials[1];
+    assert_eq!((material.diffuse, material.ambient), (Vec3::ZERO, Vec3::ZERO));
+    assert!((material.emission - Vec3::new(2.0, 1.0, 0.0)).length() < 1e-6);
+    assert_eq!((scene.emitters(), scene.material_names[1].as_str()), (vec![1], "light 2"));
+    let hidden = scene_with(&text.replace("visible = true", ""));
+    assert!(hidden.visible_lights.is_empty() && hidden.nodes.len() == 1 && hidden.emitters().is_empty());
 }
 
 #[test]

@@ -24,6 +24,7 @@ diffuse = [0.8, 1e-1, 0x0]
 index_of_refraction = 1.5
 [[lights]]
 area = { rectangle = { corner = [0, 5, 0], edges = [[1, 0, 0], [0, 0, 1]] }, falloff = 'none' }
+visible = true
 [[lights]]
 directional = { direction = [0, -1, 0] }
 intensity = 2

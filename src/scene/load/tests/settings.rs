@@ -1,25 +1,29 @@
 //! Tests of `film`, `camera`, `environment` and `quality`.
 
-use super::{check_refused, check_refused_with, scene, scene_with};
+use super::{CAMERA, check_refused, check_refused_with, scene, scene as scene_from, scene_with};
 use crate::camera::{Lens, Shutter};
+use crate::film::{Tone, ToneCurve};
 use crate::graph::Savings;
 use crate::partition::KdHeuristics;
 use crate::scene::{
-    Accelerator, ColorPlace, Encoding, FilmSettings, MaterialColor, Precision, Quality, Sampler,
-    SphereMethod, Split, TriangleMethod,
+    Accelerator, Background, ColorPlace, Encoding, FilmSettings, Gradient, GradientColor, MaterialColor,
+    Precision, Quality, Sampler, SphereMethod, Split, TextureFilter, TriangleMethod,
 };
 use glam::Vec3;
 
 #[test]
 fn a_scene_of_only_a_camera_is_its_background() {
     let scene = scene_with("");
-    assert_eq!(scene.film, FilmSettings { width: 640, height: 360, encoding: Encoding::Srgb });
+    assert_eq!(scene.film, FilmSettings::default());
     assert_eq!(scene.camera.position, Vec3::new(0.0, 0.0, 5.0));
     assert_eq!(scene.camera.towards, Vec3::NEG_Z);
     assert_eq!(scene.camera.aspect, 640.0 / 360.0);
     assert_eq!(scene.camera.half_height, 20f32.to_radians().tan());
     assert_eq!((scene.camera.lens, scene.camera.shutter), (None, None));
-    assert_eq!((scene.background, scene.ambient, scene.indirect_light), (Vec3::ZERO, Vec3::ZERO, false));
+    assert_eq!(
+        (scene.background, scene.ambient, scene.indirect_light),
+        (Background::Color(Vec3::ZERO), Vec3::ZERO, false)
+    );
     assert_eq!(scene.material_names, ["default"]);
     assert_eq!(scene.quality, Quality::default());
     assert!(scene.nodes.is_empty() && scene.roots.is_empty() && scene.lights.is_empty());
@@ -28,27 +32,30 @@ fn a_scene_of_only_a_camera_is_its_background() {
 #[test]
 fn every_setting_arrives() {
     let scene = scene(
-        "[film]\nwidth = 0x20\nheight = 16\nencoding = 'gamma2'\n\
+        "[film]\nwidth = 0x20\nheight = 16\nencoding = 'gamma2'\nexposure = -1.5\ntone = 'aces'\n\
          [camera]\nposition = [1, 0, 0]\ndirection = [3, 0, 0]\nup = [0, 0, 2]\nvertical_fov = 90\n\
          lens = { aperture = 0.1, focal_distance = 5 }\nshutter = { open = 0.25 }\n\
          [environment]\nbackground = [0, 0.5, 2]\nambient = 0.25\nindirect_light = true\n\
-         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\nmax_depth = 0\n\
+         [quality]\nsamples_per_pixel = 9\nlight_samples = 8\nglossy_samples = 7\ntexture_filter = 'mipmap'\nmax_depth = 0\n\
          min_contribution = 0\naccelerator = 'kd_tree'\nsplit = 'object_median'\nleaf_size = 1\ncopies = true\nsavings = { skip = false }\nkd_heuristics = { stop_at_overlap = false }\n\
          triangle_method = 'inside_by_areas'\nsphere_method = 'geometric'\ngrid_resolution = 3\n\
          sampler = 'jittered'\nprecision = 'double'\n",
     );
-    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2 });
+    let tone = Tone { exposure: -1.5, curve: ToneCurve::Aces };
+    assert_eq!(scene.film, FilmSettings { width: 32, height: 16, encoding: Encoding::Gamma2, tone });
     assert_eq!((scene.camera.towards, scene.camera.up), (Vec3::X, Vec3::Z));
     assert_eq!((scene.camera.half_height, scene.camera.aspect), (1.0, 2.0));
     assert_eq!(scene.camera.lens, Some(Lens { aperture: 0.1, focal_distance: 5.0 }));
     assert_eq!(scene.camera.shutter, Some(Shutter { open: 0.25, close: 1.0 }));
-    assert_eq!((scene.background, scene.ambient), (Vec3::new(0.0, 0.5, 2.0), Vec3::splat(0.25)));
+    assert_eq!(scene.background, Background::Color(Vec3::new(0.0, 0.5, 2.0)));
+    assert_eq!(scene.ambient, Vec3::splat(0.25));
     assert!(scene.indirect_light);
     let expected = Quality {
         samples_per_pixel: 9,
         sampler: Sampler::Jittered,
         light_samples: 8,
         glossy_samples: 7,
+        texture_filter: TextureFilter::Mipmap,
         max_depth: 0,
         min_contribution: 0.0,
         accelerator: Accelerator::KdTree,
@@ -206,6 +213,59 @@ fn an_environment_has_colours() {
 }
 
 #[test]
+fn a_film_has_an_exposure_and_a_tone_curve() {
+    assert_eq!(scene_with("[film]\ntone = 'reinhard'").film.tone.curve, ToneCurve::Reinhard);
+    check_refused_with(
+        "[film]\nexposure = 101",
+        "s.toml:3:12: `exposure` must be from -100 to 100, but is 101",
+    );
+    check_refused_with(
+        "[film]\ntone = 'filmic'",
+        "s.toml:3:8: unknown value of `tone`: `filmic`\nhelp: known names are `clamp`, `reinhard`, `aces`",
+    );
+}
+
+#[test]
+fn a_background_can_be_a_gradient() {
+    let scene = scene_with("[environment]\nbackground = { zenith = [0, 0, 1], horizon = 0.5, nadir = 0.25 }");
+    let gradient = Gradient { zenith: Vec3::Z, horizon: Vec3::splat(0.5), nadir: Vec3::splat(0.25) };
+    assert_eq!(scene.background, Background::Gradient(gradient));
+    // Without a nadir, the ground is as the horizon, also its encoded bytes.
+    let text = format!(
+        "color_encoding = 'gamma2'\n{CAMERA}[environment]\nbackground = {{ zenith = 0, horizon = '#ff0000' }}"
+    );
+    let mut scene = scene_from(&text);
+    assert_eq!(
+        scene.background,
+        Background::Gradient(Gradient { zenith: Vec3::ZERO, horizon: Vec3::X, nadir: Vec3::X })
+    );
+    let place = ColorPlace::Gradient;
+    assert_eq!(
+        scene.gamma2.colors,
+        [(place(GradientColor::Horizon), [255, 0, 0]), (place(GradientColor::Nadir), [255, 0, 0])]
+    );
+    *scene.color_mut(place(GradientColor::Zenith)).expect("a gradient") = Vec3::Y;
+    assert!(matches!(scene.background, Background::Gradient(Gradient { zenith: Vec3::Y, .. })));
+    assert_eq!(scene.color_mut(ColorPlace::Background), None);
+    check_refused_with(
+        "[environment]\nbackground = { zenith = 1 }",
+        "s.toml:3:14: `background` needs one of `horizon`, `file`, but has none",
+    );
+    check_refused_with(
+        "[environment]\nbackground = { horizon = 1 }",
+        "s.toml:3:14: `background` lacks `zenith`\nhelp: add it, for example `zenith = [0.2, 0.4, 0.8]`",
+    );
+    check_refused_with(
+        "[environment]\nbackground = { horizon = 1, zenith = -1 }",
+        "s.toml:3:38: `zenith` must be at least 0, but is -1",
+    );
+    check_refused_with(
+        "[environment]\nbackground = { file = 'sky.hdr', horizon = 1 }",
+        "s.toml:3:16: `background` has both `horizon` and `file`\nhelp: delete one of the two",
+    );
+}
+
+#[test]
 fn the_horizontal_field_of_view_is_that_of_the_wider_side() {
     let camera = |size: &str, angle: &str| {
         scene(&format!("[film]\n{size}\n[camera]\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{angle}")).camera
@@ -241,7 +301,8 @@ fn colours_as_text_are_decoded() {
                 [materials.paint]\ndiffuse = '#FFFFFF'\nmirror = 0.5";
     // 128 is 0.2159 of full light by the sRGB curve.
     let srgb = scene(rest);
-    assert!((srgb.background - Vec3::new(1.0, 0.0, 0.2159)).length() < 1e-4);
+    let Background::Color(background) = srgb.background else { panic!("one colour") };
+    assert!((background - Vec3::new(1.0, 0.0, 0.2159)).length() < 1e-4);
     assert_eq!(srgb.materials[1].ambient, Vec3::ONE);
     assert!(srgb.gamma2.is_empty());
     // A frame decodes gamma 2; the loader keeps the bytes, also those of the ambient colour that follows from `diffuse`.

@@ -11,7 +11,7 @@ use raykata::material::{Fresnel, Material};
 use raykata::scene::{FilmSettings, Quality, Scene};
 
 fn film(width: u32, height: u32) -> FilmSettings {
-    FilmSettings { width, height, encoding: Default::default() }
+    FilmSettings { width, height, ..FilmSettings::default() }
 }
 
 /// A scene with one material besides the default one, and its effects.
