@@ -8,6 +8,7 @@ mod digits;
 mod distribution;
 mod edges;
 mod frames;
+mod heckbert;
 mod instances;
 mod leaks;
 mod light;
