@@ -179,7 +179,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
         // Look up the colour of the image at the hit, or around it.
         let uv = texture_coordinates::<F>(world, self.looks.tests, &path.ray, hit, at.surface.point);
         let color = match &self.pyramids {
-            Some(pyramids) => self.filtered_color(pyramids, texture, uv, path, hit, at, tally),
+            Some(pyramids) => self.filtered_color(pyramids, (texture, uv), path, hit, at, tally),
             None => {
                 tally.note(Event::TextureRead);
                 F::texture_color(&world.textures[texture], uv)
@@ -189,14 +189,12 @@ impl<F: StudentFunctions> Frame<'_, F> {
         Cow::Owned(Material { ambient, diffuse, ..material.clone() })
     }
 
-    /// The mean colour of the image `texture` over the part of the surface that the cone of `path` covers.
+    /// The mean colour of the image `texture` around `uv`, over the part of the surface that the cone of `path` covers.
     #[cold]
-    #[allow(clippy::too_many_arguments)]
     fn filtered_color<T: Tally>(
         &self,
         pyramids: &Pyramids,
-        texture: usize,
-        uv: Vec2,
+        (texture, uv): (usize, Vec2),
         path: &Path,
         hit: &Hit,
         at: &SurfaceInteraction,

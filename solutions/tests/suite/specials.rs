@@ -1,11 +1,14 @@
 //! Zeros of both signs, denormal numbers and the largest numbers everywhere in a scene: each scene is refused
 //! with an error that names the place, or is rendered without NaN.
 
+use glam::Vec3;
 use oracle::splitmix::Random;
 use raykata::frame::Unwatched;
 use raykata::kit::{RenderJob, StudentKit, View};
+use raykata::material::{Texture, Wrap};
 use raykata::scene::{Accelerator, load};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Ordinary numbers, which are the most frequent, so that many scenes can be rendered.
 const ORDINARY: [&str; 6] = ["0.5", "-1.0", "2.0", "0.25", "1.0", "-0.125"];
@@ -24,10 +27,11 @@ look_at = [0, 0, 0]
 lens = { aperture = 0.01, focal_distance = 5.0 }
 shutter = { open = 0, close = 1 }
 [environment]
-background = 0.2
+background = { zenith = 0.2, horizon = 0.4 }
 ambient = 0.1
 [quality]
 samples_per_pixel = 2
+texture_filter = "mipmap"
 max_depth = 3
 [materials.glass]
 diffuse = 0.2
@@ -39,10 +43,15 @@ roughness = 0.2
 diffuse = [0.5, 0.4, 0.3]
 specular = 0.3
 exponent = 20
+emission = 0.1
 [[lights]]
 point = { position = [#, 5.0, #] }
 [[lights]]
 area = { sphere = { center = [#, 4.0, #], radius = 0.5 } }
+visible = true
+[[lights]]
+area = { rectangle = { corner = [#, 4.0, #], edges = [[1.0, 0.0, #], [0.0, 0.5, 1.0]] } }
+visible = true
 [[nodes]]
 material = "glass"
 shape = { sphere = { center = [#, #, #], radius = # } }
@@ -83,6 +92,8 @@ fn fill(random: &mut Random, rate: f32) -> String {
 
 #[test]
 fn numbers_that_break_formulas_break_no_picture() {
+    let pixels = Arc::new((0..64).map(|index| Vec3::splat((index % 7) as f32)).collect());
+    let image = Texture { width: 8, height: 8, pixels, wrap: Wrap::Mirror };
     let (mut rendered, mut refused) = (0, 0);
     for n in 0..4000 {
         let mut random = Random::new(79, n);
@@ -96,6 +107,9 @@ fn numbers_that_break_formulas_break_no_picture() {
                 continue;
             }
         };
+        // Show an image on every shape.
+        scene.textures.push(image.clone());
+        scene.materials.iter_mut().for_each(|material| material.texture = Some(0));
         for accelerator in [Accelerator::Bvh, Accelerator::BruteForce] {
             scene.quality.accelerator = accelerator;
             let job =

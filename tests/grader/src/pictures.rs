@@ -7,7 +7,7 @@ use raykata::frame::Unwatched;
 use raykata::kit::{Kit, RenderJob, Rendering, TracedRay, View, kit_error};
 use raykata::material::Fresnel;
 use raykata::scene::{
-    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TriangleMethod, load,
+    Accelerator, Precision, Quality, Sampler, Scene, SphereMethod, Split, TextureFilter, TriangleMethod, load,
 };
 use sha2::{Digest, Sha256};
 use std::fmt;
@@ -155,6 +155,7 @@ fn turn_each_parameter(scene: &Scene) -> Vec<(String, Scene)> {
         with("lights from the middle", &|quality| quality.light_samples = 0),
         with("three samples per light", &|quality| quality.light_samples = 3),
         with("three glossy rays", &|quality| quality.glossy_samples = 3),
+        with("filtered images", &|quality| quality.texture_filter = TextureFilter::Mipmap),
         with("one Gaussian sample", &|quality| {
             (quality.sampler, quality.samples_per_pixel) = (Sampler::Gaussian, 1);
         }),
