@@ -220,7 +220,7 @@ fn light_that_is_seen_and_filtered_images_are_explained() {
         assert!(output.status.success(), "{}", printed(&output).1);
         printed(&output).0
     };
-    let said = explain("scenes/lamps.toml");
+    let said = explain("scenes/visible_lights.toml");
     for line in [
         "  emission        `neon` (neon tube); costs no ray",
         "  visible lights  light 1 (sphere), light 2 (disk), light 3 (rectangle); costs",
