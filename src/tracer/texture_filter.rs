@@ -300,9 +300,10 @@ mod tests {
 
     #[test]
     fn a_cone_widens_with_the_distance_and_on_curved_mirrors() {
-        let cone = Cone { width: 0.0, spread: 0.01 };
-        assert_eq!(cone.width_at(10.0), 0.1);
-        assert_eq!(cone.beyond(10.0, 0.0, 2.0), Cone { width: 0.1, spread: 0.01 });
-        assert_eq!(cone.beyond(10.0, 0.5, 2.0), Cone { width: 0.1, spread: 0.11 });
+        // Powers of two, so that no product is rounded.
+        let cone = Cone { width: 0.0, spread: 0.0625 };
+        assert_eq!(cone.width_at(8.0), 0.5);
+        assert_eq!(cone.beyond(8.0, 0.0, 2.0), Cone { width: 0.5, spread: 0.0625 });
+        assert_eq!(cone.beyond(8.0, 0.5, 2.0), Cone { width: 0.5, spread: 0.5625 });
     }
 }
