@@ -28,7 +28,9 @@ const STRATA: u32 = 4096;
 pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
     // The largest channel is at least 1/64, so that at least 64 of the random numbers survive.
     let largest = prop_oneof![3 => (1..64i32).prop_map(|n| n as f32 / 64.0), 1 => 0.02..0.99f32];
-    trial.forall(24, (weight(largest), 3..20u32), |cases| {
+    // Roulette begins at bounce 3.
+    let first = [(Vec3::new(0.25, 0.5, 0.125), 3), (Vec3::new(0.75, 0.5, 0.875), 3)];
+    trial.forall_and(&first, 24, (weight(largest), 3..20u32), |cases| {
         let query = |(weight, bounce): &(Vec3, u32)| {
             let (weight, bounce) = (*weight, *bounce);
             (0..STRATA).map(move |index| RouletteQuery {
@@ -74,6 +76,10 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
     let average = f64::from(weight.element_sum()) / 3.0;
     Err(Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
         (factors.iter().any(|factor| factor.is_nan()), "you return NaN"),
+        (
+            share == 1.0 && near(mean, 1.0) && bounce == 3,
+            "your roulette begins too late: it begins at bounce 3",
+        ),
         (share == 1.0 && near(mean, 1.0), "no path ever ends"),
         (share == 0.0, "no path survives"),
         (

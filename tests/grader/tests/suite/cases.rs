@@ -1,4 +1,4 @@
-//! Tests the catalogue of hard cases: there are 94, each with an existing check or test, or with a stage that does not
+//! Tests the catalogue of hard cases: there are 95, each with an existing check or test, or with a stage that does not
 //! exist yet.
 
 use grader::cases::read;
