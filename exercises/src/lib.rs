@@ -1,6 +1,7 @@
 //! A ray tracer, stage by stage: one module per exercise file. The macro call below connects the modules with the kit.
 
 pub mod stage10_stability;
+pub mod stage11_light_transport;
 pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_boxes;

@@ -5,6 +5,7 @@ use super::*;
 use crate::aabb::Aabb;
 use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef};
 use crate::effects::{Effects, LightEffects, MaterialEffects};
+use crate::emitter::EmitterSample;
 use crate::frame::Watch;
 use crate::graph::Placement;
 use crate::mesh::Mesh;
@@ -43,6 +44,7 @@ pub trait Kit:
     + SceneGraph
     + Partitions
     + Stability
+    + LightTransport
     + Frames
     + Sync
 {
@@ -58,6 +60,7 @@ impl<T> Kit for T where
         + SceneGraph
         + Partitions
         + Stability
+        + LightTransport
         + Frames
         + Sync
 {

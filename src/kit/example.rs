@@ -193,4 +193,12 @@ examples! {
     CachedQuery => CachedQuery { last: None, ray: example(), hits: Vec::new(), entries: Vec::new() };
     PacketQuery => PacketQuery { bvh: Bvh::default(), rays: Vec::new(), tables: Vec::new() };
     OffsetQuery => OffsetQuery { point: Vec3::ZERO, error: Vec3::ZERO, normal: Vec3::Z, direction: Vec3::Z };
+    AreaEmitter => AreaEmitter { shape: EmitterShape::Sphere(example()), radiance: Vec3::ONE, two_sided: false };
+    EmitterQuery => EmitterQuery { emitter: example(), from: Vec3::new(0.0, 0.0, 9.0), u: Vec2::splat(0.5) };
+    EmitterPdfQuery => EmitterPdfQuery {
+        emitter: example(),
+        from: Vec3::new(0.0, 0.0, 9.0),
+        direction: Vec3::NEG_Z,
+    };
+    RouletteQuery => RouletteQuery { weight: Vec3::ONE, bounce: 0, u: 0.5 };
 }

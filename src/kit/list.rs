@@ -667,6 +667,49 @@ macro_rules! student_functions {
                     = stage10_stability::sphere_in_double;
                 |q: SphereQuery| -> Option<f32> { F::sphere_in_double(&q.ray, q.sphere.center, q.sphere.radius) }
             }
+
+            /// Stage 11: light transport by path tracing. Each function gives one answer per query, in the same
+            /// order, and panics if the student's function does. Random numbers come as arguments, `0 <= u < 1`.
+            11 trait LightTransport {
+                /// A unit direction on the side of the unit normal, with the density `cos θ / π` per steradian
+                /// (cosine-weighted hemisphere sampling).
+                CosineDirection fn cosine_direction(normal: Vec3, u: Vec2) -> Vec3
+                    = stage11_light_transport::cosine_direction;
+                |(normal, u): (Vec3, Vec2)| -> Vec3 { F::cosine_direction(*normal, *u) }
+                /// The density per steradian with which `cosine_direction` samples a unit direction; 0 below the
+                /// surface.
+                CosinePdf fn cosine_pdf(normal: Vec3, direction: Vec3) -> f32
+                    = stage11_light_transport::cosine_pdf;
+                |(normal, direction): (Vec3, Vec3)| -> f32 { F::cosine_pdf(*normal, *direction) }
+                /// A random point of an emitter as seen from `from`; `None` if the emitter sends no light there.
+                SampleLight fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<EmitterSample>
+                    = stage11_light_transport::sample_light;
+                |q: EmitterQuery| -> Option<EmitterSample> { F::sample_light(&q.emitter, q.from, q.u) }
+                /// The density per steradian with which `sample_light` samples a unit direction; 0 for directions
+                /// that it does not sample.
+                LightPdf fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32
+                    = stage11_light_transport::light_pdf;
+                |q: EmitterPdfQuery| -> f32 { F::light_pdf(&q.emitter, q.from, q.direction) }
+                /// The weight of a sample that was taken with density `own`, where another technique takes it with
+                /// density `other` (multiple importance sampling); `0..=1`.
+                MisWeight fn mis_weight(own: f32, other: f32) -> f32
+                    = stage11_light_transport::mis_weight;
+                |(own, other): (f32, f32)| -> f32 { F::mis_weight(*own, *other) }
+                /// The factor by which Russian roulette multiplies the weight of a path: 0 if the path ends here.
+                Survives fn survives(weight: Vec3, bounce: u32, u: f32) -> f32
+                    = stage11_light_transport::survives;
+                |q: RouletteQuery| -> f32 { F::survives(q.weight, q.bounce, q.u) }
+                /// The fraction of the light in a closed room of this albedo that paths with at most `bounces`
+                /// bounces miss; both are in `0..=1`.
+                CutOff fn cut_off(albedo: f32, bounces: u32) -> f32
+                    = stage11_light_transport::cut_off;
+                |(albedo, bounces): (f32, u32)| -> f32 { F::cut_off(*albedo, *bounces) }
+                /// The smallest number of bounces for which `cut_off` is at most `error`; `u32::MAX` if no number
+                /// is enough.
+                BouncesForError fn bounces_for_error(albedo: f32, error: f32) -> u32
+                    = stage11_light_transport::bounces_for_error;
+                |(albedo, error): (f32, f32)| -> u32 { F::bounces_for_error(*albedo, *error) }
+            }
         }
     };
 }

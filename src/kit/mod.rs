@@ -12,6 +12,7 @@ mod effects_analysis;
 mod example;
 mod functions;
 pub mod kit_error;
+mod light_transport;
 mod list;
 mod partitions;
 pub mod questions;
@@ -32,8 +33,8 @@ pub use distribution::{
     FILTER_RADIUS, LensQuery, PhongLobeQuery, RectangleQuery, SphereSampleQuery, TimeQuery, WeightedColor,
 };
 pub use door::{
-    Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, Partitions, Recursion, Request,
-    SceneGraph, Shading, Shapes, Stability, Transport, Triangles,
+    Answer, Distribution, Door, EffectsAnalysis, Frames, Hierarchies, Kit, LightTransport, Partitions,
+    Recursion, Request, SceneGraph, Shading, Shapes, Stability, Transport, Triangles,
 };
 pub use effects_analysis::{
     BoundQuery, HitsQuery, LightQuery, MaterialHits, MaterialQuery, RayCounts, TexelQuery, TextureQuery,
@@ -43,6 +44,7 @@ pub use functions::Running;
 pub(crate) use functions::note_unwound;
 pub use functions::{Function, StudentFunctions, is_written, take_unwound};
 pub use kit_error::KitError;
+pub use light_transport::{EmitterPdfQuery, EmitterQuery, RouletteQuery};
 pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,

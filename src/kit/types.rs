@@ -5,6 +5,7 @@ pub use crate::aabb::Aabb;
 pub use crate::bvh::{Bvh, PrimitiveHit, PrimitiveRef, Probe};
 pub use crate::camera::{Camera, Lens, Shutter};
 pub use crate::effects::{Effects, LightEffects, MaterialEffects};
+pub use crate::emitter::{AreaEmitter, EmitterSample, EmitterShape};
 pub use crate::graph::{ChildCache, Graph, Placement, Savings};
 pub use crate::material::{Light, Material, Texture, Wrap};
 pub use crate::mesh::Mesh;

@@ -1,4 +1,4 @@
-//! Calibrates the statistical checks of stage 6. Each check runs with many seeds on the reference, which it
+//! Calibrates the statistical checks of stages 6 and 11. Each check runs with many seeds on the reference, which it
 //! may reject once in 10 million tests, and on wrong distributions, each of which it must reject with 99 % of
 //! the seeds.
 //!
@@ -8,8 +8,12 @@
 use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
 use glam::{Vec2, Vec3, vec2};
+use raykata::emitter::{EmitterSample, EmitterShape};
 use raykata::frame::Watch;
-use raykata::kit::{Answer, Door, Kit, PhongLobeQuery, Request, SphereSampleQuery, StudentKit, Transport};
+use raykata::kit::{
+    Answer, Door, EmitterQuery, Kit, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery, StudentKit,
+    Transport,
+};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -22,7 +26,7 @@ fn seeds() -> u64 {
 const CAUGHT: u64 = 99;
 
 /// The statistical checks, and how many chi-square and t-tests each makes.
-const STATISTICAL: [(&str, u32); 11] = [
+const STATISTICAL: [(&str, u32); 16] = [
     ("jittered_samples_cover_the_pixel_evenly", 2),
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
@@ -34,6 +38,11 @@ const STATISTICAL: [(&str, u32); 11] = [
     ("phong_lobe_falls_with_the_power_of_the_cosine", 6),
     ("slightly_rough_is_not_a_few_angles", 1),
     ("times_are_even", 1),
+    ("cosine_directions_have_their_density", 4),
+    ("light_samples_have_their_density", 3),
+    ("polygon_lights_give_lamberts_irradiance", 4),
+    ("sphere_lights_give_their_irradiance", 2),
+    ("paths_in_an_integrating_sphere_find_its_light", 1),
 ];
 
 /// The reference, except for the answers of one function.
@@ -46,7 +55,8 @@ impl Transport for Twisted {
 }
 
 fn check(name: &str) -> &'static Check {
-    stage6_checks::CHECKS.iter().find(|check| check.name == name).expect("a check of stage 6")
+    let mut checks = stage6_checks::CHECKS.iter().chain(stage11_checks::CHECKS);
+    checks.find(|check| check.name == name).expect("a check of stage 6 or 11")
 }
 
 /// The seeds with which `check` rejects `kit`.
@@ -154,6 +164,50 @@ fn times(request: &Request, place: fn(f32) -> f32) -> Option<Answer> {
     })))
 }
 
+/// Directions on the side of a normal, from a function that gives the cosine and may give too few turns.
+fn hemisphere(request: &Request, place: fn(Vec2) -> (f32, f32)) -> Option<Answer> {
+    let Request::CosineDirection(queries) = request else { return None };
+    Some(Answer::CosineDirection(each(queries, |(normal, u)| {
+        let (cosine, turn) = place(*u);
+        around(*normal, cosine, turn)
+    })))
+}
+
+/// The reference's samples of light with other random numbers, and with a density that is changed.
+fn light(
+    request: &Request,
+    place: fn(Vec2) -> Vec2,
+    pdf: fn(&EmitterQuery, &EmitterSample) -> f32,
+) -> Option<Answer> {
+    let Request::SampleLight(queries) = request else { return None };
+    Some(Answer::SampleLight(each(queries, |query| {
+        let u = place(query.u).clamp(Vec2::ZERO, Vec2::splat(1.0 - f32::EPSILON / 2.0));
+        let sample = solutions::stage11_light_transport::sample_light(&query.emitter, query.from, u)?;
+        Some(EmitterSample { pdf: pdf(query, &sample), ..sample })
+    })))
+}
+
+/// The factor of Russian roulette by another rule.
+fn roulette(request: &Request, factor: fn(&RouletteQuery) -> f32) -> Option<Answer> {
+    let Request::Survives(queries) = request else { return None };
+    Some(Answer::Survives(each(queries, factor)))
+}
+
+fn right_roulette(query: &RouletteQuery) -> f32 {
+    solutions::stage11_light_transport::survives(query.weight, query.bounce, query.u)
+}
+
+/// The area of a flat emitter; 1 for a sphere.
+fn area(shape: &EmitterShape) -> f32 {
+    match shape {
+        EmitterShape::Parallelogram { edges, .. } => edges.0.cross(edges.1).length(),
+        EmitterShape::Triangle(triangle) => {
+            0.5 * (triangle.b - triangle.a).cross(triangle.c - triangle.a).length()
+        }
+        EmitterShape::Sphere(_) => 1.0,
+    }
+}
+
 /// The mistake, the check that must reject it, and the wrong answers.
 type Wrong = (&'static str, &'static str, fn(&Request) -> Option<Answer>);
 
@@ -245,6 +299,58 @@ const WRONG: &[Wrong] = &[
     }),
     ("time: u² in each slot", "times_are_even", |r| times(r, |u| u * u)),
     ("time: always the middle of the slot", "times_are_even", |r| times(r, |_| 0.5)),
+    ("hemisphere: uniform", "cosine_directions_have_their_density", |r| hemisphere(r, |u| (u.x, u.y))),
+    ("hemisphere: θ even", "cosine_directions_have_their_density", |r| {
+        hemisphere(r, |u| ((0.5 * PI * u.x).cos(), u.y))
+    }),
+    ("hemisphere: cos^1.2 in place of cos", "cosine_directions_have_their_density", |r| {
+        hemisphere(r, |u| (u.x.powf(1.0 / 2.2), u.y))
+    }),
+    ("hemisphere: half a turn", "cosine_directions_have_their_density", |r| {
+        hemisphere(r, |u| (u.x.sqrt(), 0.5 * u.y))
+    }),
+    ("hemisphere: one u for both", "cosine_directions_have_their_density", |r| {
+        hemisphere(r, |u| (u.x.sqrt(), u.x))
+    }),
+    ("integrating sphere: uniform directions", "paths_in_an_integrating_sphere_find_its_light", |r| {
+        hemisphere(r, |u| (u.x, u.y))
+    }),
+    ("integrating sphere: θ even", "paths_in_an_integrating_sphere_find_its_light", |r| {
+        hemisphere(r, |u| ((0.5 * PI * u.x).cos(), u.y))
+    }),
+    ("integrating sphere: roulette without division", "paths_in_an_integrating_sphere_find_its_light", |r| {
+        roulette(r, |query| right_roulette(query).min(1.0))
+    }),
+    ("integrating sphere: stops after 5 bounces", "paths_in_an_integrating_sphere_find_its_light", |r| {
+        roulette(r, |query| if query.bounce > 5 { 0.0 } else { right_roulette(query) })
+    }),
+    ("light: u² along an edge", "light_samples_have_their_density", |r| {
+        light(r, |u| vec2(u.x * u.x, u.y), |_, sample| sample.pdf)
+    }),
+    ("light: u^1.1 along an edge", "light_samples_have_their_density", |r| {
+        light(r, |u| vec2(u.x.powf(1.1), u.y), |_, sample| sample.pdf)
+    }),
+    ("light: one u for both", "light_samples_have_their_density", |r| {
+        light(r, |u| vec2(u.x, u.x), |_, sample| sample.pdf)
+    }),
+    ("light: half of it", "light_samples_have_their_density", |r| {
+        light(r, |u| vec2(u.x, 0.5 * u.y), |_, sample| sample.pdf)
+    }),
+    ("polygon light: density per area", "polygon_lights_give_lamberts_irradiance", |r| {
+        light(r, |u| u, |query, _| 1.0 / area(&query.emitter.shape))
+    }),
+    ("polygon light: distance not squared", "polygon_lights_give_lamberts_irradiance", |r| {
+        light(r, |u| u, |_, sample| sample.pdf / sample.distance)
+    }),
+    ("polygon light: 3 % too bright", "polygon_lights_give_lamberts_irradiance", |r| {
+        light(r, |u| u, |_, sample| sample.pdf / 1.03)
+    }),
+    ("sphere light: twice too bright", "sphere_lights_give_their_irradiance", |r| {
+        light(r, |u| u, |_, sample| 0.5 * sample.pdf)
+    }),
+    ("sphere light: 1 % too bright", "sphere_lights_give_their_irradiance", |r| {
+        light(r, |u| u, |_, sample| sample.pdf / 1.01)
+    }),
 ];
 
 #[test]

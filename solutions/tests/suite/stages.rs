@@ -39,3 +39,7 @@ mod stage9 {
 mod stage10 {
     stage10_checks::tests!(solutions::Kit);
 }
+
+mod stage11 {
+    stage11_checks::tests!(solutions::Kit);
+}

@@ -2,9 +2,10 @@
 
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use raykata::aabb::Aabb;
+use raykata::emitter::{AreaEmitter, EmitterShape};
 use raykata::kit::{
-    BuildQuery, InsideQuery, LightSample, PlaneEquationQuery, PlaneQuery, RootQuery, ShadeQuery, ShadowQuery,
-    SlabQuery, SphereQuery, Surface, TriangleQuery,
+    BuildQuery, EmitterPdfQuery, EmitterQuery, InsideQuery, LightSample, PlaneEquationQuery, PlaneQuery,
+    RootQuery, ShadeQuery, ShadowQuery, SlabQuery, SphereQuery, Surface, TriangleQuery,
 };
 use raykata::material::Material;
 use raykata::random::Stratum;
@@ -165,6 +166,26 @@ impl Paste for Polygon {
     }
 }
 
+impl Paste for AreaEmitter {
+    fn paste(&self) -> String {
+        let unborrowed = |text: String| text.trim_start_matches('&').to_owned();
+        let shape = match &self.shape {
+            EmitterShape::Sphere(sphere) => format!("Sphere({})", unborrowed(sphere.paste())),
+            EmitterShape::Triangle(triangle) => format!("Triangle({})", unborrowed(triangle.paste())),
+            EmitterShape::Parallelogram { corner, edges: (first, second) } => format!(
+                "Parallelogram {{ corner: {}, edges: ({}, {}) }}",
+                corner.paste(),
+                first.paste(),
+                second.paste()
+            ),
+        };
+        let (radiance, two_sided) = (self.radiance.paste(), self.two_sided);
+        format!(
+            "&AreaEmitter {{ shape: EmitterShape::{shape},\nradiance: {radiance}, two_sided: {two_sided} }}"
+        )
+    }
+}
+
 /// The items as a Rust array, `[a, b, c]`.
 pub fn list<'a, P: Paste + 'a>(items: impl IntoIterator<Item = &'a P>) -> String {
     let items: Vec<String> =
@@ -238,6 +259,18 @@ impl Arguments for ShadeQuery {
             list(&self.lights),
             self.visible
         )
+    }
+}
+
+impl Arguments for EmitterQuery {
+    fn call(&self, function: &str) -> String {
+        call(function, &[&self.emitter, &self.from, &self.u])
+    }
+}
+
+impl Arguments for EmitterPdfQuery {
+    fn call(&self, function: &str) -> String {
+        call(function, &[&self.emitter, &self.from, &self.direction])
     }
 }
 

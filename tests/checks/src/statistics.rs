@@ -1,10 +1,10 @@
 //! Two tests of whether numbers have the expected distribution, with a stated rate of false alarms.
 //!
 //! The score of each test is normally distributed for a correct sampler. The test fails above a threshold that a
-//! correct sampler exceeds once in ten million times ([`FALSE_ALARMS`]). So the 22 tests of stage 6 together reject a
-//! correct submission less than once in 100,000 times, for any seed. `solutions/tests/suite/calibration.rs` runs every
-//! statistical check with 1,000 seeds, on the reference and on wrong distributions, of which each must be caught 990
-//! times.
+//! correct sampler exceeds once in ten million times ([`FALSE_ALARMS`]). So the tests of stages 6 and 11, of which there are
+//! fewer than 100, together reject a correct submission less than once in 100,000 times, for any seed.
+//! `solutions/tests/suite/calibration.rs` counts them, and runs every statistical check with 1,000 seeds, on the reference
+//! and on wrong distributions, of which each must be caught 990 times.
 
 use crate::broken::{Broken, CheckResult};
 use glam::{UVec2, Vec2};
@@ -35,7 +35,14 @@ pub fn pairs(seed: u64, count: usize) -> Vec<Vec2> {
 /// approximation gives about a seventh fewer false alarms than stated.
 pub fn chi_square_score(counts: &[u64]) -> f64 {
     let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
-    let chi_square: f64 = counts.iter().map(|&count| (count as f64 - expected).powi(2) / expected).sum();
+    score_of_expected(counts, &vec![expected; counts.len()])
+}
+
+/// The chi-square score of cells with these expected counts. Each must be above 20 or so, because counts of rare cells are
+/// not normally distributed.
+fn score_of_expected(counts: &[u64], expected: &[f64]) -> f64 {
+    let term = |(&count, &expected): (&u64, &f64)| (count as f64 - expected).powi(2) / expected;
+    let chi_square: f64 = counts.iter().zip(expected).map(term).sum();
     let freedom = counts.len() as f64 - 1.0;
     let spread = 2.0 / (9.0 * freedom);
     ((chi_square / freedom).cbrt() - (1.0 - spread)) / spread.sqrt()
@@ -63,19 +70,37 @@ pub fn covers_evenly(
     axes: [&str; 2],
     mistakes: impl Fn(&[u64]) -> Mistakes,
 ) -> CheckResult {
+    let even = vec![1.0; (CELLS * CELLS) as usize];
+    has_shares(what, places, axes, &even, |counts| {
+        let proven = mistakes(counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
+        proven.or_else(|| pattern(counts, axes))
+    })
+}
+
+/// Checks that `places`, each in the unit square, are distributed over its cells in proportion to `shares`, which are listed
+/// row by row. `what` is the call. `diagnosis` gets the counts of the cells.
+pub fn has_shares(
+    what: &str,
+    places: &[(f64, f64)],
+    axes: [&str; 2],
+    shares: &[f64],
+    diagnosis: impl Fn(&[u64]) -> Option<String>,
+) -> CheckResult {
     let mut counts = vec![0; (CELLS * CELLS) as usize];
     for &(x, y) in places {
         let cell = |share: f64| ((share * f64::from(CELLS)).max(0.0) as u32).min(CELLS - 1);
         let UVec2 { x, y } = UVec2::new(cell(x), cell(y));
         counts[(y * CELLS + x) as usize] += 1;
     }
-    if chi_square_score(&counts) <= ONE_SIDED {
+    let scale = places.len() as f64 / shares.iter().sum::<f64>();
+    let expected: Vec<f64> = shares.iter().map(|share| scale * share).collect();
+    // A score that is NaN fails.
+    if score_of_expected(&counts, &expected) <= ONE_SIDED {
         return Ok(());
     }
-    let expected = places.len() as f64 / counts.len() as f64;
     let worst = (0..counts.len())
         .max_by(|&a, &b| {
-            let off = |cell: usize| (counts[cell] as f64 - expected).abs();
+            let off = |cell: usize| (counts[cell] as f64 - expected[cell]).abs();
             off(a).total_cmp(&off(b))
         })
         .unwrap_or(0);
@@ -84,22 +109,22 @@ pub fn covers_evenly(
         format!("{:.3}..{:.3}", f64::from(cell) / f64::from(CELLS), f64::from(cell + 1) / f64::from(CELLS))
     };
     let input = format!(
-        "{what} for {} pairs u;\nsorted by {} and {} into {} cells of equal probability",
+        "{what} for {} pairs u;\nsorted by {} and {} into {} cells{}",
         places.len(),
         axes[0],
         axes[1],
-        counts.len()
+        counts.len(),
+        if shares.iter().all(|share| *share == shares[0]) { " of equal probability" } else { "" }
     );
     let yours =
         format!("{} with {} in {} and {} in {}", counts[worst], axes[0], range(column), axes[1], range(row));
     let broken = Broken::with_texts(
         input,
         yours,
-        format!("about {expected:.0}"),
+        format!("about {:.0}", expected[worst]),
         "chi-square, 1 false alarm in 10 million",
     );
-    let proven = mistakes(&counts).into_iter().find_map(|(proven, text)| proven.then(|| text.to_owned()));
-    Err(broken.looks_like(proven.or_else(|| pattern(&counts, axes))))
+    Err(broken.looks_like(diagnosis(&counts)))
 }
 
 /// A description of uneven counts that does not depend on the sampler.

@@ -18,6 +18,7 @@ pub const STAGES: &[(u8, &[Check])] = &[
     (8, stage8_checks::CHECKS),
     (9, stage9_checks::CHECKS),
     (10, stage10_checks::CHECKS),
+    (11, stage11_checks::CHECKS),
 ];
 
 /// The checks of a stage; an empty list if there is no such stage.

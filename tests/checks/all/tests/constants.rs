@@ -115,6 +115,7 @@ fields! {
     SecondaryRay { bounce, direction, weight }
     RayCounts { primary, shadow, reflection, transmission }
     Ray { origin, direction, t_min, t_max, time }
+    EmitterSample { direction, distance, radiance, pdf }
 }
 
 impl Constant for Bounce {

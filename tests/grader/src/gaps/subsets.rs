@@ -1,18 +1,16 @@
 //! Half-written kits always give a picture, and it says what it lacks.
 
-use super::Gap;
 use super::switch::Switchable;
+use super::{Gap, stage_of};
 use crate::corpus::verdict::without_lines;
 use crate::pictures::{Scenes, Shown};
 use crate::queue;
 use crate::report::bar_of_steps;
-use crate::sync;
 use crate::worker::{CALL_PATIENCE, Worker};
 use anyhow::Result;
 use oracle::splitmix::Random;
 use raykata::kit::Door;
 use std::collections::BTreeSet;
-use std::path::Path;
 
 /// A set of functions that are left out.
 struct Subset {
@@ -89,10 +87,6 @@ fn fault(one: &Shown, whole: &Shown) -> Option<String> {
 
 /// All functions from each stage on.
 fn prefixes(gaps: &[Gap]) -> Vec<Subset> {
-    let stage_of = |gap: &Gap| {
-        let name = Path::new(&gap.file).file_name().unwrap_or_default().to_string_lossy().into_owned();
-        sync::stage_of(&name).unwrap_or_default()
-    };
     let stages: BTreeSet<u8> = gaps.iter().map(stage_of).collect();
     let from = |stage: u8| Subset {
         what: format!("stages before {stage}"),

@@ -1,0 +1,326 @@
+//! Stage 11 · light transport: the parts of a path tracer. Light reaches the camera by any number of reflections, and each
+//! path is a random sample of one way that it takes.
+//!
+//! This stage goes beyond the slides, which end with "Next: Global Illumination". Its sources are Kajiya, "The Rendering
+//! Equation" (1986), Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), and the book "Physically
+//! Based Rendering" (pbr-book.org).
+//!
+//! These functions draw no random numbers: random numbers are arguments, `u` in `0.0..1.0` each. A density (pdf) is per
+//! steradian, the unit of solid angle. Any formula passes whose samples have the density that it states, unless the doc
+//! comment gives the formula.
+
+use glam::{Vec2, Vec3};
+use raykata::emitter::{AreaEmitter, EmitterSample, EmitterShape};
+// <solution>
+use raykata::shape::Sphere;
+use std::f32::consts::{PI, TAU};
+// </solution>
+
+// <solution>
+/// The unit vector at the angle θ to `axis`, turned around `axis` by the fraction `turn` of a full turn. For a small
+/// angle `cos θ` is imprecise, so θ is given as `1 - cos θ`, from which `sin θ` follows without cancellation.
+fn around(axis: Vec3, one_minus_cos: f32, turn: f32) -> Vec3 {
+    let sin_theta = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+    let (x, y) = axis.any_orthonormal_pair();
+    let (sin_phi, cos_phi) = (TAU * turn).sin_cos();
+    ((1.0 - one_minus_cos) * axis + sin_theta * (cos_phi * x + sin_phi * y)).normalize()
+}
+// </solution>
+
+/// A random direction on the side of the surface to which `normal` points, with density `cos θ / π`: cosine-weighted
+/// sampling of the hemisphere. θ is the angle between the direction and `normal`.
+///
+/// `normal` has unit length and any direction, and so has the result. It is never below the surface, except for rounding:
+/// `direction·normal` is at least -1e-6.
+///
+/// Pitfall: with a uniform θ or a uniform `cos θ` the picture looks plausible, and in a closed white room it is even right.
+/// A frame from the cross product with a fixed axis does not exist for a normal along that axis.
+///
+/// Malley's method, in "Physically Based Rendering".
+pub fn cosine_direction(normal: Vec3, u: Vec2) -> Vec3 {
+    // <solution>
+    // Sample a disk uniformly: radius² is uniform. Project the point up to the hemisphere: cos² θ = 1 - radius².
+    let radius = u.x.sqrt();
+    let cos_theta = (1.0 - u.x).sqrt();
+    // Turn the direction from the z axis to the normal.
+    let (x, y) = normal.any_orthonormal_pair();
+    let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
+    (radius * (cos_phi * x + sin_phi * y) + cos_theta * normal).normalize()
+    // <stub> todo!("sample a disk uniformly, and project the point up to the hemisphere around normal")
+    // </solution>
+}
+
+/// The probability density of [`cosine_direction`], per steradian: `cos θ / π`.
+///
+/// Both vectors have unit length. The density of a direction below the surface is 0.
+///
+/// Pitfall: below the surface `cos θ` is negative, and a negative density makes light that has to be added disappear.
+pub fn cosine_pdf(normal: Vec3, direction: Vec3) -> f32 {
+    // <solution>
+    normal.dot(direction).max(0.0) / PI
+    // <stub> todo!("divide the cosine by π, and return 0 below the surface")
+    // </solution>
+}
+
+// <solution>
+/// A triangle or parallelogram: the points `corner + s edges.0 + t edges.1`.
+struct Flat {
+    corner: Vec3,
+    edges: (Vec3, Vec3),
+    is_triangle: bool,
+}
+
+impl Flat {
+    /// The unit normal on the front, and the area.
+    fn normal_and_area(&self) -> (Vec3, f32) {
+        let cross = self.edges.0.cross(self.edges.1);
+        let area = cross.length();
+        (cross / area, if self.is_triangle { 0.5 * area } else { area })
+    }
+
+    /// The density per steradian of points that are uniform over the area: `distance² / (area · |cos θ|)`, with the angle
+    /// θ between the direction and the normal of the emitter. `None` if the side that is seen emits no light.
+    fn pdf(&self, to_point: Vec3, two_sided: bool) -> Option<f32> {
+        let (normal, area) = self.normal_and_area();
+        // cos θ · distance: positive on the front.
+        let facing = -to_point.dot(normal);
+        let pdf = to_point.length_squared() * to_point.length() / (area * facing.abs());
+        (pdf.is_finite() && pdf > 0.0 && (two_sided || facing > 0.0)).then_some(pdf)
+    }
+
+    /// A uniformly distributed point.
+    fn sample(&self, u: Vec2) -> Vec3 {
+        // For a triangle the lines of constant s get shorter towards a corner. So 1 - s is the root of a uniform number.
+        let (s, t) = match self.is_triangle {
+            true => (1.0 - u.x.sqrt(), u.x.sqrt() * u.y),
+            false => (u.x, u.y),
+        };
+        self.corner + s * self.edges.0 + t * self.edges.1
+    }
+
+    /// The vector from `from` to the point that a ray of this direction hits.
+    fn hit(&self, from: Vec3, direction: Vec3) -> Option<Vec3> {
+        let normal = self.edges.0.cross(self.edges.1);
+        // Hit the plane of the emitter.
+        let distance = (self.corner - from).dot(normal) / direction.dot(normal);
+        // Find s and t of the hit by ratios of areas.
+        let offset = from + distance * direction - self.corner;
+        let s = offset.cross(self.edges.1).dot(normal) / normal.length_squared();
+        let t = self.edges.0.cross(offset).dot(normal) / normal.length_squared();
+        let inside =
+            s >= 0.0 && t >= 0.0 && if self.is_triangle { s + t <= 1.0 } else { s <= 1.0 && t <= 1.0 };
+        (distance > 0.0 && distance.is_finite() && inside).then_some(distance * direction)
+    }
+}
+
+/// The cone of directions in which a sphere is seen: `1 - cos θ` of its rim; 2, all directions, from inside.
+fn one_minus_cos_of_rim(sphere: &Sphere, from: Vec3) -> f32 {
+    let sin_squared = sphere.radius * sphere.radius / (sphere.center - from).length_squared();
+    if sin_squared < 1.0 { sin_squared / (1.0 + (1.0 - sin_squared).sqrt()) } else { 2.0 }
+}
+
+/// The density per steradian of directions that are uniform over this cone: 1 / its solid angle. `None` if the side of the
+/// sphere that is seen emits no light.
+fn sphere_pdf(sphere: &Sphere, two_sided: bool, from: Vec3) -> Option<f32> {
+    let one_minus_cos = one_minus_cos_of_rim(sphere, from);
+    let pdf = 1.0 / (TAU * one_minus_cos);
+    (pdf.is_finite() && (two_sided || one_minus_cos < 2.0)).then_some(pdf)
+}
+
+/// The triangle or parallelogram of an emitter, or its sphere.
+fn flat(shape: &EmitterShape) -> Result<Flat, Sphere> {
+    match *shape {
+        EmitterShape::Sphere(sphere) => Err(sphere),
+        EmitterShape::Triangle(triangle) => {
+            let edges = (triangle.b - triangle.a, triangle.c - triangle.a);
+            Ok(Flat { corner: triangle.a, edges, is_triangle: true })
+        }
+        EmitterShape::Parallelogram { corner, edges } => Ok(Flat { corner, edges, is_triangle: false }),
+    }
+}
+// </solution>
+
+/// A random point of `emitter` that sends light to the point `from`, with the density of its direction.
+///
+/// `None` if the emitter sends no light to `from`: its radiance is 0, `from` is behind an emitter that is not two-sided (for
+/// a sphere: inside), or `from` lies in the plane of a triangle or parallelogram. Otherwise every `u` gives a sample. Its
+/// `radiance` is that of the emitter; its `distance` is that of the point of the emitter that a ray from `from` hits first.
+/// Samples reach each point that is seen from `from`, and `pdf` is the density of their directions at `from`, per
+/// steradian. Sizes and distances are between 1e-4 and 1e4.
+///
+/// Uniform points of the area A of a triangle or parallelogram have the density `distance² / (A cos θ)`, with the angle θ
+/// between the direction and the normal of the emitter. For a sphere sample the cone in which it is seen, whose solid angle
+/// is `2π (1 - cos θ)` with `sin θ = radius / distance to the centre`. From inside a two-sided sphere all directions meet
+/// it.
+///
+/// Pitfall: half of the points of a sphere are on its far side. `1 - cos θ` of a far sphere is rounded to 0; it is
+/// `sin² θ / (1 + cos θ)`.
+///
+/// "Physically Based Rendering", "Area Lights".
+pub fn sample_light(emitter: &AreaEmitter, from: Vec3, u: Vec2) -> Option<EmitterSample> {
+    // <solution>
+    let AreaEmitter { shape, radiance, two_sided } = *emitter;
+    if radiance == Vec3::ZERO {
+        return None;
+    }
+    match flat(&shape) {
+        Ok(flat) => {
+            // Sample the area uniformly, and convert the density to solid angle.
+            let to_point = flat.sample(u) - from;
+            let pdf = flat.pdf(to_point, two_sided)?;
+            Some(EmitterSample {
+                direction: to_point.normalize(),
+                distance: to_point.length(),
+                radiance,
+                pdf,
+            })
+        }
+        Err(sphere) => {
+            let pdf = sphere_pdf(&sphere, two_sided, from)?;
+            // Choose 1 - cos θ uniformly, because slices of a sphere of equal height have equal area (Archimedes).
+            let to_center = sphere.center - from;
+            let one_minus_cos_max = one_minus_cos_of_rim(&sphere, from);
+            let direction = around(to_center.normalize_or(Vec3::Y), u.x * one_minus_cos_max, u.y);
+            // Find the hit: half a chord before the middle of the chord; from inside behind it.
+            let middle = to_center.dot(direction);
+            let beside = (to_center - middle * direction).length_squared();
+            let half = (sphere.radius * sphere.radius - beside).max(0.0).sqrt();
+            let distance = if one_minus_cos_max < 2.0 { middle - half } else { middle + half };
+            Some(EmitterSample { direction, distance, radiance, pdf })
+        }
+    }
+    // <stub> todo!("sample a point of the emitter, and return the density of its direction per steradian")
+    // </solution>
+}
+
+/// The probability density, per steradian, with which [`sample_light`] samples `direction`, a unit vector.
+///
+/// It is 0 if a ray from `from` in this direction does not meet the emitter, and if `sample_light` returns `None`. For a
+/// direction that `sample_light` returns it is equal to the sample's `pdf` up to rounding. A direction that meets the edge
+/// or rim may count either way.
+///
+/// Pitfall: the density is that of the direction, not of the point. With a density per area multiple importance sampling
+/// gives a wrong picture, although each technique alone gives the right one.
+pub fn light_pdf(emitter: &AreaEmitter, from: Vec3, direction: Vec3) -> f32 {
+    // <solution>
+    let AreaEmitter { shape, radiance, two_sided } = *emitter;
+    if radiance == Vec3::ZERO {
+        return 0.0;
+    }
+    let pdf = match flat(&shape) {
+        Ok(flat) => flat.hit(from, direction).and_then(|to_point| flat.pdf(to_point, two_sided)),
+        Err(sphere) => {
+            // From outside, directions in the cone pass the centre at less than the radius, and go to its side.
+            let to_center = sphere.center - from;
+            let is_inside = one_minus_cos_of_rim(&sphere, from) >= 2.0;
+            let hits = to_center.cross(direction).length() <= sphere.radius && to_center.dot(direction) > 0.0;
+            sphere_pdf(&sphere, two_sided, from).filter(|_| is_inside || hits)
+        }
+    };
+    pdf.unwrap_or(0.0)
+    // <stub> todo!("find the point that the direction meets, and return its density per steradian")
+    // </solution>
+}
+
+/// The weight of a sample in multiple importance sampling. A sample was taken with density `own`; the other technique would
+/// take the same sample with density `other`.
+///
+/// Densities are 0 or more, as large as `f32` allows. A density of infinity means that a technique always takes this sample,
+/// as a mirror does. The weight is in `0..=1`, and the weights of both techniques sum to 1:
+/// `mis_weight(a, b) + mis_weight(b, a) = 1`, except for `a = b = 0` and `a = b = ∞`, where any weight in `0..=1` passes.
+/// A weight is 1 if `other` is 0 or `own` is infinite, and 0 if `own` is 0 or `other` is infinite. The weights must keep the
+/// variance low: if a square light with sides from 0.02 to 2 at distance 1 illuminates a lobe `cosⁿ θ` with n from 1 to
+/// 10,000, one sample of each technique has a variance of at most a quarter of the squared mean. This is true for the balance
+/// heuristic `own / (own + other)` and for the power heuristic `own² / (own² + other²)`.
+///
+/// Pitfall: with weights of 1/2 both techniques keep half of their noise, also where one of them is useless. 1e30² is
+/// infinite in `f32`, and ∞ / ∞ is NaN.
+///
+/// Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering" (1995).
+pub fn mis_weight(own: f32, other: f32) -> f32 {
+    // <solution>
+    // Use the power heuristic as 1 / (1 + (other / own)²), whose ratio does not overflow to ∞ / ∞.
+    if own == 0.0 || other == f32::INFINITY {
+        return 0.0;
+    }
+    let ratio = other / own;
+    1.0 / (1.0 + ratio * ratio)
+    // <stub> todo!("compare the two densities: balance heuristic or power heuristic")
+    // </solution>
+}
+
+/// Russian roulette: the factor by which the weight of a path is multiplied. 0 means that the path ends here.
+///
+/// `weight` is the factor per channel with which light that the path finds from here on contributes to the pixel; each
+/// channel is 0 or more. `bounce` counts the surfaces that the path has met. `u` is uniform in `0..1`. Let w be the largest
+/// channel of `weight`.
+///
+/// - If w is 0, the factor is 0: the path can add nothing.
+/// - If w is 1 or more, or `bounce` is below 3, the factor is 1.
+/// - Otherwise the path survives with a probability q, at least w and at most `(1 + w) / 2`, and the factor is `1 / q`; with
+///   probability `1 - q` it is 0. q = w passes, and so does any other rule in this range. So the mean of the factor is 1,
+///   and no channel of the new weight is above 1, up to rounding.
+///
+/// Pitfall: without the division by q the picture is too dark. With q = 1/2 for all paths bright ones are ended, and noise is
+/// added where there was none.
+///
+/// Arvo and Kirk, "Particle Transport and Image Synthesis" (1990).
+pub fn survives(weight: Vec3, bounce: u32, u: f32) -> f32 {
+    // <solution>
+    let survival = weight.max_element();
+    if survival <= 0.0 {
+        return 0.0;
+    }
+    if survival >= 1.0 || bounce < 3 {
+        return 1.0;
+    }
+    if u < survival { 1.0 / survival } else { 0.0 }
+    // <stub> todo!("let the path survive with a probability, and divide by this probability")
+    // </solution>
+}
+
+/// The fraction of the light that a picture lacks if paths end after `bounces` bounces, in a closed room whose surfaces all
+/// emit the same light and have this albedo: `albedo^(bounces + 1)`.
+///
+/// `albedo`, the fraction of light that a surface reflects, is in `0..=1`; `bounces` is any number. The relative error of
+/// the result is at most 1e-4, or its absolute error at most 1e-6.
+///
+/// The radiance in the room is `Le (1 + ρ + ρ² + …) = Le / (1 - ρ)`, and paths with at most n bounces find
+/// `Le (1 - ρⁿ⁺¹) / (1 - ρ)` of it. At albedo 0.8 and 5 bounces a quarter of the light is missing.
+///
+/// Pitfall: `bounces + 1` does not fit `u32` for the largest number.
+pub fn cut_off(albedo: f32, bounces: u32) -> f32 {
+    // <solution>
+    f64::from(albedo).powf(f64::from(bounces) + 1.0) as f32
+    // <stub> todo!("raise the albedo to the power bounces + 1")
+    // </solution>
+}
+
+/// The smallest number of bounces n with `albedo^(n + 1) <= error`: see [`cut_off`].
+///
+/// `albedo` and `error` are in `0..=1`. The powers are computed in double precision. The result is `u32::MAX` if no n that
+/// fits is enough: at an albedo of 1 with an error below 1, and at an albedo above 0 with an error of 0.
+///
+/// Pitfall: the power n + 1 is one more than the number of bounces. The logarithm of 0 is infinite, and that of 1 is 0.
+pub fn bounces_for_error(albedo: f32, error: f32) -> u32 {
+    // <solution>
+    let (albedo, error) = (f64::from(albedo), f64::from(error));
+    // Return the cases in which a logarithm below would be 0 or infinite.
+    if albedo <= error {
+        return 0;
+    }
+    if error == 0.0 || albedo == 1.0 {
+        return u32::MAX;
+    }
+    // Solve albedo^(n + 1) = error for n. `as` converts a number that is too large to u32::MAX.
+    let n = ((error.ln() / albedo.ln()).ceil() - 1.0) as u32;
+    // The quotient is rounded, so n may be off by one where the power is equal to the error.
+    let is_enough = |n: u32| albedo.powf(f64::from(n) + 1.0) <= error;
+    match is_enough(n) {
+        true if is_enough(n - 1) => n - 1,
+        true => n,
+        false => n.saturating_add(1),
+    }
+    // <stub> todo!("solve albedo^(n + 1) = error for n, and round up")
+    // </solution>
+}

@@ -1,0 +1,131 @@
+//! The light that paths of limited length miss.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::generate::magnitude;
+use checks::judge::{compare, compare_formulas};
+use proptest::prelude::*;
+
+pub(super) fn cut_off_is_the_light_beyond_the_last_bounce(trial: &Trial<'_>) -> CheckResult {
+    let albedo = prop_oneof![4 => (0..=16i32).prop_map(|n| n as f32 / 16.0), 1 => 0.9..1.0f32];
+    let bounces = prop_oneof![6 => 0..12u32, 2 => 12..3000u32, 1 => Just(u32::MAX)];
+    trial.forall(300, (albedo, bounces), |queries| {
+        let power = |albedo: f32, exponent: f64| f64::from(albedo).powf(exponent);
+        let near = |yours: f32, expected: f64| {
+            // The doc comment states these bounds.
+            (f64::from(yours) - expected).abs() <= (1e-4 * expected).max(1e-6)
+        };
+        compare_formulas(
+            queries,
+            trial.kit.cut_off(queries),
+            |(albedo, bounces), yours| {
+                let expected = power(*albedo, f64::from(*bounces) + 1.0);
+                if near(yours, expected) {
+                    return Ok(());
+                }
+                Err(Broken::new(
+                    format!("cut_off({albedo:?}, {bounces})"),
+                    yours,
+                    expected,
+                    "albedo^(bounces + 1)",
+                ))
+            },
+            |(albedo, bounces), &yours| {
+                let n = f64::from(*bounces);
+                let whole = 1.0 / (1.0 - f64::from(*albedo));
+                let rest = power(*albedo, n + 1.0);
+                vec![
+                    (
+                        near(yours, power(*albedo, n)),
+                        "the power is bounces: it is bounces + 1, because light is also seen directly",
+                    ),
+                    (near(yours, power(*albedo, n + 2.0)), "the power is bounces + 2: it is bounces + 1"),
+                    (
+                        near(yours, 1.0 - rest),
+                        "you return the fraction that is found, not the one that is missing",
+                    ),
+                    (
+                        near(yours, rest * whole) || (*albedo == 1.0 && !yours.is_finite()),
+                        "you return the missing light, not its fraction of all light",
+                    ),
+                    (near(yours, f64::from(*albedo) * (n + 1.0)), "you multiply where a power is needed"),
+                ]
+            },
+        )
+    })
+}
+
+fn paste((albedo, error): &(f32, f32)) -> String {
+    format!("bounces_for_error({albedo:?}, {error:?})")
+}
+
+/// Judges a number of bounces by its definition.
+fn judge(query: &(f32, f32), yours: u32) -> CheckResult {
+    let (albedo, error) = (f64::from(query.0), f64::from(query.1));
+    // The albedo to the power n, for n up to 2³² + 1.
+    let power = |exponent: f64| albedo.powf(exponent);
+    // Powers of 1/2 are exact. Other powers have a few roundings of a double for each factor of 2 in the exponent.
+    let slack = if query.0.to_bits() & 0x7f_ffff == 0 { 0.0 } else { 1e-9 };
+    let n = f64::from(yours);
+    let is_enough = power(n + 1.0) <= error * (1.0 + slack);
+    let is_smallest = yours == 0 || power(n) > error * (1.0 - slack);
+    if is_enough && is_smallest {
+        return Ok(());
+    }
+    // The number by the definition, for the message. At the end a step may be off by a rounding.
+    let estimate = if albedo <= error { 0.0 } else { (error.ln() / albedo.ln() - 1.0).ceil() };
+    let expected = format!("about {estimate}, the smallest n with albedo^(n + 1) <= error");
+    let off = n - estimate;
+    Err(Broken::with_texts(paste(query), format!("{yours}"), expected, "the definition").explained_by([
+        (
+            off == 1.0 && estimate >= 1.0,
+            "one bounce too many: the power is n + 1, because light is also seen directly",
+        ),
+        (off == -1.0, "one bounce too few: round up"),
+        (yours == u32::MAX, "there is a number that is enough"),
+        (yours == 0 && estimate > 0.0, "0 bounces are not enough here"),
+    ]))
+}
+
+pub(super) fn bounces_for_error_is_the_smallest_number(trial: &Trial<'_>) -> CheckResult {
+    let albedo = || prop_oneof![2 => (1..16i32).prop_map(|n| n as f32 / 16.0), 1 => 0.02..0.999f32];
+    let drawn = (albedo(), magnitude(-6.0, 0.0));
+    // Errors that are exactly a power of the albedo: one bounce more or less is wrong.
+    let exact = (prop::sample::select(vec![0.5f32, 0.25, 0.125]), 1..9i32)
+        .prop_map(|(albedo, power)| (albedo, albedo.powi(power)));
+    trial.forall(400, prop_oneof![3 => drawn, 1 => exact], |queries| {
+        compare(queries, trial.kit.bounces_for_error(queries), judge)
+    })
+}
+
+pub(super) fn bounces_for_error_at_the_limits(trial: &Trial<'_>) -> CheckResult {
+    let share = || (1..=64i32).prop_map(|n| n as f32 / 64.0);
+    // All light stays in the room (albedo 1), none is reflected (0), no error is allowed (0), and any error is (1).
+    let cases = (0..5i32, share()).prop_map(|(which, share)| match which {
+        0 => (1.0, (share - 1.0 / 64.0).min(0.98)),
+        1 => (0.0, share - 1.0 / 64.0),
+        2 => (share, 0.0),
+        3 => (share, 1.0),
+        _ => (0.5, 0.5f32.powi(3)),
+    });
+    trial.forall(300, cases, |queries| {
+        compare(queries, trial.kit.bounces_for_error(queries), |query, yours| {
+            let (albedo, error) = *query;
+            let expected = match () {
+                () if albedo <= error => 0,
+                () if error == 0.0 || albedo == 1.0 => u32::MAX,
+                // 0.5^(2 + 1)
+                () => 2,
+            };
+            if yours == expected {
+                return Ok(());
+            }
+            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+                (albedo == 1.0, "at an albedo of 1 all light is missing, however many bounces there are"),
+                (albedo == 0.0, "at an albedo of 0 nothing is reflected: 0 bounces are enough"),
+                (error == 0.0, "with an error of 0 no number is enough"),
+                (error == 1.0, "an error of 1 allows 0 bounces"),
+            ]))
+        })
+    })
+}

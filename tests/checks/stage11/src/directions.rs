@@ -1,0 +1,183 @@
+//! Cosine-weighted directions and their density.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
+use checks::paste::call;
+use checks::statistics::{SAMPLES, columns, covers_evenly, has_mean, pairs, unused_number};
+use glam::{Vec2, Vec3, vec2};
+use proptest::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The largest random number, just below 1.
+pub(super) const LARGEST: f32 = 1.0 - f32::EPSILON / 2.0;
+
+/// A pair of random numbers; some lie on the border of the unit square.
+pub(super) fn numbers() -> impl Strategy<Value = Vec2> + Clone {
+    let number = || {
+        prop_oneof![
+            6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0),
+            1 => Just(0.0f32),
+            1 => Just(LARGEST),
+        ]
+    };
+    (number(), number()).prop_map(|(x, y)| vec2(x, y))
+}
+
+fn paste((normal, u): &(Vec3, Vec2)) -> String {
+    call("cosine_direction", &[normal, u])
+}
+
+pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(1000, (nasty::unit(), numbers()), |queries| {
+        let answers = trial.kit.cosine_direction(queries);
+        // Only u.x = 0 leads to the normal.
+        let is_normal = |(query, yours): (&(Vec3, Vec2), &Vec3)| query.0 == *yours;
+        let constant = queries.len() > 1 && queries.iter().zip(&answers).all(is_normal);
+        compare(queries, answers, |query, yours| {
+            let (normal, direction) = (query.0.as_dvec3(), yours.as_dvec3());
+            let above = direction.dot(normal);
+            // A vector that was normalized in f32 is off by a few times 1e-7. The doc comment allows -1e-6.
+            let unit = (direction.length() - 1.0).abs() < 1e-5;
+            if unit && above >= -1e-6 && !constant {
+                return Ok(());
+            }
+            let broken =
+                Broken::new(paste(query), yours, "a unit direction above the surface", "the definition");
+            Err(broken.explained_by([
+                (constant, "you return the normal, whatever u is"),
+                (
+                    yours.is_nan(),
+                    "you return NaN: your frame does not exist for this normal, or you normalize 0",
+                ),
+                (!unit && !yours.is_nan(), "your direction does not have unit length"),
+                (unit && above < 0.0, "your direction goes below the surface"),
+            ]))
+        })
+    })
+}
+
+pub(super) fn cosine_directions_have_their_density(trial: &Trial<'_>) -> CheckResult {
+    let normals = nasty::directions();
+    have_their_density(trial, &normals, trial.seed)?;
+    // The last eight normals are far from the axes. Among all of them an axis of the frame that is too short goes unnoticed,
+    // because most frames along an axis are right by chance.
+    have_their_density(trial, &normals[normals.len() - 8..], trial.seed ^ (1 << 40))
+}
+
+fn have_their_density(trial: &Trial<'_>, normals: &[Vec3], seed: u64) -> CheckResult {
+    let u = pairs(seed, SAMPLES);
+    let queries: Vec<(Vec3, Vec2)> =
+        u.iter().enumerate().map(|(index, u)| (normals[index % normals.len()], *u)).collect();
+    let (mut shares, mut cosines) = (Vec::new(), Vec::new());
+    let judge = |(query, yours): (&(Vec3, Vec2), Vec3)| {
+        let (normal, direction) = (query.0.as_dvec3().normalize(), yours.as_dvec3());
+        if !((direction.length() - 1.0).abs() < 1e-5) {
+            return Err(Broken::new(paste(query), yours, "a unit direction", "the definition"));
+        }
+        let (x, y) = normal.any_orthonormal_pair();
+        let cosine = direction.dot(normal);
+        // sin² θ is uniform in 0..1, and so is the angle around the normal as a fraction of a full turn.
+        shares.push((
+            direction.cross(normal).length_squared(),
+            direction.dot(y).atan2(direction.dot(x)) / TAU + 0.5,
+        ));
+        cosines.push(cosine);
+        Ok(())
+    };
+    all_hold(queries.iter().zip(trial.kit.cosine_direction(&queries)).map(judge).collect())?;
+    // Whether all cosines are those of a wrong formula of one random number.
+    let is = |formula: fn(f64) -> f64| {
+        let number = |u: &Vec2, which: usize| f64::from([u.x, u.y, 1.0 - u.x, 1.0 - u.y][which]);
+        (0..4).any(|which| {
+            u.iter().zip(&cosines).all(|(u, found)| (found - formula(number(u, which))).abs() < 1e-4)
+        })
+    };
+    let mistakes = || {
+        let mut mistakes = unused_number(|u| {
+            trial.kit.cosine_direction(&u.iter().map(|u| (normals[0], *u)).collect::<Vec<_>>())
+        });
+        mistakes.extend([
+            (
+                is(|u| u),
+                "your directions are uniform over the hemisphere: cos θ is the root of a uniform number",
+            ),
+            (is(|u| (FRAC_PI_2 * u).cos()), "your θ is uniform: cos θ is the root of a uniform number"),
+            (is(|u| 1.0 - 2.0 * u), "your directions fill the whole sphere"),
+            (
+                is(|u| (1.0 - u * u).sqrt()),
+                "the radius on the disk is uniform: it is the root of a uniform number",
+            ),
+            (is(|u| u.powf(1.0 / 3.0)), "your density is proportional to cos² θ"),
+        ]);
+        mistakes
+    };
+    let what = "cosine_direction(normal, u)";
+    covers_evenly(what, &shares, ["sin² θ", "the angle around the normal"], |counts| {
+        let mut mistakes = mistakes();
+        mistakes.push((columns(counts)[7] == 0, "you never sample grazing directions"));
+        mistakes
+    })?;
+    // ∫ cos θ · cos θ / π dω = 2/3. The test above does not tell the two sides of the surface apart.
+    has_mean("the cosine of cosine_direction", &cosines, 2.0 / 3.0, |_| mistakes())
+}
+
+pub(super) fn cosine_pdf_is_the_cosine_over_pi(trial: &Trial<'_>) -> CheckResult {
+    let queries = (nasty::unit(), nasty::tilt())
+        .prop_map(|(normal, (angle, turn))| (normal, nasty::tilted(normal, angle, turn)));
+    trial.forall(500, queries, |queries| {
+        let exact = |(normal, direction): &(Vec3, Vec3)| normal.as_dvec3().dot(direction.as_dvec3());
+        // Roundings of the three products, each at most 1.
+        let near = |yours: f32, expected: f64| (f64::from(yours) - expected).abs() <= 1e-6 * (1.0 + expected);
+        compare_formulas(
+            queries,
+            trial.kit.cosine_pdf(queries),
+            |query, yours| {
+                let expected = exact(query) / PI;
+                if near(yours, expected.max(0.0)) {
+                    return Ok(());
+                }
+                Err(Broken::new(call("cosine_pdf", &[&query.0, &query.1]), yours, expected, "the definition"))
+            },
+            |query, &yours| {
+                let cosine = exact(query);
+                vec![
+                    (near(yours, cosine), "you return the cosine: divide it by π"),
+                    (near(yours, 1.0 / TAU), "you return the density of the uniform hemisphere, 1 / 2π"),
+                    (near(yours, 1.0 / PI), "you return 1 / π: multiply it by the cosine"),
+                    (near(yours, cosine / TAU), "you divide by 2π: the integral of the cosine is π"),
+                    (near(yours, 0.25 / PI), "you return the density of the whole sphere, 1 / 4π"),
+                    (near(yours, cosine * cosine / PI), "you multiply by the cosine twice"),
+                    (near(yours, 2.0 * cosine / PI), "twice too much: the integral of the cosine is π"),
+                ]
+            },
+        )
+    })
+}
+
+pub(super) fn cosine_pdf_below_the_surface_is_zero(trial: &Trial<'_>) -> CheckResult {
+    // Every fourth direction is above the surface.
+    let queries = (nasty::unit(), 0..=12i32, 0..=15i32, 0..4i32).prop_map(|(normal, angle, turn, which)| {
+        // At an angle of at least 0.1 to the surface, so that no rounding decides.
+        let direction = nasty::tilted(normal, f64::from(angle) / 8.5, f64::from(turn) / 16.0 + 0.01);
+        (normal, if which == 3 { direction } else { -direction })
+    });
+    trial.forall(300, queries, |queries| {
+        compare(queries, trial.kit.cosine_pdf(queries), |query, yours| {
+            let cosine = query.0.as_dvec3().dot(query.1.as_dvec3());
+            if if cosine > 0.0 { yours > 0.0 } else { yours == 0.0 } {
+                return Ok(());
+            }
+            let expected = if cosine > 0.0 { "above 0" } else { "0.0" };
+            let input = call("cosine_pdf", &[&query.0, &query.1]);
+            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+                (cosine < 0.0 && yours < 0.0, "your density is negative: return 0 below the surface"),
+                (
+                    cosine < 0.0 && (f64::from(yours) + cosine / PI).abs() < 1e-5,
+                    "you take the absolute value of the cosine: return 0 below the surface",
+                ),
+            ]))
+        })
+    })
+}

@@ -1,0 +1,471 @@
+//! Samples of emitters and their densities.
+
+use crate::directions::{LARGEST, numbers};
+use crate::emitters::{KINDS, Layout, Lit, layouts, nodes};
+use checks::broken::{Broken, CheckResult, all_hold};
+use checks::judge::compare;
+use checks::paste::Arguments;
+use checks::statistics::{CELLS, SAMPLES, has_shares, pairs, unused_number};
+use checks::{Trial, nasty};
+use glam::{DVec3, Vec2, Vec3, vec2};
+use proptest::prelude::*;
+use raykata::emitter::{EmitterSample, EmitterShape};
+use raykata::kit::{EmitterPdfQuery, EmitterQuery};
+use raykata::shape::Sphere;
+
+impl Lit {
+    pub(super) fn sample(&self, u: Vec2) -> EmitterQuery {
+        EmitterQuery { emitter: self.emitter, from: self.from, u }
+    }
+
+    pub(super) fn pdf(&self, direction: DVec3) -> EmitterPdfQuery {
+        EmitterPdfQuery { emitter: self.emitter, from: self.from, direction: direction.normalize().as_vec3() }
+    }
+}
+
+fn of(query: &EmitterQuery) -> Lit {
+    Lit { emitter: query.emitter, from: query.from }
+}
+
+/// Every `u` gives a sample of an emitter that sends light, so a sample that is missing is a mistake.
+fn missing(query: &EmitterQuery) -> Broken {
+    let behind = query.emitter.two_sided && of(query).is_behind();
+    let broken = Broken::new(
+        query.call("sample_light"),
+        None::<EmitterSample>,
+        "a sample",
+        "the emitter sends light here",
+    );
+    broken.explained_by([(behind, "you leave out the back of emitters that are two-sided")])
+}
+
+/// Emitters whose front is seen, and two-sided ones that are seen from the back or from inside.
+fn bright() -> impl Strategy<Value = Lit> + Clone {
+    (layouts(), any::<bool>()).prop_map(|(layout, behind)| {
+        let mut layout = layout;
+        if behind && layout.two_sided {
+            // -0.75: inside the sphere, a quarter of its radius from the centre.
+            layout.place.z = if layout.kind == 2 { -0.75 } else { -layout.place.z };
+        }
+        layout.lit()
+    })
+}
+
+pub(super) fn light_samples_lie_on_the_light(trial: &Trial<'_>) -> CheckResult {
+    let queries = (bright(), numbers()).prop_map(|(lit, u)| lit.sample(u));
+    trial.forall(1000, queries, |queries| {
+        compare(queries, trial.kit.sample_light(queries), |query, yours| {
+            let Some(yours) = yours else { return Err(missing(query)) };
+            judge_sample(query, &yours)
+        })
+    })
+}
+
+fn judge_sample(query: &EmitterQuery, yours: &EmitterSample) -> CheckResult {
+    let (lit, direction) = (of(query), yours.direction.as_dvec3());
+    let distance = f64::from(yours.distance);
+    let unit = (direction.length() - 1.0).abs() < 1e-5;
+    let off = lit.off(direction, distance);
+    // The direction is rounded, which moves the point along an emitter that is seen at a grazing angle: by up to 1e-7 of the
+    // distance over the cosine, which is at least a twentieth. The point itself is rounded at its distance from the origin.
+    let slack = 1e-3;
+    // For the same reason the distance is off by up to 1e-5 of the numbers. Near the rim of a sphere it is less exact by the
+    // root of a rounding error, but the point is no farther off the surface.
+    let on_it = off <= 2e-4 && lit.outside(direction) <= slack;
+    let same_radiance = yours.radiance == query.emitter.radiance;
+    let density = yours.pdf.is_finite() && yours.pdf > 0.0;
+    if unit && on_it && same_radiance && density {
+        return Ok(());
+    }
+    let expected = match (unit && on_it, same_radiance) {
+        (false, _) => "a unit direction and the distance to a point of the emitter".to_owned(),
+        (true, false) => format!("radiance: {:?}", query.emitter.radiance),
+        (true, true) => "a density above 0".to_owned(),
+    };
+    let sphere = query.emitter.shape;
+    let is_sphere = matches!(sphere, EmitterShape::Sphere(_));
+    let far = is_sphere
+        && unit
+        && lit.outside(direction) <= 0.0
+        && (lit.far_side(direction) - distance).abs() <= 2e-4 * distance;
+    let squared = {
+        let root = distance.max(0.0).sqrt();
+        unit && lit.off(direction, root) <= 2e-4
+    };
+    let radiance = yours.radiance.as_dvec3() / query.emitter.radiance.as_dvec3();
+    let is_even = (radiance - radiance.x).abs().max_element() <= 1e-5 * radiance.x;
+    let over_distance = is_even && (radiance.x * distance * distance - 1.0).abs() < 1e-3;
+    let by_pdf = is_even && (radiance.x * f64::from(yours.pdf) - 1.0).abs() < 1e-3;
+    let broken =
+        Broken::with_texts(query.call("sample_light"), format!("{yours:?}"), expected, "the definition");
+    Err(broken.explained_by([
+        (yours.direction.is_nan() || yours.distance.is_nan() || yours.pdf.is_nan(), "you return NaN"),
+        (!unit && !yours.direction.is_nan(), "your direction does not have unit length"),
+        (!on_it && far, "your point is on the far side of the sphere: the near one hides it"),
+        (!on_it && squared, "your distance is squared"),
+        (
+            unit && off <= 2e-4 && lit.outside(direction) > slack,
+            "your point is in the plane of the emitter, but outside of the emitter",
+        ),
+        (
+            !on_it && lit.off(-direction, distance) <= 2e-4 && unit,
+            "your direction leads from the light to the point",
+        ),
+        (
+            on_it && !same_radiance && over_distance,
+            "you divide the radiance by the squared distance: that is already in the density",
+        ),
+        (on_it && !same_radiance && by_pdf, "you divide the radiance by the density: the caller does that"),
+        (on_it && same_radiance && !density, "your density is not above 0 and finite"),
+    ]))
+}
+
+/// Emitters that send no light to the point, and others.
+fn dark() -> impl Strategy<Value = (Lit, bool)> + Clone {
+    // A lattice in a plane at right angles to an axis: the point is exactly in the plane of the emitter.
+    let in_plane = (0..3usize, nasty::lattice(4), nasty::lattice(4), 0..2usize, any::<bool>()).prop_map(
+        |(axis, corner, from, kind, two_sided)| {
+            let (x, y) = (Vec3::AXES[(axis + 1) % 3], Vec3::AXES[(axis + 2) % 3]);
+            let mut from = from;
+            from[axis] = corner[axis];
+            let shape = match kind {
+                0 => EmitterShape::Parallelogram { corner, edges: (2.0 * x, y) },
+                _ => EmitterShape::Triangle(raykata::shape::Triangle {
+                    a: corner,
+                    b: corner + x,
+                    c: corner + y,
+                }),
+            };
+            let emitter = raykata::emitter::AreaEmitter { shape, radiance: Vec3::ONE, two_sided };
+            (Lit { emitter, from }, true)
+        },
+    );
+    let turned = (layouts(), 0..4i32).prop_map(|(layout, which)| {
+        let mut layout = layout;
+        match which {
+            // A one-sided emitter from behind or from inside, and a black one.
+            0 | 1 => {
+                layout.two_sided = which == 1 && layout.kind != 2;
+                layout.place.z = if layout.kind == 2 { -0.5 } else { -layout.place.z };
+            }
+            _ => {}
+        }
+        let mut lit = layout.lit();
+        if which == 2 {
+            lit.emitter.radiance = Vec3::ZERO;
+        }
+        (lit, which == 2 || which == 0 || (which == 1 && layout.kind == 2))
+    });
+    prop_oneof![1 => in_plane, 4 => turned]
+}
+
+/// An emitter with whether it is dark, and what was asked about it.
+type Asked<'a> = (&'a (Lit, bool), (&'a EmitterQuery, &'a EmitterPdfQuery));
+
+pub(super) fn dark_sides_send_no_light(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(500, (dark(), numbers()), |cases| {
+        let queries: Vec<EmitterQuery> = cases.iter().map(|((lit, _), u)| lit.sample(*u)).collect();
+        // A direction to the middle of the emitter.
+        let pdfs: Vec<EmitterPdfQuery> = cases
+            .iter()
+            .map(|((lit, _), _)| lit.pdf(lit.toward((0.45, 0.4)).try_normalize().unwrap_or(DVec3::Y)))
+            .collect();
+        let densities = trial.kit.light_pdf(&pdfs);
+        let answers = trial.kit.sample_light(&queries).into_iter().zip(densities);
+        let judge = |(((lit, is_dark), (query, pdf)), (yours, density)): (
+            Asked<'_>,
+            (Option<EmitterSample>, f32),
+        )| {
+            let (radiance, source) = (lit.emitter.radiance, "the definition");
+            let black = radiance == Vec3::ZERO;
+            let inside = matches!(lit.emitter.shape, EmitterShape::Sphere(_));
+            if yours.is_some() == *is_dark {
+                let expected = if *is_dark { "None" } else { "a sample" };
+                let broken =
+                    Broken::with_texts(query.call("sample_light"), format!("{yours:?}"), expected, source);
+                return Err(broken.explained_by([
+                    (*is_dark && black, "an emitter of radiance 0 sends no light: return None"),
+                    (
+                        *is_dark && !black && inside,
+                        "from inside, a sphere that is not two-sided sends no light",
+                    ),
+                    (
+                        *is_dark && !black && !inside && !lit.emitter.two_sided,
+                        "you sample the back of an emitter that is not two-sided",
+                    ),
+                    (!*is_dark, "you leave out emitters that send light"),
+                ]));
+            }
+            // The direction of a point in the plane of the emitter says nothing.
+            let is_right = if *is_dark { density == 0.0 } else { density > 0.0 };
+            if is_right {
+                return Ok(());
+            }
+            let expected = if *is_dark { "0.0" } else { "above 0" };
+            Err(Broken::with_texts(pdf.call("light_pdf"), format!("{density:?}"), expected, source)
+                .explained_by([
+                    (*is_dark && black, "an emitter of radiance 0 is never sampled: its density is 0"),
+                    (
+                        *is_dark && !black && !lit.emitter.two_sided && density > 0.0,
+                        "the back of an emitter that is not two-sided is never sampled: its density is 0",
+                    ),
+                    (density.is_nan(), "you return NaN"),
+                ]))
+        };
+        let cases = cases.iter().map(|(case, _)| case);
+        cases.zip(queries.iter().zip(&pdfs)).zip(answers).map(judge).collect()
+    })
+}
+
+/// An emitter of each kind, for statistical tests. The nearest and the farthest point of the emitter are at similar distances,
+/// so that no cell is rare if directions are uniform over the solid angle.
+pub(super) fn seen_well(trial: &Trial<'_>) -> [Lit; 3] {
+    let public = Layout {
+        kind: 0,
+        axis: Vec3::Y,
+        turn: 0.1,
+        corner: Vec3::new(1.0, 2.0, -1.0),
+        size: 1.0,
+        lean: 0.25,
+        // Not 1: at that height distance · cos θ is 1, and wrong densities agree.
+        place: DVec3::new(0.25, 0.5, 1.1),
+        two_sided: false,
+    };
+    let hidden = (layouts(), 0.0..1.0f64, 0.0..1.0f64, 0.75..1.5f64).prop_map(|(layout, x, y, height)| {
+        Layout { place: DVec3::new(x, y, height), two_sided: false, ..layout }
+    });
+    let layout = trial.varied(public, hidden);
+    [0, 1, 2].map(|kind| Layout { kind, ..layout }.lit())
+}
+
+/// The solid angle of each cell of the unit square times the student's density, by a product rule.
+fn shares_of_cells(trial: &Trial<'_>, lit: &Lit) -> Vec<f64> {
+    let nodes = nodes();
+    let queries: Vec<EmitterPdfQuery> = nodes.iter().map(|(place, _)| lit.pdf(lit.toward(*place))).collect();
+    let densities = trial.kit.light_pdf(&queries);
+    let parts: Vec<f64> = nodes
+        .iter()
+        .zip(densities)
+        .map(|((place, weight), density)| weight * lit.solid_angle(*place) * f64::from(density))
+        .collect();
+    parts.chunks(parts.len() / (CELLS * CELLS) as usize).map(|cell| cell.iter().sum()).collect()
+}
+
+pub(super) fn light_samples_have_their_density(trial: &Trial<'_>) -> CheckResult {
+    for (kind, lit) in seen_well(trial).into_iter().enumerate() {
+        let u = pairs(trial.seed, SAMPLES);
+        let queries: Vec<EmitterQuery> = u.iter().map(|u| lit.sample(*u)).collect();
+        let mut places = Vec::new();
+        let judge = |(query, yours): (&EmitterQuery, Option<EmitterSample>)| {
+            let Some(yours) = yours else { return Err(missing(query)) };
+            judge_sample(query, &yours)?;
+            places.push(lit.place(yours.direction.as_dvec3()));
+            Ok(())
+        };
+        all_hold(queries.iter().zip(trial.kit.sample_light(&queries)).map(judge).collect())?;
+        let what = format!("sample_light of {}, against your light_pdf", KINDS[kind]);
+        let axes = match kind {
+            2 => ["1 - cos θ, as a fraction of the rim's", "the angle around the axis"],
+            1 => ["the part of the area before the point", "the position across"],
+            _ => ["the first edge", "the second edge"],
+        };
+        has_shares(&what, &places, axes, &shares_of_cells(trial, &lit), |counts| {
+            let sample =
+                |u: &[Vec2]| trial.kit.sample_light(&u.iter().map(|u| lit.sample(*u)).collect::<Vec<_>>());
+            let unused = unused_number(sample);
+            let columns = checks::statistics::columns(counts);
+            let rows: Vec<u64> = counts.chunks(CELLS as usize).map(|row| row.iter().sum()).collect();
+            let is_place = |formula: fn(f64, f64) -> (f64, f64)| {
+                u.iter().zip(&places).all(|(u, place)| {
+                    let (s, t) = formula(f64::from(u.x), f64::from(u.y));
+                    (place.0 - s).abs() < 1e-2 && (place.1 - t).abs() < 1e-2
+                })
+            };
+            // Uniform barycentric coordinates on the wrong side of the diagonal, scaled back to the triangle.
+            let without_root = kind == 1
+                && [|u: f64, v: f64| (1.0 - (1.0 - u) * (1.0 - u), v), |u: f64, v: f64| (1.0 - u * u, v)]
+                    .into_iter()
+                    .any(is_place);
+            let proven = unused.into_iter().find(|(proven, _)| *proven).map(|(_, text)| text.to_owned());
+            proven
+                .or(without_root.then(|| {
+                    "your points crowd in a corner of the triangle: take the root of one number".to_owned()
+                }))
+                .or((columns.contains(&0) || rows.contains(&0))
+                    .then(|| format!("your samples leave out a part of {}", KINDS[kind])))
+        })?;
+    }
+    Ok(())
+}
+
+/// Judges that the density of each emitter integrates to 1.
+fn integrates_to_one(trial: &Trial<'_>, lits: &[Lit]) -> Vec<CheckResult> {
+    let nodes = nodes();
+    let queries: Vec<EmitterPdfQuery> =
+        lits.iter().flat_map(|lit| nodes.iter().map(|(place, _)| lit.pdf(lit.toward(*place)))).collect();
+    let densities = trial.kit.light_pdf(&queries);
+    let judge = |(lit, densities): (&Lit, &[f32])| {
+        let (mut integral, mut over_area) = (0.0, 0.0);
+        let mut gaps = 0;
+        for ((place, weight), density) in nodes.iter().zip(densities) {
+            let density = f64::from(*density);
+            let solid_angle = weight * lit.solid_angle(*place);
+            integral += density * solid_angle;
+            gaps += usize::from(density == 0.0);
+            if let Some(area) = lit.area() {
+                over_area += density * weight * area;
+            }
+        }
+        // The product rule is exact to 1e-4 for densities as smooth as these; the rest is rounding.
+        if (integral - 1.0).abs() <= 1e-3 {
+            return Ok(());
+        }
+        let is_one = |x: f64| (x - 1.0).abs() <= 1e-3;
+        let flat = lit.area().is_some();
+        let first = EmitterPdfQuery { direction: lit.pdf(lit.toward((0.5, 0.5))).direction, ..queries[0] };
+        let first = EmitterPdfQuery { emitter: lit.emitter, from: lit.from, ..first };
+        let input =
+            format!("{}\nand {} other directions to the emitter", first.call("light_pdf"), nodes.len() - 1);
+        let yours = format!("the integral over the directions is {integral:.5}");
+        let (full, half) = (is_one(integral / 2.0), is_one(2.0 * integral));
+        let all = gaps == nodes.len();
+        Err(Broken::with_texts(input, yours, "1", "a density integrates to 1").explained_by([
+            (integral.is_nan(), "you return NaN"),
+            (all, "your density is 0 for every direction to the emitter"),
+            (gaps > 0 && !all, "your density is 0 for some directions that meet the emitter"),
+            (flat && is_one(over_area), "your density is per area: multiply it by distance² / cos θ"),
+            (full, "your density is twice too large"),
+            (half, "your density is half of what it must be"),
+        ]))
+    };
+    lits.iter().zip(densities.chunks(nodes.len())).map(judge).collect()
+}
+
+pub(super) fn light_pdf_integrates_to_one(trial: &Trial<'_>) -> CheckResult {
+    trial.forall(80, bright(), |lits| integrates_to_one(trial, lits))
+}
+
+pub(super) fn far_sphere_lights_keep_their_density(trial: &Trial<'_>) -> CheckResult {
+    // A thousand radii away 1 - cos θ of the rim is 5e-7, a few units of the last digit of cos θ. The point is the origin, so
+    // that no rounding of a difference adds to this.
+    let lits = (nasty::unit(), 800..1200i32, nasty::scale(-4..=4)).prop_map(|(axis, radii, scale)| {
+        let shape = EmitterShape::Sphere(Sphere { center: scale * radii as f32 * axis, radius: scale });
+        let emitter = raykata::emitter::AreaEmitter { shape, radiance: Vec3::ONE, two_sided: false };
+        Lit { emitter, from: Vec3::ZERO }
+    });
+    trial.forall(60, lits.clone(), |lits| integrates_to_one(trial, lits))?;
+    trial.forall(200, (lits, 0..16i32, 0..16i32), |cases| {
+        let u = |n: i32| (n as f32 + 0.5) / 16.0;
+        let queries: Vec<EmitterQuery> =
+            cases.iter().map(|(lit, a, b)| lit.sample(vec2(u(*a), u(*b)))).collect();
+        compare(&queries, trial.kit.sample_light(&queries), |query, yours| {
+            let Some(yours) = yours else { return Err(missing(query)) };
+            let uniform = 1.0 / of(query).solid_angle((0.5, 0.5));
+            // Any density passes here that is not far from that of uniform directions, because `light_pdf` was judged above.
+            if (0.05..20.0).contains(&(f64::from(yours.pdf) / uniform)) {
+                return Ok(());
+            }
+            Err(Broken::new(query.call("sample_light"), yours.pdf, uniform, "1 / solid angle"))
+        })
+    })
+}
+
+pub(super) fn light_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
+    // Away from the edges, where rounding decides whether a direction meets the emitter.
+    // The sum of both numbers is never 1: a diagonal may be an edge.
+    let inner = |shift: f32| (1..15i32).prop_map(move |n| (n as f32 + shift) / 16.0);
+    let queries = (bright(), inner(0.3), inner(0.45)).prop_map(|(lit, x, y)| lit.sample(vec2(x, y)));
+    trial.forall(500, queries, |queries| {
+        let samples = trial.kit.sample_light(queries);
+        let directions: Vec<EmitterPdfQuery> = queries
+            .iter()
+            .zip(&samples)
+            .map(|(query, sample)| EmitterPdfQuery {
+                emitter: query.emitter,
+                from: query.from,
+                direction: sample.map_or(Vec3::X, |sample| sample.direction),
+            })
+            .collect();
+        let densities = trial.kit.light_pdf(&directions);
+        let judge = |((query, sample), (direction, density)): (
+            (&EmitterQuery, &Option<EmitterSample>),
+            (&EmitterPdfQuery, f32),
+        )| {
+            let Some(sample) = sample else { return Err(missing(query)) };
+            judge_sample(query, sample)?;
+            let ratio = f64::from(density) / f64::from(sample.pdf);
+            // The rounding of the direction moves the hit by up to 1e-5 of the distance, and the density with it.
+            if (ratio - 1.0).abs() <= 1e-3 {
+                return Ok(());
+            }
+            let area = of(query).area();
+            let is_area = area.is_some_and(|area| (f64::from(density) * area - 1.0).abs() < 1e-3);
+            let own_is_area = area.is_some_and(|area| (f64::from(sample.pdf) * area - 1.0).abs() < 1e-3);
+            let input =
+                format!("{}\nand the pdf of {}", direction.call("light_pdf"), query.call("sample_light"));
+            Err(Broken::new(input, density, sample.pdf, "your sample_light").explained_by([
+                (density == 0.0, "your light_pdf is 0 for a direction that sample_light returns"),
+                (is_area, "your light_pdf is per area, and the pdf of your sample is per steradian"),
+                (own_is_area, "the pdf of your sample is per area, and your light_pdf is per steradian"),
+                (density.is_nan(), "your light_pdf is NaN"),
+            ]))
+        };
+        queries.iter().zip(&samples).zip(directions.iter().zip(densities)).map(judge).collect()
+    })
+}
+
+pub(super) fn light_pdf_beside_the_light_is_zero(trial: &Trial<'_>) -> CheckResult {
+    // Directions that meet the emitter (0), and that miss it: beside it (1, 2), away from it (3).
+    let cases = (layouts(), 0..4i32, 0..16i32, 0..16i32).prop_map(|(layout, which, a, b)| {
+        let lit = layout.lit();
+        let u = |n: i32| (f64::from(n) + 0.5) / 16.0;
+        let inside = lit.toward((u(a), u(b)));
+        let direction = match (which, layout.kind) {
+            (0, _) => inside,
+            (3, _) => -inside,
+            // A point beyond the rim, up to twice its angle away, and one beyond an edge of the parallelogram.
+            (_, 2) => {
+                let (axis, rim) = (lit.toward((0.0, 0.0)), lit.toward((1.0, u(b))));
+                axis + (1.05 + u(a)) * (rim.normalize() - axis)
+            }
+            _ => {
+                // Before the start of an edge, or beyond the opposite one.
+                let (s, t) = match (which, layout.kind) {
+                    (1, _) => (-0.02 - u(a), u(b)),
+                    (_, 0) => (1.02 + u(a), u(b)),
+                    _ => (0.05 + 0.9 * u(a), 1.02 - 0.9 * u(a) + 0.5 * u(b)),
+                };
+                lit.beyond(s, t)
+            }
+        };
+        (lit, direction, which == 0)
+    });
+    trial.forall(500, cases, |cases| {
+        let queries: Vec<EmitterPdfQuery> =
+            cases.iter().map(|(lit, direction, _)| lit.pdf(*direction)).collect();
+        let answers = trial.kit.light_pdf(&queries);
+        let judge = |((_, _, meets), (query, yours)): (&(Lit, DVec3, bool), (&EmitterPdfQuery, f32))| {
+            if if *meets { yours > 0.0 } else { yours == 0.0 } {
+                return Ok(());
+            }
+            let expected = if *meets { "above 0" } else { "0.0: this direction misses the emitter" };
+            let reversed = EmitterPdfQuery { direction: -query.direction, ..*query };
+            let lit = Lit { emitter: query.emitter, from: query.from };
+            let away = !*meets && lit.outside(reversed.direction.as_dvec3()) < 0.0;
+            let broken =
+                Broken::with_texts(query.call("light_pdf"), format!("{yours:?}"), expected, "the definition");
+            Err(broken.explained_by([
+                (away && yours > 0.0, "this direction leads away from the emitter: the hit is behind `from`"),
+                (!*meets && yours > 0.0, "you do not test whether the direction meets the emitter"),
+                (yours.is_nan(), "you return NaN"),
+            ]))
+        };
+        cases.iter().zip(queries.iter().zip(answers)).map(judge).collect()
+    })
+}
+
+/// Pairs of random numbers for a mean, with the four corners of the unit square.
+pub(super) fn with_corners(seed: u64) -> Vec<Vec2> {
+    let corners = [0.0, LARGEST].map(|x| [vec2(x, 0.0), vec2(x, LARGEST)]);
+    corners.as_flattened().iter().copied().chain(pairs(seed, SAMPLES - 4)).collect()
+}

@@ -1,0 +1,165 @@
+//! Russian roulette.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::judge::compare;
+use checks::paste::Paste;
+use glam::Vec3;
+use proptest::prelude::*;
+use raykata::kit::RouletteQuery;
+
+fn paste(query: &RouletteQuery) -> String {
+    format!("survives({}, {}, {})", query.weight.paste(), query.bounce, query.u.paste())
+}
+
+/// A weight whose largest channel is `largest`.
+fn weight(largest: impl Strategy<Value = f32> + Clone) -> impl Strategy<Value = Vec3> + Clone {
+    (largest, 0..3usize, 0..=8i32, 0..=8i32).prop_map(|(largest, axis, first, second)| {
+        let mut weight = Vec3::splat(largest);
+        weight[(axis + 1) % 3] *= first as f32 / 8.0;
+        weight[(axis + 2) % 3] *= second as f32 / 8.0;
+        weight
+    })
+}
+
+/// The number of random numbers, one in the middle of each of so many equal intervals.
+const STRATA: u32 = 4096;
+
+pub(super) fn roulette_keeps_the_mean(trial: &Trial<'_>) -> CheckResult {
+    // The largest channel is at least 1/64, so that at least 64 of the random numbers survive.
+    let largest = prop_oneof![3 => (1..64i32).prop_map(|n| n as f32 / 64.0), 1 => 0.02..0.99f32];
+    // Roulette begins at bounce 3.
+    let first = [(Vec3::new(0.25, 0.5, 0.125), 3), (Vec3::new(0.75, 0.5, 0.875), 3)];
+    trial.forall_and(&first, 24, (weight(largest), 3..20u32), |cases| {
+        let query = |(weight, bounce): &(Vec3, u32)| {
+            let (weight, bounce) = (*weight, *bounce);
+            (0..STRATA).map(move |index| RouletteQuery {
+                weight,
+                bounce,
+                u: (index as f32 + 0.5) / STRATA as f32,
+            })
+        };
+        let queries: Vec<RouletteQuery> = cases.iter().flat_map(query).collect();
+        let answers = trial.kit.survives(&queries);
+        let judge =
+            |((weight, bounce), factors): (&(Vec3, u32), &[f32])| judge_mean(*weight, *bounce, factors);
+        cases.iter().zip(answers.chunks(STRATA as usize)).map(judge).collect()
+    })
+}
+
+fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
+    let largest = f64::from(weight.max_element());
+    let strata = f64::from(STRATA);
+    let survivors: Vec<f64> =
+        factors.iter().filter(|factor| **factor != 0.0).map(|factor| f64::from(*factor)).collect();
+    let share = survivors.len() as f64 / strata;
+    let factor = survivors.first().copied().unwrap_or(0.0);
+    let is_one_factor = survivors.iter().all(|other| *other == factor);
+    let mean = survivors.iter().sum::<f64>() / strata;
+    // The last stratum that survives may survive in part.
+    let slack = 1.5 / strata;
+    let in_range = share >= largest - slack && share <= 0.5 * (1.0 + largest) + slack;
+    if is_one_factor && (mean - 1.0).abs() <= slack * factor && in_range {
+        return Ok(());
+    }
+    let input =
+        format!("survives({}, {bounce}, u) for {STRATA} numbers u, evenly spaced in 0..1", weight.paste());
+    let yours = format!("{:.1} % survive, and the mean of the factor is {mean:.4}", 100.0 * share);
+    let expected = format!(
+        "{:.1} % to {:.1} %, mean 1, and one factor for all that survive",
+        100.0 * largest,
+        50.0 * (1.0 + largest)
+    );
+    let near = |x: f64, y: f64| (x - y).abs() <= 2.0 * slack * y.max(1.0);
+    let smallest = f64::from(weight.min_element());
+    let green = f64::from(weight.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+    let average = f64::from(weight.element_sum()) / 3.0;
+    Err(Broken::with_texts(input, yours, expected, "the mean over u").explained_by([
+        (factors.iter().any(|factor| factor.is_nan()), "you return NaN"),
+        (
+            share == 1.0 && near(mean, 1.0) && bounce == 3,
+            "your roulette begins too late: it begins at bounce 3",
+        ),
+        (share == 1.0 && near(mean, 1.0), "no path ever ends"),
+        (share == 0.0, "no path survives"),
+        (
+            near(share, 0.5) && near(mean, 1.0),
+            "every path survives with probability 1/2, whatever its weight",
+        ),
+        (
+            is_one_factor && factor == 1.0 && share < 1.0,
+            "you do not divide by the probability to survive, so the picture is too dark",
+        ),
+        (
+            is_one_factor && near(1.0 - share, largest),
+            "the path ends with the probability with which it must survive",
+        ),
+        (is_one_factor && near(1.0 - share, 1.0 / factor), "you divide by the probability to end"),
+        (near(share, smallest), "you compare u with the smallest channel of the weight: take the largest"),
+        (near(share, average), "you compare u with the mean of the channels: take the largest"),
+        (near(share, green), "you compare u with the luminance of the weight: take the largest channel"),
+        (is_one_factor && near(factor * largest * largest, 1.0), "you divide by the probability twice"),
+        (is_one_factor && near(factor, largest), "you multiply by the probability to survive: divide by it"),
+    ]))
+}
+
+pub(super) fn roulette_ends_no_bright_and_no_young_path(trial: &Trial<'_>) -> CheckResult {
+    let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
+    let young = (weight((1..=64i32).prop_map(|n| n as f32 / 64.0)), 0..3u32, number(), Just(true));
+    let bright = (weight((8..=64i32).prop_map(|n| n as f32 / 8.0)), 0..50u32, number(), Just(true));
+    // Every fifth path has the weight 1/64, and half of these must end, whichever random numbers end them.
+    let dim = (weight(Just(1.0f32 / 64.0)), 3..50u32, number(), Just(false));
+    let cases = prop_oneof![2 => young, 2 => bright, 1 => dim];
+    trial.forall(500, cases, |cases| {
+        let queries: Vec<RouletteQuery> = cases
+            .iter()
+            .map(|(weight, bounce, u, _)| RouletteQuery { weight: *weight, bounce: *bounce, u: *u })
+            .collect();
+        let answers: Vec<(f32, bool)> =
+            trial.kit.survives(&queries).into_iter().zip(cases.iter().map(|case| case.3)).collect();
+        let dim: Vec<f32> = answers.iter().filter(|(_, lives)| !lives).map(|(factor, _)| *factor).collect();
+        let none_ends = dim.len() > 10 && !dim.contains(&0.0);
+        compare(&queries, answers, |query, (yours, lives)| {
+            if if lives { yours == 1.0 } else { !none_ends } {
+                return Ok(());
+            }
+            let (young, bright) = (query.bounce < 3, query.weight.max_element() >= 1.0);
+            let expected = if lives { "1.0" } else { "0.0 for about half of the numbers u" };
+            let broken = Broken::with_texts(paste(query), format!("{yours:?}"), expected, "the definition");
+            Err(broken.explained_by([
+                (
+                    lives && query.bounce == 2 && !bright,
+                    "your roulette begins too early: not before bounce 3",
+                ),
+                (lives && young && !bright, "your roulette begins at the first bounces: not before bounce 3"),
+                (lives && bright, "a path whose weight is 1 or more never ends"),
+                (!lives, "no path ends"),
+            ]))
+        })
+    })
+}
+
+pub(super) fn roulette_ends_paths_without_weight(trial: &Trial<'_>) -> CheckResult {
+    let number = || (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0);
+    // Every fourth path has weight in one channel, and lives: its largest channel is 1.
+    let cases = (0..12i32, 0..20u32, number()).prop_map(|(which, bounce, u)| {
+        let weight = if which < 3 { Vec3::AXES[which as usize] } else { Vec3::ZERO };
+        RouletteQuery { weight, bounce, u: if which == 5 { 0.0 } else { u } }
+    });
+    trial.forall(300, cases, |queries| {
+        compare(queries, trial.kit.survives(queries), |query, yours| {
+            let lives = query.weight != Vec3::ZERO;
+            if yours == f32::from(u8::from(lives)) {
+                return Ok(());
+            }
+            let expected = f32::from(u8::from(lives));
+            Err(Broken::new(paste(query), yours, expected, "the definition").explained_by([
+                (yours.is_nan(), "you return NaN: 0 / 0"),
+                (!lives && yours.is_infinite(), "you divide by 0"),
+                (!lives && query.bounce < 3, "a path without weight ends at once, also before bounce 3"),
+                (!lives, "a path without weight goes on"),
+                (lives, "you end a path that has weight in one channel"),
+            ]))
+        })
+    })
+}

@@ -1,0 +1,217 @@
+//! Multiple importance sampling.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::generate::magnitude;
+use checks::judge::compare;
+use checks::paste::call;
+use proptest::prelude::*;
+use std::f64::consts::TAU;
+
+type Pair = (f32, f32);
+
+fn paste((own, other): &Pair) -> String {
+    call("mis_weight", &[own, other])
+}
+
+/// The answers for each pair and for the same pair in the other order.
+fn both_ways(trial: &Trial<'_>, pairs: &[Pair]) -> Vec<Pair> {
+    let reversed: Vec<Pair> = pairs.iter().map(|(own, other)| (*other, *own)).collect();
+    trial.kit.mis_weight(pairs).into_iter().zip(trial.kit.mis_weight(&reversed)).collect()
+}
+
+/// Judges that both weights are in 0..=1 and sum to 1.
+fn judge_sum(pair: &Pair, (own, other): Pair) -> CheckResult {
+    let is_share = |weight: f32| (0.0..=1.0).contains(&weight);
+    let sum = f64::from(own) + f64::from(other);
+    // Two roundings.
+    if is_share(own) && is_share(other) && (sum - 1.0).abs() <= 1e-6 {
+        return Ok(());
+    }
+    // Whether both weights are those of a formula in single precision, bit for bit.
+    let is = |formula: fn(f32, f32) -> f32| {
+        let same = |x: f32, y: f32| x == y || (x.is_nan() && y.is_nan());
+        same(own, formula(pair.0, pair.1)) && same(other, formula(pair.1, pair.0))
+    };
+    let input = format!("{} and {}", paste(pair), paste(&(pair.1, pair.0)));
+    let expected = "two weights in 0..=1 that sum to 1";
+    Err(Broken::with_texts(input, format!("{own:?} and {other:?}, sum {sum}"), expected, "the definition")
+        .explained_by([
+            (
+                is(|own, other| own * own / (own * own + other * other)),
+                "the squares of the densities overflow or underflow: divide first",
+            ),
+            (is(|own, other| own / (own + other)), "the sum of the densities overflows: divide first"),
+            (own.is_nan() || other.is_nan(), "you return NaN"),
+            (own == 1.0 && other == 1.0, "each technique counts in full, so light is counted twice"),
+            (own == 0.0 && other == 0.0, "both weights are 0, so light is lost"),
+            (sum > 1.0 + 1e-6, "your weights sum to more than 1, so light is counted twice"),
+            (sum < 1.0 - 1e-6, "your weights sum to less than 1, so light is lost"),
+        ]))
+}
+
+pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
+    let density = || prop_oneof![1 => (1..=32i32).prop_map(|n| n as f32 / 8.0), 3 => magnitude(-4.0, 4.0)];
+    let pairs = (density(), density(), 0..6i32)
+        .prop_map(|(own, other, which)| (own, if which == 0 { own } else { other }));
+    trial.forall(500, pairs, |pairs| {
+        let answers = both_ways(trial, pairs);
+        let outcomes = compare(pairs, answers.clone(), |pair, answers| {
+            judge_sum(pair, answers)?;
+            let (larger, smaller) = if pair.0 >= pair.1 { answers } else { (answers.1, answers.0) };
+            if larger >= smaller {
+                return Ok(());
+            }
+            let expected = "the larger density has the larger weight";
+            Err(Broken::new(paste(pair), answers.0, expected, "the definition").explained_by([(
+                true,
+                "the smaller density gets the larger weight: own and other are exchanged",
+            )]))
+        });
+        // Weights that are always 1/2 pass so far, although they ignore the densities.
+        let all_half = pairs.len() > 1 && answers.iter().all(|(own, _)| *own == 0.5);
+        if all_half {
+            let broken = Broken::with_texts(
+                paste(&pairs[0]),
+                "0.5 for all densities",
+                "a weight that depends on the densities",
+                "the definition",
+            );
+            return vec![Err(broken.explained_by([(true, "your weights are 1/2, whatever the densities")]))];
+        }
+        outcomes
+    })
+}
+
+pub(super) fn mis_weight_of_a_lone_density_is_one(trial: &Trial<'_>) -> CheckResult {
+    // 0: the other technique never takes this sample. ∞: a mirror always takes it.
+    let cases = (magnitude(-6.0, 6.0), any::<bool>(), any::<bool>()).prop_map(|(density, certain, own)| {
+        let special = if certain { f32::INFINITY } else { 0.0 };
+        if own { (special, density) } else { (density, special) }
+    });
+    trial.forall(200, cases, |pairs| {
+        compare(pairs, trial.kit.mis_weight(pairs), |pair, yours| {
+            let expected = if pair.0 == f32::INFINITY || pair.1 == 0.0 { 1.0 } else { 0.0 };
+            if yours == expected {
+                return Ok(());
+            }
+            Err(Broken::new(paste(pair), yours, expected, "the definition").explained_by([
+                (yours.is_nan(), "you return NaN: ∞ / ∞"),
+                (
+                    pair.0.is_infinite() || pair.1.is_infinite(),
+                    "a technique with infinite density always takes this sample: it gets the whole weight",
+                ),
+                (pair.1 == 0.0, "the other technique never takes this sample: its weight is 1"),
+            ]))
+        })
+    })
+}
+
+pub(super) fn mis_weight_survives_extreme_densities(trial: &Trial<'_>) -> CheckResult {
+    let extreme =
+        || prop_oneof![1 => magnitude(18.0, 38.0), 1 => magnitude(-38.0, -18.0), 1 => Just(f32::MAX)];
+    let pairs = (extreme(), extreme(), 0..4i32)
+        .prop_map(|(own, other, which)| (own, if which == 0 { own } else { other }));
+    trial.forall(300, pairs, |pairs| compare(pairs, both_ways(trial, pairs), judge_sum))
+}
+
+/// A lobe `cosⁿ θ` around the direction to the middle of a square light of this side at distance 1. Its radiance is 1.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    exponent: f64,
+    side: f64,
+}
+
+/// The number of nodes along half a side.
+const NODES: usize = 48;
+
+impl Case {
+    /// Points of a quarter of the light: the density of the lobe, that of uniform points of the light, and the solid angle.
+    fn nodes(&self) -> Vec<(f64, f64, f64)> {
+        // The nodes are dense at the middle, where a sharp lobe is: x = side / 2 · t⁴.
+        let half = 0.5 * self.side;
+        let at = |index: usize| {
+            let t = (index as f64 + 0.5) / NODES as f64;
+            (half * t.powi(4), 4.0 * half * t.powi(3) / NODES as f64)
+        };
+        let mut nodes = Vec::with_capacity(NODES * NODES);
+        for (x, dx) in (0..NODES).map(at) {
+            for (y, dy) in (0..NODES).map(at) {
+                let squared = 1.0 + x * x + y * y;
+                let cosine = squared.sqrt().recip();
+                let per_area = cosine / squared;
+                let lobe = (self.exponent + 1.0) / TAU * cosine.powf(self.exponent);
+                // Leave out the rest of a sharp lobe, which carries no light and would underflow.
+                if lobe < 1e-30 {
+                    continue;
+                }
+                nodes.push((lobe, 1.0 / (self.side * self.side * per_area), 4.0 * dx * dy * per_area));
+            }
+        }
+        nodes
+    }
+}
+
+/// The variance of one sample of each technique, in units of the squared mean, below which weights pass. The balance
+/// heuristic reaches 0.183 and the power heuristic 0.179 for exponents from 1 to 10,000 and sides from 0.02 to 2; weights of 1/2
+/// reach more than 1,000.
+const LARGEST_VARIANCE: f64 = 0.25;
+
+pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResult {
+    let factors = trial.varied((1.0f64, 1.0f64), (1.0..3.0f64, 1.0..2.0f64));
+    for exponent in [1.0, 10.0, 100.0, 1000.0, 3000.0] {
+        for side in [0.02, 0.2, 1.0] {
+            let case = Case { exponent: exponent * factors.0, side: side * factors.1 };
+            let nodes = case.nodes();
+            let pairs: Vec<Pair> =
+                nodes.iter().map(|(lobe, light, _)| (*lobe as f32, *light as f32)).collect();
+            let weights = both_ways(trial, &pairs);
+            // The mean and the second moment of each technique, by integrals: no random numbers.
+            let (mut mean, mut means, mut squares) = (0.0, [0.0; 2], [0.0; 2]);
+            for ((lobe, light, solid_angle), (by_lobe, by_light)) in nodes.iter().zip(&weights) {
+                let arrives = lobe * solid_angle;
+                mean += arrives;
+                for (technique, (weight, density)) in
+                    [(by_lobe, lobe), (by_light, light)].into_iter().enumerate()
+                {
+                    let weight = f64::from(*weight);
+                    means[technique] += weight * arrives;
+                    squares[technique] += weight * weight * arrives * lobe / density;
+                }
+            }
+            let variance: f64 = (0..2).map(|i| squares[i] - means[i] * means[i]).sum::<f64>() / (mean * mean);
+            let bias = (means[0] + means[1]) / mean - 1.0;
+            if variance <= LARGEST_VARIANCE && bias.abs() < 1e-4 {
+                continue;
+            }
+            let input = format!(
+                "the light that a lobe cos^{:.0} θ receives from a square light of side {:.2} at distance 1,\none sample of the lobe and one of the light, weighted by mis_weight",
+                case.exponent, case.side
+            );
+            let yours =
+                format!("variance {variance:.4} of the squared mean, mean {:.4} of the light", 1.0 + bias);
+            let broken = Broken::with_texts(
+                input,
+                yours,
+                format!("at most {LARGEST_VARIANCE}, and all of the light"),
+                "integrals over the light",
+            );
+            let all = |is: &dyn Fn(&Pair, &Pair) -> bool| {
+                pairs.iter().zip(&weights).all(|(pair, weights)| is(pair, weights))
+            };
+            return Err(broken.explained_by([
+                (weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()), "you return NaN"),
+                (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2, whatever the densities"),
+                (
+                    all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1)),
+                    "the smaller density gets the larger weight: own and other are exchanged",
+                ),
+                (
+                    all(&|_, weights| *weights == (1.0, 1.0)),
+                    "each technique counts in full, so light is counted twice",
+                ),
+            ]));
+        }
+    }
+    Ok(())
+}
