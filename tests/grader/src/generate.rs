@@ -48,9 +48,12 @@ pub fn write(scenes: &Path) -> Result<()> {
     );
     for (name, picture) in images::all() {
         let out = scenes.join("images").join(name);
-        picture
-            .write_png(&out, raykata::film::encode_srgb)
-            .with_context(|| format!("cannot write {}", out.display()))?;
+        let written = if name.ends_with(".hdr") {
+            picture.write_hdr(&out)
+        } else {
+            picture.write_png(&out, raykata::film::encode_srgb)
+        };
+        written.with_context(|| format!("cannot write {}", out.display()))?;
         println!("wrote {}: {} × {} pixels", out.display(), picture.width, picture.height);
     }
     Ok(())
