@@ -1,7 +1,8 @@
-//! `grader generate`: makes the mesh of the showcase (a ribbed torus knot of 57,600 triangles), a tree, and the images of
-//! the scenes. So the repository contains no foreign meshes or images.
+//! `grader generate`: makes the mesh of the showcase (a ribbed torus knot of 57,600 triangles), a tree, a field of
+//! spheres, and the images of the scenes. So the repository contains no foreign meshes or images.
 
 mod images;
+mod spheres;
 mod tree;
 
 use crate::report::make_folder;
@@ -46,6 +47,10 @@ pub fn write(scenes: &Path) -> Result<()> {
         tree.display(),
         text.lines().filter(|line| line.starts_with('f')).count()
     );
+    let field = scenes.join("spheres.toml");
+    raykata::film::write_atomically(&field, |file| file.write_all(spheres::toml().as_bytes()))
+        .with_context(|| format!("cannot write {}", field.display()))?;
+    println!("wrote {}", field.display());
     for (name, picture) in images::all() {
         let out = scenes.join("images").join(name);
         let written = if name.ends_with(".hdr") {

@@ -31,7 +31,7 @@ fn paint(width: u32, height: u32, color: fn(Vec2) -> Vec3) -> Film {
 }
 
 /// Returns a pseudo-random number in `0.0..1.0` for a cell, the same on every machine.
-fn shade(x: i32, y: i32) -> f32 {
+pub(super) fn shade(x: i32, y: i32) -> f32 {
     let mut bits = (x as u32).wrapping_mul(0x9e37_79b9) ^ (y as u32).wrapping_mul(0x85eb_ca6b);
     bits = (bits ^ (bits >> 15)).wrapping_mul(0x2c1b_3c6d);
     bits = (bits ^ (bits >> 12)).wrapping_mul(0x297a_2d39);

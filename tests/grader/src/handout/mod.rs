@@ -40,7 +40,7 @@ const FOLDERS: [(&str, &[&str]); 8] = [
     ("tests/checks", &["rs", "toml"]),
     ("tests/oracle", &["rs", "toml"]),
     ("tests/judge", &["rs", "toml"]),
-    ("scenes", &["toml"]),
+    ("scenes", &["md", "toml"]),
     ("scenes/meshes", &["ply", "obj", "mtl"]),
     ("scenes/images", &["png", "hdr"]),
     ("slides", &["md", "svg"]),
