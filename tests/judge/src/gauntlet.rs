@@ -47,13 +47,20 @@ pub fn rows_of_kit(kit: &dyn Kit) -> Vec<Row<'_>> {
                 inputs.iter().map(|&(ray, triangle)| TriangleQuery { ray, triangle }).collect();
             ask(kit, &queries).into_iter().map(|hit| hit.map(|hit| hit.t)).collect()
         };
-        // Leave out a function that is not written yet, and say so.
-        match kit_error::catch(|| answer(&[example])) {
-            Ok(_) => rows.push(Row { name: name.into(), answer: Box::new(answer), method: None }),
-            Err(error) => println!("{name} is left out: {error}"),
+        if is_written(name, || answer(&[example])) {
+            rows.push(Row { name: name.into(), answer: Box::new(answer), method: None });
         }
     }
     rows
+}
+
+/// Whether the function `name` of the kit answers `call`. If it is not written yet, prints that it is left out, and why.
+pub(crate) fn is_written<A>(name: &str, call: impl FnOnce() -> A) -> bool {
+    let answer = kit_error::catch(call);
+    if let Err(error) = &answer {
+        println!("{name} is left out: {error}");
+    }
+    answer.is_ok()
 }
 
 /// Inputs of each distribution, and rays at the edges and at the vertices of each mesh, for a [`summary`].

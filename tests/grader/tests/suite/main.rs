@@ -1,6 +1,7 @@
 //! All tests of the grader in one program, so that it is linked once and slow tests run in parallel.
 
 mod agreement;
+mod boxes_and_offsets;
 mod cases;
 #[cfg(target_os = "linux")]
 mod command_line;
