@@ -249,6 +249,9 @@ fn a_scene_is_explained_and_predictions_hold() {
         "  lens            camera: aperture 0.12, focal distance 7",
         "  motion          toy ball",
         "  indirect light  [environment] does not request it",
+        "noise             the pixels deviate by ",
+        // Two samples of the area light and one of the point light, and two glossy rays.
+        "  `brushed`                                3            2            0",
     ] {
         assert!(said.contains(line), "no `{line}` in\n{said}");
     }
