@@ -157,7 +157,7 @@ pub fn footprint(direction: Vec3, normal: Vec3, width: f32) -> [Vec3; 2] {
     let along = direction - direction.dot(normal) * normal;
     match along.try_normalize() {
         Some(along) => [width / cosine * along, width * normal.cross(along)],
-        // The ray meets the surface at a right angle, so all axes are alike.
+        // The ray meets the surface at a right angle, so the cone covers a disk, and any axis is its longest.
         None => {
             let (x, y) = normal.any_orthonormal_pair();
             [width * x, width * y]
