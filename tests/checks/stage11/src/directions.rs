@@ -46,7 +46,7 @@ pub(super) fn cosine_directions_stay_above_the_surface(trial: &Trial<'_>) -> Che
             let broken =
                 Broken::new(paste(query), yours, "a unit direction above the surface", "the definition");
             Err(broken.explained_by([
-                (constant, "you return the normal, whatever u is"),
+                (constant, "you return the normal for every u"),
                 (
                     yours.is_nan(),
                     "you return NaN: your frame does not exist for this normal, or you normalize 0",

@@ -84,7 +84,7 @@ fn judge_mean(weight: Vec3, bounce: u32, factors: &[f32]) -> CheckResult {
         (share == 0.0, "no path survives"),
         (
             near(share, 0.5) && near(mean, 1.0),
-            "every path survives with probability 1/2, whatever its weight",
+            "every path survives with probability 1/2, but the probability has to follow its weight",
         ),
         (
             is_one_factor && factor == 1.0 && share < 1.0,

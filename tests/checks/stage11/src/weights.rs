@@ -77,7 +77,7 @@ pub(super) fn mis_weights_sum_to_one(trial: &Trial<'_>) -> CheckResult {
                 "a weight that depends on the densities",
                 "the definition",
             );
-            return vec![Err(broken.explained_by([(true, "your weights are 1/2, whatever the densities")]))];
+            return vec![Err(broken.explained_by([(true, "your weights are 1/2 for all densities")]))];
         }
         outcomes
     })
@@ -201,7 +201,7 @@ pub(super) fn mis_weights_keep_the_variance_low(trial: &Trial<'_>) -> CheckResul
             };
             return Err(broken.explained_by([
                 (weights.iter().any(|(p, q)| p.is_nan() || q.is_nan()), "you return NaN"),
-                (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2, whatever the densities"),
+                (all(&|_, weights| *weights == (0.5, 0.5)), "your weights are 1/2 for all densities"),
                 (
                     all(&|pair, weights| (pair.0 > pair.1) == (weights.0 < weights.1)),
                     "the smaller density gets the larger weight: own and other are exchanged",
