@@ -21,13 +21,15 @@ use raykata::kit::{Door, Kit, SlabQuery, TriangleQuery, kit_error};
 use raykata::ray::Ray;
 use raykata::scene::{Accelerator, Quality, Split};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// The number of rays of one piece of work in closed meshes, for which a structure over each mesh is built.
+/// The number of rays of one piece of work in closed meshes.
 const IN_MESHES: u64 = 50_000;
+/// The most pieces that are done together: a structure over each mesh is built once for all of them.
+const TOGETHER: usize = 20;
 /// The number of rays of another piece of work: those of a frame of secondary rays.
 const PIECE: u64 = secondary_rays::RAYS;
 /// Time limit for a piece in one mesh, with the build of the structure and without much optimisation.
@@ -136,31 +138,21 @@ impl Trial {
         }
     }
 
-    /// Counts the failures among the rays of piece `piece`.
-    fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, piece: u64) -> Result<u64> {
-        let mut random = Random::new(seed, piece);
+    /// Counts the failures among the rays of these pieces. Each piece has random numbers of its own, so the rays do not depend
+    /// on which pieces are done together.
+    fn failures(self, kit: &dyn Kit, meshes: &[Closed], seed: u64, pieces: &[u64]) -> Result<u64> {
+        let randoms = pieces.iter().map(|&piece| Random::new(seed, piece));
         match self {
-            Trial::SelfHit => secondary_rays::self_hits(kit, &mut random),
-            Trial::Contact => secondary_rays::lost_contacts(kit, &mut random),
-            Trial::Slab => {
-                let queries: Vec<SlabQuery> = (0..PIECE)
-                    .filter_map(
-                        |n| if n % 2 == 0 { at_a_corner(&mut random) } else { of_any_size(&mut random) },
-                    )
-                    .collect();
-                let meets = |query: &SlabQuery| {
-                    overlap(&query.ray, &query.bounds).is_some_and(|overlap| overlap.verdict.is_hit())
-                };
-                let answers = kit.conservative_slab(&queries);
-                let missed =
-                    queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
-                Ok(missed.count() as u64)
-            }
+            Trial::SelfHit => randoms.map(|mut random| secondary_rays::self_hits(kit, &mut random)).sum(),
+            Trial::Contact => randoms.map(|mut random| secondary_rays::lost_contacts(kit, &mut random)).sum(),
+            Trial::Slab => Ok(randoms.map(|random| lost_boxes(kit, random)).sum()),
             Trial::Mesh(structure, aim) => {
                 let mut rays: Vec<Vec<(Ray, u32)>> = vec![Vec::new(); meshes.len()];
-                for n in 0..IN_MESHES as usize {
-                    let mesh = n % meshes.len();
-                    rays[mesh].push(aimed(&meshes[mesh], aim, &mut random));
+                for mut random in randoms {
+                    for n in 0..IN_MESHES as usize {
+                        let mesh = n % meshes.len();
+                        rays[mesh].push(aimed(&meshes[mesh], aim, &mut random));
+                    }
                 }
                 Ok(meshes.iter().zip(&rays).map(|(mesh, rays)| leaks(kit, mesh, structure, rays)).sum())
             }
@@ -168,6 +160,18 @@ impl Trial {
     }
 }
 
+/// Counts the boxes of one piece of work that the conservative test loses although the ray meets them.
+fn lost_boxes(kit: &dyn Kit, mut random: Random) -> u64 {
+    let queries: Vec<SlabQuery> = (0..PIECE)
+        .filter_map(|n| if n % 2 == 0 { at_a_corner(&mut random) } else { of_any_size(&mut random) })
+        .collect();
+    let meets = |query: &SlabQuery| {
+        overlap(&query.ray, &query.bounds).is_some_and(|overlap| overlap.verdict.is_hit())
+    };
+    let answers = kit.conservative_slab(&queries);
+    let missed = queries.iter().zip(answers).filter(|(query, answer)| answer.is_none() && meets(query));
+    missed.count() as u64
+}
 /// Runs until `rays` rays of each kind are done. Returns the numbers, and whether no ray failed.
 pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Table, bool)> {
     let mut state = read(file)?;
@@ -179,29 +183,35 @@ pub fn run(reference: &Source, rays: u64, seed: u64, file: &Path) -> Result<(Tab
         );
     }
     state.seed = seed;
-    // List the pieces of work that are not done.
-    let open = |trial: &Trial, piece: &u64| {
-        state.done.get(&trial.name()).is_none_or(|done| !done.pieces.contains(piece))
-    };
-    let work: Vec<(Trial, u64)> = Trial::all()
+    // List the pieces of work that are not done, and put some of each trial together.
+    let work: Vec<(Trial, Vec<u64>)> = Trial::all()
         .into_iter()
-        .flat_map(|trial| (0..rays.div_ceil(trial.rays())).map(move |piece| (trial, piece)))
-        .filter(|(trial, piece)| open(trial, piece))
+        .flat_map(|trial| {
+            let done: BTreeSet<u64> = state
+                .done
+                .get(&trial.name())
+                .into_iter()
+                .flat_map(|done| done.pieces.iter().copied())
+                .collect();
+            let open: Vec<u64> =
+                (0..rays.div_ceil(trial.rays())).filter(|piece| !done.contains(piece)).collect();
+            open.chunks(TOGETHER).map(|pieces| (trial, pieces.to_vec())).collect::<Vec<_>>()
+        })
         .collect();
     // Run them on all cores and store the progress regularly.
     let meshes = families();
     let kit = || Door(Worker::new(reference.program.clone(), PATIENCE));
     let kits: Vec<_> = (0..queue::cores()).map(|_| kit()).collect();
-    let bar = bar_of_steps(work.len());
+    let bar = bar_of_steps(work.iter().map(|(_, pieces)| pieces.len()).sum());
     let state = Mutex::new((state, Instant::now()));
-    queue::run(&kits, &work, |kit, &(trial, piece)| {
-        let failures = kit_error::catch(|| trial.failures(kit, &meshes, seed, piece))??;
-        bar.inc(1);
+    queue::run(&kits, &work, |kit, (trial, pieces)| {
+        let failures = kit_error::catch(|| trial.failures(kit, &meshes, seed, pieces))??;
+        bar.inc(pieces.len() as u64);
         let mut guard = state.lock().unwrap_or_else(|broken| broken.into_inner());
         let (state, kept) = &mut *guard;
         let done = state.done.entry(trial.name()).or_default();
-        done.pieces.push(piece);
-        done.rays += trial.rays();
+        done.pieces.extend(pieces);
+        done.rays += trial.rays() * pieces.len() as u64;
         done.failures += failures;
         if kept.elapsed() > PAUSE {
             write(state, file)?;
