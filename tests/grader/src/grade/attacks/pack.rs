@@ -77,7 +77,15 @@ impl ArchiveEntry {
 
     fn write_content(&self, out: &mut impl Write) -> io::Result<()> {
         out.write_all(&self.content)?;
-        io::copy(&mut io::Read::take(io::repeat(0), self.zeros), out).map(|_| ())
+        // Write the zeros block by block: `io::repeat` makes them one by one.
+        static BLOCK: [u8; 1 << 16] = [0; 1 << 16];
+        let mut left = self.zeros;
+        while left > 0 {
+            let now = left.min(BLOCK.len() as u64);
+            out.write_all(&BLOCK[..now as usize])?;
+            left -= now;
+        }
+        Ok(())
     }
 }
 
