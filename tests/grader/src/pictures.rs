@@ -102,6 +102,7 @@ impl Scenes {
             "effects, no lens, all smooth",
             "effects, Schlick",
             "stage8",
+            "cornell",
         ];
         let is_asked = |name: &str| asked.contains(&name) || name.starts_with(&format!("{SEARCHED}, "));
         Scenes(self.0.iter().filter(|(name, _)| is_asked(name)).cloned().collect())
