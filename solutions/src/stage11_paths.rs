@@ -277,7 +277,7 @@ pub fn paths_called_for(scene: &Scene) -> PathEffects {
     let shutter_moves = scene.camera.shutter.is_some_and(|shutter| shutter.close > shutter.open);
     let can_be_sampled = |shape: &Shown| {
         let plane = matches!(scene.nodes[shape.node].shape, Some(Shape::Plane(_) | Shape::PlaneEquation(_)));
-        !plane && !(shape.moves && shutter_moves)
+        !(plane || shape.moves && shutter_moves)
     };
     let sampled = |material: usize| {
         let is_light = scene.visible_lights.iter().any(|light| light.material == material);
