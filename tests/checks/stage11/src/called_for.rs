@@ -131,8 +131,8 @@ fn case(what: &'static str, scene: Scene, needs: Needs, mistakes: &[(Needs, &'st
 
 pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult {
     let wall = || (sphere(), diffuse(Vec3::ONE));
-    let lamp = || (sphere(), glowing(Vec3::ONE));
-    let lit = scene(&[wall(), lamp()]);
+    let emitter = || (sphere(), glowing(Vec3::ONE));
+    let lit = scene(&[wall(), emitter()]);
     let mut shallow = lit.clone();
     shallow.quality.max_depth = 0;
     const WALL: Needs = (&[1], &[], false);
@@ -165,7 +165,7 @@ pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult 
             case("a diffuse sphere in the dark", scene(&[wall()]), NOTHING, &[(WALL, DARK)]),
             case(
                 "a sphere that emits light and reflects none",
-                scene(&[lamp()]),
+                scene(&[emitter()]),
                 NOTHING,
                 &[
                     ((&[], &[1], false), "a light is sampled only if a surface reflects its light"),
@@ -176,13 +176,13 @@ pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult 
                 "a diffuse sphere under a black light and one of intensity 0",
                 black_lights,
                 NOTHING,
-                &[(WALL, DARK), (WALL, "these lights emit nothing: use radiance()")],
+                &[(WALL, "these lights emit nothing: use radiance()"), (WALL, DARK)],
             ),
             case(
                 "a diffuse sphere in ambient light",
                 ambient,
                 NOTHING,
-                &[(WALL, DARK), (WALL, "ambient light stands for indirect light: it is not a source of it")],
+                &[(WALL, "ambient light stands for indirect light: it is not a source of it"), (WALL, DARK)],
             ),
         ],
     )
@@ -198,6 +198,7 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     let (zero, one) = (Vec3::ZERO, Vec3::ONE);
     const WALL: Needs = (&[1], &[], false);
     const WITH_MAP: Needs = (&[1], &[], true);
+    const LIGHTS: &str = "lights of the scene are light, too";
     let background = [(NOTHING, "the background is light, too")];
     let mut mirror = scene(&[wall(), (sphere(), Material { mirror: one, ..diffuse(zero) })]);
     mirror.lights.push(light(one));
@@ -207,12 +208,7 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
     judge_all(
         trial,
         vec![
-            case(
-                "a diffuse sphere under a red light",
-                lit,
-                WALL,
-                &[(NOTHING, "lights of the scene are light, too")],
-            ),
+            case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
             case("a diffuse sphere under a grey sky", with(Background::Color(0.1 * one)), WALL, &background),
             case("a diffuse sphere over a bright ground", with(gradient(zero, zero, one)), WALL, &background),
             case(
@@ -253,13 +249,13 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
                 "a diffuse sphere and a mirror under a light",
                 mirror,
                 WALL,
-                &[((&[1, 2], &[], false), "a mirror sends no diffuse rays")],
+                &[((&[1, 2], &[], false), "a mirror sends no diffuse rays"), (NOTHING, LIGHTS)],
             ),
             case(
                 "a glass sphere with a highlight, and a diffuse one",
                 glass,
                 (&[2], &[], false),
-                &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays")],
+                &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
             ),
         ],
     )
@@ -268,14 +264,14 @@ pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckR
 pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> CheckResult {
     const CHANNELS: &str = "compare channel by channel: a red light adds nothing to a green wall";
     let wall = |color| (sphere(), diffuse(color));
-    let lamp = |color| (sphere(), glowing(color));
+    let emitter = |color| (sphere(), glowing(color));
     let mut red_light = scene(&[wall(GREEN), wall(RED)]);
     red_light.lights.push(light(RED));
     let map = Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale: 1.0 });
     let black = Scene { background: map, ..scene(&[wall(Vec3::ZERO)]) };
-    let two = scene(&[wall(RED), lamp(GREEN), lamp(RED)]);
-    let mixed = scene(&[wall(GREEN), lamp(RED + GREEN)]);
-    let sky = Scene { background: Background::Color(GREEN), ..scene(&[wall(GREEN), lamp(RED)]) };
+    let two = scene(&[wall(RED), emitter(GREEN), emitter(RED)]);
+    let mixed = scene(&[wall(GREEN), emitter(RED + GREEN)]);
+    let sky = Scene { background: Background::Color(GREEN), ..scene(&[wall(GREEN), emitter(RED)]) };
     const UNREFLECTED: &str = "nothing reflects the light of the map";
     judge_all(
         trial,
@@ -287,8 +283,8 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
                 &[((&[1, 2], &[], false), CHANNELS)],
             ),
             case(
-                "a green sphere and a red lamp",
-                scene(&[wall(GREEN), lamp(RED)]),
+                "a green sphere and a red emitter",
+                scene(&[wall(GREEN), emitter(RED)]),
                 NOTHING,
                 &[
                     ((&[1], &[2], false), CHANNELS),
@@ -297,14 +293,14 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
                 ],
             ),
             case(
-                "a red sphere, a green lamp and a red lamp",
+                "a red sphere, a green emitter and a red emitter",
                 two,
                 (&[1], &[3], false),
                 &[((&[1], &[2, 3], false), CHANNELS)],
             ),
-            case("a green sphere and a yellow lamp", mixed, (&[1], &[2], false), &[]),
+            case("a green sphere and a yellow emitter", mixed, (&[1], &[2], false), &[]),
             case(
-                "a green sphere and a red lamp under a green sky",
+                "a green sphere and a red emitter under a green sky",
                 sky,
                 (&[1], &[], false),
                 &[((&[1], &[2], false), CHANNELS)],
@@ -321,29 +317,29 @@ pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> Chec
 
 pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckResult {
     let wall = || (sphere(), diffuse(Vec3::ONE));
-    let lamp = || (sphere(), glowing(Vec3::ONE));
+    let emitter = || (sphere(), glowing(Vec3::ONE));
     let plain = scene(&[wall(), (plane(), glowing(Vec3::ONE))]);
     // The same material on a plane and on a sphere.
     let mut both = plain.clone();
     both.nodes.push(Node { shape: Some(sphere()), material: Some(2), ..Node::default() });
     both.roots.push(2);
-    // A lamp that no root reaches, and the material of a lamp that no shape has.
-    let mut hidden = scene(&[wall(), lamp()]);
+    // An emitter that no root reaches, and the material of an emitter that no shape has.
+    let mut hidden = scene(&[wall(), emitter()]);
     hidden.roots.pop();
     hidden.background = Background::Color(Vec3::ONE);
     hidden.materials.push(glowing(Vec3::ONE));
     hidden.material_names.push("unused".into());
     let moving = |shutter: Option<Shutter>| {
-        let mut scene = scene(&[wall(), lamp()]);
+        let mut scene = scene(&[wall(), emitter()]);
         scene.nodes[1].transform_end = Some(Affine3A::from_translation(Vec3::X));
         scene.camera.shutter = shutter;
         scene
     };
     // A visible light has a shape with a material that emits its light.
-    let mut visible = scene(&[wall(), lamp()]);
+    let mut visible = scene(&[wall(), emitter()]);
     let shape = AreaShape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
-    let emitter = Emitter::Area { shape, falloff: Falloff::InverseSquare };
-    visible.lights.push(Light { emitter, ..light(Vec3::ONE) });
+    let area = Emitter::Area { shape, falloff: Falloff::InverseSquare };
+    visible.lights.push(Light { emitter: area, ..light(Vec3::ONE) });
     visible.visible_lights.push(VisibleLight { light: 0, material: 2 });
     let glow = Material { emission: Vec3::ONE, ..diffuse(Vec3::ONE) };
     const WALL: Needs = (&[1], &[], false);
@@ -366,25 +362,25 @@ pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckRe
                 &[(WALL, "a material is sampled if one of its shapes can be")],
             ),
             case(
-                "a diffuse sphere and a lamp that no root reaches, under a sky",
+                "a diffuse sphere and an emitter that no root reaches, under a sky",
                 hidden,
                 WALL,
                 &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
             ),
             case(
-                "a diffuse sphere and a lamp that moves",
+                "a diffuse sphere and an emitter that moves",
                 moving(Some(Shutter { open: 0.0, close: 1.0 })),
                 WALL,
                 &[(BOTH, "a light that moves is not sampled")],
             ),
             case(
-                "a diffuse sphere and a lamp that would move, without a shutter",
+                "a diffuse sphere and an emitter that would move, without a shutter",
                 moving(None),
                 BOTH,
                 &[(WALL, STILL)],
             ),
             case(
-                "a diffuse sphere and a lamp that would move, with a shutter that closes when it opens",
+                "a diffuse sphere and an emitter that would move, with a shutter that closes when it opens",
                 moving(Some(Shutter { open: 0.5, close: 0.5 })),
                 BOTH,
                 &[(WALL, STILL)],

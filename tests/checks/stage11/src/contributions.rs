@@ -131,7 +131,7 @@ pub(super) fn light_contributions_have_their_closed_form(trial: &Trial<'_>) -> C
                         "you multiply by the density of the sample: divide by it",
                     ),
                     (
-                        is(weight * whole * pdf / other, pdf / other),
+                        other == 0.0 || is(weight * whole * pdf / other, pdf / other),
                         "you divide by the density of the surface, not by that of the light",
                     ),
                     (
@@ -178,6 +178,10 @@ pub(super) fn light_from_below_adds_nothing(trial: &Trial<'_>) -> CheckResult {
                         "light from below the surface counts: take no absolute value of the cosine",
                     ),
                     (above && !adds, "light from above the surface counts"),
+                    (
+                        if above { !adds } else { yours.min_element() < 0.0 },
+                        "your test is reversed: light from above the surface counts, not light from below",
+                    ),
                 ]))
         })
     })

@@ -96,6 +96,8 @@ fn probability(scattering: &Scattering, sample: &BsdfSample) -> f64 {
     f64::from(reflectance.max_element()) / f64::from(sample.weight.max_element())
 }
 
+const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
+
 pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
     let queries = (surfaces(), number(), number(), number())
         .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
@@ -115,7 +117,10 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
             };
             if is_black {
                 let broken = Broken::new(paste(query), yours, None::<()>, "the definition");
-                return Err(broken.explained_by([(true, "all lobes are black: there is nothing to choose")]));
+                return Err(broken.explained_by([
+                    (true, "all lobes are black: there is nothing to choose"),
+                    (true, CHOOSES_BLACK),
+                ]));
             }
             let reflectance = reflectance_of(scattering, sample.lobe);
             let direction = sample.direction.as_dvec3();
@@ -137,7 +142,7 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
             let expected = "a lobe that reflects light, and a direction of it";
             Err(Broken::with_texts(paste(query), format!("{sample:?}"), expected, "the definition")
                 .explained_by([
-                    (reflectance == Vec3::ZERO, "you choose a lobe whose reflectance is 0"),
+                    (reflectance == Vec3::ZERO, CHOOSES_BLACK),
                     (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
                     (
                         sample.lobe == Lobe::Diffuse && is_certain,
@@ -195,7 +200,7 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
                 Err(Broken::with_texts(paste(query), yours, expected, "the definition"))
             },
             |query, yours| {
-                let Some(sample) = yours else { return vec![(true, ""); 5] };
+                let Some(sample) = yours else { return vec![(true, ""); 4] };
                 let scattering = &query.scattering;
                 let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
                 let share = share(scattering, sample.lobe);
@@ -205,7 +210,6 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
                 };
                 let largest = reflectance.max_element();
                 vec![
-                    (near(1.0), "your weight is the reflectance: divide it by the probability of the choice"),
                     (near(share), "you multiply by the probability of the choice: divide by it"),
                     (
                         near(1.0 / largest),

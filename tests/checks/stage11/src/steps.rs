@@ -456,7 +456,7 @@ pub(super) fn steps_ask_for_no_useless_shadow_ray(trial: &Trial<'_>) -> CheckRes
                 USELESS.iter().enumerate().map(|(index, reason)| (index == *which, *reason)).chain([
                     (is_needed, "this light must be sampled"),
                     (
-                        !is_needed,
+                        step.shadow.is_some_and(|shadow| shadow.light == Vec3::ZERO),
                         "a shadow ray is traced although its light is 0: compare the light with 0 first",
                     ),
                 ]),
@@ -627,8 +627,11 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                         "the weight of the path is missing",
                     ),
                     (
-                        step.next.is_some_and(|next| next.pdf == f32::INFINITY)
-                            && sample.lobe == Lobe::Diffuse,
+                        is(
+                            step,
+                            &BsdfSample { pdf: f32::INFINITY, ..*sample },
+                            unless_below(by(factor) * whole),
+                        ),
                         "the density of a diffuse ray is that of sample_bsdf",
                     ),
                 ]
