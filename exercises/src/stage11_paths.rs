@@ -118,8 +118,8 @@ pub fn step(path: &PathState, vertex: &PathVertex, max_depth: u32, numbers: &Ste
 /// - `sampled`: for each material, whether points of its surfaces are sampled. Its emission and the `diffuse` of some
 ///   material with diffuse rays are not 0 in the same channel, and some shown shape that has it is neither an infinite plane nor
 ///   moves while the shutter is open. The material of a visible light is never sampled, because the light is.
-/// - `environment`: whether the background is an environment map whose `scale`, in this sense, is not 0, and some material has
-///   diffuse rays.
+/// - `environment`: whether the background is an environment map with a `scale` other than 0, and some material has diffuse
+///   rays.
 ///
 /// Pitfall: a red light adds nothing to a green wall, although neither is black. Compare channel by channel. A shape that could
 /// move stands still without a shutter, or with one that closes when it opens.

@@ -239,8 +239,8 @@ fn continued(path: &PathState, vertex: &PathVertex, numbers: &StepNumbers) -> Op
 /// - `sampled`: for each material, whether points of its surfaces are sampled. Its emission and the `diffuse` of some
 ///   material with diffuse rays are not 0 in the same channel, and some shown shape that has it is neither an infinite plane nor
 ///   moves while the shutter is open. The material of a visible light is never sampled, because the light is.
-/// - `environment`: whether the background is an environment map whose `scale`, in this sense, is not 0, and some material has
-///   diffuse rays.
+/// - `environment`: whether the background is an environment map with a `scale` other than 0, and some material has diffuse
+///   rays.
 ///
 /// Pitfall: a red light adds nothing to a green wall, although neither is black. Compare channel by channel. A shape that could
 /// move stands still without a shutter, or with one that closes when it opens.
@@ -277,7 +277,7 @@ pub fn paths_called_for(scene: &Scene) -> PathEffects {
     let shutter_moves = scene.camera.shutter.is_some_and(|shutter| shutter.close > shutter.open);
     let can_be_sampled = |shape: &Shown| {
         let plane = matches!(scene.nodes[shape.node].shape, Some(Shape::Plane(_) | Shape::PlaneEquation(_)));
-        !plane && !(shape.moves && shutter_moves)
+        !(plane || shape.moves && shutter_moves)
     };
     let sampled = |material: usize| {
         let is_light = scene.visible_lights.iter().any(|light| light.material == material);
