@@ -17,6 +17,10 @@ pub enum Event {
     Reflection,
     /// A refracted ray was traced through a surface.
     Transmission,
+    /// A ray in a random direction was traced from a diffuse surface (indirect light).
+    Indirect,
+    /// A path ended at a surface that reflects light, before its last bounce: by Russian roulette.
+    Absorbed,
     /// A ray other than a shadow ray hit a surface.
     Hit,
     /// A search looked at the contents of a node or cell.
@@ -42,6 +46,10 @@ pub struct Counts {
     pub reflection: u64,
     /// The number of refracted rays.
     pub transmission: u64,
+    /// The number of rays in random directions from diffuse surfaces (indirect light).
+    pub indirect: u64,
+    /// The number of paths that ended at a surface that reflects light, before their last bounce: by Russian roulette.
+    pub absorbed: u64,
     /// The number of hits of rays with surfaces, without those of shadow rays.
     pub hits: u64,
     /// The number of nodes or cells whose contents a search looked at.
@@ -57,9 +65,9 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// The number of rays of all four kinds: primary, shadow, reflected and refracted.
+    /// The number of rays of all five kinds: primary, shadow, reflected, refracted and indirect.
     pub fn rays(&self) -> u64 {
-        self.primary + self.shadow + self.reflection + self.transmission
+        self.primary + self.shadow + self.reflection + self.transmission + self.indirect
     }
 }
 
@@ -69,6 +77,8 @@ impl AddAssign for Counts {
         self.shadow += other.shadow;
         self.reflection += other.reflection;
         self.transmission += other.transmission;
+        self.indirect += other.indirect;
+        self.absorbed += other.absorbed;
         self.hits += other.hits;
         self.node_visits += other.node_visits;
         self.box_tests += other.box_tests;
@@ -95,6 +105,8 @@ impl Tally for Counts {
             Event::Shadow => &mut self.shadow,
             Event::Reflection => &mut self.reflection,
             Event::Transmission => &mut self.transmission,
+            Event::Indirect => &mut self.indirect,
+            Event::Absorbed => &mut self.absorbed,
             Event::Hit => &mut self.hits,
             Event::NodeVisit => &mut self.node_visits,
             Event::BoxTest => &mut self.box_tests,

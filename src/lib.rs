@@ -7,7 +7,7 @@
 //! |---|---|
 //! | [`ray`], [`aabb`], [`shape`], [`mesh`] | geometry as data: rays with an open range of `t`, boxes, shapes, indexed meshes |
 //! | [`bvh`], [`graph`], [`partition`] | acceleration structures as data, and what a search may ask ([`bvh::Probe`], [`partition::Cells`]) |
-//! | [`material`], [`emitter`], [`camera`], [`film`] | what surfaces and lights are made of, where rays start, where colours end |
+//! | [`material`], [`emitter`], [`light_path`], [`camera`], [`film`] | what surfaces and lights are made of, the steps of a path, where rays start, where colours end |
 //! | [`scene`], [`world`] | scene files (TOML, PLY, OBJ), and the scene flattened into primitives |
 //! | [`effects`], [`count`], [`random`] | what a scene needs, what it cost, and random numbers that are looked up by address |
 //! | [`rounding`] | bounds on rounding errors |
@@ -34,6 +34,7 @@ pub mod film;
 pub mod frame;
 pub mod graph;
 pub mod kit;
+pub mod light_path;
 pub mod material;
 pub mod mesh;
 pub mod partition;

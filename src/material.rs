@@ -33,7 +33,7 @@ pub struct Material {
     /// The roughness of glossy reflection and refraction, `0..=1`; 0 is a perfectly smooth surface (stage 6).
     pub roughness: f32,
     /// The radiance that the surface emits by itself, on both sides and evenly in all directions. Camera rays, reflected
-    /// and refracted rays see it; direct light comes from [`Light`] alone.
+    /// and refracted rays see it. It lights other surfaces only in a scene with indirect light.
     pub emission: Vec3,
     /// The index in [`crate::scene::Scene::textures`] of an image that multiplies `diffuse` and `ambient`
     /// (stage 7).

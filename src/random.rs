@@ -22,6 +22,14 @@ pub enum Purpose {
     Light(u32),
     /// The direction of a glossy reflection or refraction.
     Glossy(Bounce),
+    /// The choice of the emitter that a vertex of a path samples; only the first number is used.
+    EmitterChoice,
+    /// The point of that emitter.
+    EmitterPoint,
+    /// The direction in which a path continues.
+    Direction,
+    /// The choice of a lobe, and Russian roulette.
+    Lobe,
 }
 
 /// A sample of the unit square by stratified sampling: it lies in cell `cell` of a grid of `grid.x` columns
@@ -63,6 +71,12 @@ impl Points {
     pub fn beyond(&self, bounce: Bounce, part: u32, parts: u32) -> Points {
         let key = mix(self.key ^ mix(1 + bounce as u64));
         Points { key, index: self.nth(part, parts), count: self.count.saturating_mul(parts), ..*self }
+    }
+
+    /// The address of the ray that continues this path, of which there is one, whichever lobe it belongs to. So the
+    /// samples of a pixel share a sequence at each bounce.
+    pub fn beyond_vertex(&self) -> Points {
+        Points { key: mix(self.key ^ mix(3)), ..*self }
     }
 
     /// The random numbers of draw `part` of `parts` (`0 <= part < parts`) for `purpose`, with both numbers in
@@ -113,6 +127,10 @@ fn address(purpose: Purpose) -> u64 {
         Purpose::Lens => 2,
         Purpose::Time => 3,
         Purpose::Glossy(bounce) => 4 + bounce as u64,
+        Purpose::EmitterChoice => 6,
+        Purpose::EmitterPoint => 7,
+        Purpose::Direction => 8,
+        Purpose::Lobe => 9,
         Purpose::Light(index) => 16 + u64::from(index),
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod stage10_stability;
 pub mod stage11_light_transport;
+pub mod stage11_paths;
 pub mod stage1_shapes;
 pub mod stage2_triangles;
 pub mod stage3_boxes;

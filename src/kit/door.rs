@@ -8,6 +8,7 @@ use crate::effects::{Effects, LightEffects, MaterialEffects};
 use crate::emitter::EmitterSample;
 use crate::frame::Watch;
 use crate::graph::Placement;
+use crate::light_path::{BsdfSample, PathEffects, PathStep};
 use crate::mesh::Mesh;
 use crate::partition::{Bsp, Grid, KdTree, Octree, PolygonBsp};
 use crate::random::Stratum;

@@ -200,5 +200,34 @@ examples! {
         from: Vec3::new(0.0, 0.0, 9.0),
         direction: Vec3::NEG_Z,
     };
+    Scattering => Scattering { diffuse: Vec3::ONE, normal: Vec3::Z, secondary: Vec::new() };
+    EmitterSample => EmitterSample { direction: Vec3::Z, distance: 1.0, radiance: Vec3::ONE, pdf: 1.0 };
+    BsdfQuery => BsdfQuery { scattering: example(), u: Vec3::splat(0.5) };
+    BsdfPdfQuery => BsdfPdfQuery { scattering: example(), direction: Vec3::Z };
+    LightContributionQuery => LightContributionQuery {
+        diffuse: Vec3::ONE,
+        normal: Vec3::Z,
+        sample: example(),
+        bsdf_pdf: 1.0,
+    };
+    EmissionQuery => EmissionQuery { emission: Vec3::ONE, pdf: 1.0, light_pdf: 1.0 };
+    StepQuery => StepQuery {
+        path: PathState {
+            origin: Vec3::Z,
+            direction: Vec3::NEG_Z,
+            weight: Vec3::ONE,
+            bounces: 0,
+            pdf: f32::INFINITY,
+        },
+        vertex: PathVertex {
+            surface: example(),
+            scattering: example(),
+            emission: Vec3::ZERO,
+            emitter: None,
+            light: None,
+        },
+        max_depth: 0,
+        numbers: StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 },
+    };
     RouletteQuery => RouletteQuery { weight: Vec3::ONE, bounce: 0, u: 0.5 };
 }

@@ -1,6 +1,7 @@
 //! Stage 11, light transport: queries.
 
-use crate::emitter::AreaEmitter;
+use crate::emitter::{AreaEmitter, EmitterSample};
+use crate::light_path::{PathState, PathVertex, Scattering, StepNumbers};
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -36,4 +37,59 @@ pub struct RouletteQuery {
     pub bounce: u32,
     /// A random number, `0 <= u < 1`.
     pub u: f32,
+}
+
+/// Asks in which direction a path continues; the answer is a [`BsdfSample`](crate::light_path::BsdfSample).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BsdfQuery {
+    /// How the surface scatters light.
+    pub scattering: Scattering,
+    /// Three random numbers, `0 <= u < 1` each.
+    pub u: Vec3,
+}
+
+/// Asks for the density with which a direction is sampled at a surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BsdfPdfQuery {
+    /// How the surface scatters light.
+    pub scattering: Scattering,
+    /// The direction, of unit length.
+    pub direction: Vec3,
+}
+
+/// Asks for the light of a sample of a light that a diffuse surface sends on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LightContributionQuery {
+    /// The diffuse reflectance of the surface.
+    pub diffuse: Vec3,
+    /// The unit normal of the surface.
+    pub normal: Vec3,
+    /// The sample of the light.
+    pub sample: EmitterSample,
+    /// The density with which the surface samples the direction of the sample, per steradian.
+    pub bsdf_pdf: f32,
+}
+
+/// Asks for the light of a surface that a ray has hit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EmissionQuery {
+    /// The radiance that the surface emits back along the ray.
+    pub emission: Vec3,
+    /// The density with which the direction of the ray was sampled, per steradian.
+    pub pdf: f32,
+    /// The density with which a sample of the light has this direction, per steradian.
+    pub light_pdf: f32,
+}
+
+/// Asks for a step of a path; the answer is a [`PathStep`](crate::light_path::PathStep).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StepQuery {
+    /// The path up to the surface.
+    pub path: PathState,
+    /// The surface.
+    pub vertex: PathVertex,
+    /// The greatest number of reflections and refractions on a path.
+    pub max_depth: u32,
+    /// The random numbers of the step.
+    pub numbers: StepNumbers,
 }

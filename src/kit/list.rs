@@ -709,6 +709,41 @@ macro_rules! student_functions {
                 BouncesForError fn bounces_for_error(albedo: f32, error: f32) -> u32
                     = stage11_light_transport::bounces_for_error;
                 |(albedo, error): (f32, f32)| -> u32 { F::bounces_for_error(*albedo, *error) }
+                /// A random direction in which a path continues, from one lobe of the surface; `None` if the surface
+                /// sends no light on. `u` are three random numbers.
+                SampleBsdf fn sample_bsdf(scattering: &Scattering, u: Vec3) -> Option<BsdfSample>
+                    = stage11_paths::sample_bsdf;
+                |q: BsdfQuery| -> Option<BsdfSample> { F::sample_bsdf(&q.scattering, q.u) }
+                /// The density per steradian with which `sample_bsdf` samples a unit direction in the diffuse
+                /// lobe, the probability of this lobe included.
+                BsdfPdf fn bsdf_pdf(scattering: &Scattering, direction: Vec3) -> f32
+                    = stage11_paths::bsdf_pdf;
+                |q: BsdfPdfQuery| -> f32 { F::bsdf_pdf(&q.scattering, q.direction) }
+                /// The radiance that a diffuse surface sends on from a sample of a light, without occlusion. A
+                /// sample of the surface has the same direction with density `bsdf_pdf`.
+                SampleLightContribution fn sample_light_contribution(
+                    diffuse: Vec3, normal: Vec3, sample: &EmitterSample, bsdf_pdf: f32
+                ) -> Vec3
+                    = stage11_paths::sample_light_contribution;
+                |q: LightContributionQuery| -> Vec3 {
+                    F::sample_light_contribution(q.diffuse, q.normal, &q.sample, q.bsdf_pdf)
+                }
+                /// The part of the radiance `emission` that counts for a ray which has hit its emitter. The
+                /// direction of the ray was sampled with density `pdf`, and samples of the light have it with
+                /// density `light_pdf`.
+                EmittedContribution fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3
+                    = stage11_paths::emitted_contribution;
+                |q: EmissionQuery| -> Vec3 { F::emitted_contribution(q.emission, q.pdf, q.light_pdf) }
+                /// What a path does at a surface: the light that it collects, the shadow ray to a light, and the
+                /// ray along which it continues.
+                Step fn step(path: &PathState, vertex: &PathVertex, max_depth: u32, numbers: &StepNumbers) -> PathStep
+                    = stage11_paths::step;
+                |q: StepQuery| -> PathStep { F::step(&q.path, &q.vertex, q.max_depth, &q.numbers) }
+                /// What the paths of a scene need: which materials diffuse rays leave, and which lights are
+                /// sampled.
+                PathsCalledFor fn paths_called_for(scene: &Scene) -> PathEffects
+                    = stage11_paths::paths_called_for;
+                |q: Scene| -> PathEffects { F::paths_called_for(q) }
             }
         }
     };

@@ -44,7 +44,10 @@ pub use functions::Running;
 pub(crate) use functions::note_unwound;
 pub use functions::{Function, StudentFunctions, is_written, take_unwound};
 pub use kit_error::KitError;
-pub use light_transport::{EmitterPdfQuery, EmitterQuery, RouletteQuery};
+pub use light_transport::{
+    BsdfPdfQuery, BsdfQuery, EmissionQuery, EmitterPdfQuery, EmitterQuery, LightContributionQuery,
+    RouletteQuery, StepQuery,
+};
 pub use partitions::{
     BspQuery, CachedQuery, CellsAnswer, CellsProbe, CellsQuery, GridQuery, KdQuery, OctreeQuery,
     PacketAnswer, PacketProbe, PacketQuery, ResolutionQuery,

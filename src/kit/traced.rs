@@ -13,6 +13,8 @@ pub enum RayKind {
     Reflection,
     /// A ray refracted through a surface.
     Transmission,
+    /// A ray in a random direction from a diffuse surface (indirect light).
+    Indirect,
     /// A shadow ray to a light.
     Shadow,
 }

@@ -7,6 +7,9 @@ pub use crate::camera::{Camera, Lens, Shutter};
 pub use crate::effects::{Effects, LightEffects, MaterialEffects};
 pub use crate::emitter::{AreaEmitter, EmitterSample, EmitterShape};
 pub use crate::graph::{ChildCache, Graph, Placement, Savings};
+pub use crate::light_path::{
+    BsdfSample, PathEffects, PathState, PathStep, PathVertex, Scattering, StepNumbers,
+};
 pub use crate::material::{Light, Material, Texture, Wrap};
 pub use crate::mesh::Mesh;
 pub use crate::partition::{Bsp, Cell, Cells, Grid, KdHeuristics, KdTree, Octree, PolygonBsp};

@@ -4,7 +4,8 @@ use crate::world::around_sphere;
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// The radiance of rays that hit nothing. Camera rays, reflected and refracted rays see it.
+/// The radiance of rays that hit nothing. Camera rays, reflected and refracted rays see it, and diffuse rays in a scene
+/// with indirect light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Background {
     /// One colour in all directions, in linear radiance.

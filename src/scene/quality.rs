@@ -261,6 +261,15 @@ pub struct Quality {
     /// A secondary ray is not traced if its weight in the pixel is below this in every channel, `0..=1`
     /// (stage 5); 0.001 by default.
     pub min_contribution: f32,
+    /// With indirect light: whether each vertex of a path samples an emitter or the environment map (next-event
+    /// estimation, stage 11); `true` by default. Otherwise paths find emitters by chance only.
+    pub next_event: bool,
+    /// With indirect light: the number of bounces from which on Russian roulette ends paths, at least 2 (stage 11); 3 by
+    /// default. From `max_depth` on it never does.
+    pub roulette_from: u32,
+    /// With indirect light: the largest channel of the light of a sample; a brighter sample is darkened to it, which
+    /// removes bright specks and makes the picture too dark. 0, the default, sets no limit.
+    pub clamp: f32,
     /// The acceleration structure that finds the closest hit; a bounding volume hierarchy by default.
     pub accelerator: Accelerator,
     /// Where a bounding volume hierarchy divides its primitives; by surface area by default.
@@ -296,6 +305,9 @@ impl Default for Quality {
             texture_filter: TextureFilter::default(),
             max_depth: 5,
             min_contribution: 0.001,
+            next_event: true,
+            roulette_from: 3,
+            clamp: 0.0,
             accelerator: Accelerator::default(),
             split: Split::default(),
             leaf_size: 4,

@@ -3,6 +3,7 @@
 use super::camera_sampler::CameraSampler;
 use super::interaction::Looks;
 use super::intersector::Intersector;
+use super::path_tracer::IndirectLight;
 use super::plan::Plan;
 use super::texture_filter::Pyramids;
 use super::written::Written;
@@ -26,6 +27,8 @@ pub struct Frame<'a, F> {
     pub looks: Looks,
     /// The smaller copies of all images, if images are filtered.
     pub pyramids: Option<Pyramids>,
+    /// What paths of indirect light sample; `None` if no indirect light is computed.
+    pub indirect: Option<IndirectLight>,
     /// At which depth and weight a path ends.
     pub limits: Limits,
 }
@@ -39,12 +42,13 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
         let plan = Plan::new(job, written);
         let world = World::new(scene, &plan.effects, &plan.world);
         let pyramids = plan.mipmaps.then(|| Pyramids::new(&world, &plan.effects));
+        let indirect = plan.paths.as_ref().map(|paths| IndirectLight::new(scene, &world, paths));
         let n_primitives = world.primitives.len() as u64;
         let intersector = building::watched(watch, n_primitives, || Intersector::new(world, &plan, quality));
         let camera = CameraSampler::new(scene, &plan);
         let looks = Looks { tests: plan.tests, smooth: plan.smooth, facing: plan.facing };
         let limits = Limits { max_depth: quality.max_depth, min_contribution: quality.min_contribution };
-        Frame { job, plan, camera, intersector, looks, pyramids, limits }
+        Frame { job, plan, camera, intersector, looks, pyramids, indirect, limits }
     }
 
     /// The quality settings of the scene that is rendered.
@@ -67,6 +71,7 @@ impl<'a, F: StudentFunctions> Frame<'a, F> {
             threads: self.job.threads,
             seed: self.job.seed,
         };
-        settings.obey(&self.plan.effects)
+        let settings = settings.obey(&self.plan.effects);
+        FrameSettings { on_the_way: settings.on_the_way || self.indirect.is_some(), ..settings }
     }
 }

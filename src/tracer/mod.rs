@@ -6,10 +6,14 @@
 //! which finds their hits. The intersector searches a `structure` through a `probe`, which tests triangles
 //! and spheres by `intersection` and shapes in spaces of their own by `solids`. `grid_resolution` chooses the
 //! cells of a grid, and `large_leaves` notes where a tree could not be divided as asked. `path` follows a ray
-//! through the tree of its secondary rays, from `interaction` to interaction. `record` stores the rays of a
-//! pixel, `outlines` draws structures, `gamma2` decodes colours, and `texture_filter` filters images.
+//! through the tree of its secondary rays, from `interaction` to interaction. With indirect light `path_tracer`
+//! follows one random path in place of the tree; `emitters` and `environment` choose the lights that it samples.
+//! `record` stores the rays of a pixel, `outlines` draws structures, `gamma2` decodes colours, and
+//! `texture_filter` filters images.
 
 mod camera_sampler;
+mod emitters;
+mod environment;
 mod frame;
 mod gamma2;
 mod grid_resolution;
@@ -22,6 +26,7 @@ mod motion;
 mod outlines;
 mod packets;
 mod path;
+mod path_tracer;
 mod plan;
 mod probe;
 mod random_choices;
@@ -159,7 +164,10 @@ fn pixels<F: StudentFunctions, T: Tally>(frame: &Frame<'_, F>, watch: &dyn Watch
         let path = Path::from_camera(ray, sample.points, frame.camera.cone());
         let mut color = match frame.plan.view {
             View::Normals => frame.normal_as_color(&path, hit, scratch, &mut NoRecord),
-            View::Shaded | View::Work => frame.radiance(path, hit, scratch, &mut NoRecord),
+            View::Shaded | View::Work => match &frame.indirect {
+                None => frame.radiance(path, hit, scratch, &mut NoRecord),
+                Some(indirect) => frame.radiance_of_path(indirect, path, hit, scratch, &mut NoRecord),
+            },
         };
         if let Some(before) = before {
             color = work(&before, &scratch.counts());
@@ -188,7 +196,10 @@ fn trace<F: StudentFunctions>(job: &RenderJob, written: &Written<F>, x: u32, y: 
     let hit = frame.closest_hit(&path.ray, &mut scratch);
     match frame.plan.view {
         View::Normals => frame.normal_as_color(&path, hit, &mut scratch, &mut record),
-        View::Shaded | View::Work => frame.radiance(path, hit, &mut scratch, &mut record),
+        View::Shaded | View::Work => match &frame.indirect {
+            None => frame.radiance(path, hit, &mut scratch, &mut record),
+            Some(indirect) => frame.radiance_of_path(indirect, path, hit, &mut scratch, &mut record),
+        },
     };
     record.rays
 }

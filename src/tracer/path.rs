@@ -99,7 +99,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// The radiance of a ray along `direction` that hits nothing.
     #[inline(always)]
-    fn background<T: Tally>(&self, direction: Vec3, scratch: &mut Scratch<T>) -> Vec3 {
+    pub(super) fn background<T: Tally>(&self, direction: Vec3, scratch: &mut Scratch<T>) -> Vec3 {
         match &self.job.scene.background {
             Background::Color(color) => *color,
             Background::Gradient(gradient) => gradient.color(direction),
@@ -110,7 +110,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     /// The colour of the environment map in `direction`, by `texture_color` of stage 7. Until that is written, it is the
     /// colour of the pixel in which the direction lies.
     #[cold]
-    fn environment_color<T: Tally>(
+    pub(super) fn environment_color<T: Tally>(
         &self,
         map: &EnvironmentMap,
         direction: Vec3,
@@ -163,7 +163,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// The material of the surface, with `ambient` and `diffuse` multiplied by its image.
     #[inline(always)]
-    fn material<T: Tally>(
+    pub(super) fn material<T: Tally>(
         &self,
         path: &Path,
         hit: &Hit,
@@ -209,7 +209,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// The cone of a secondary ray, if images are filtered.
     #[inline(always)]
-    fn cone_beyond(
+    pub(super) fn cone_beyond(
         &self,
         path: &Path,
         hit: &Hit,
@@ -231,7 +231,12 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// Puts a sample of each light that can reach the surface into `scratch.lights`.
     #[inline(always)]
-    fn sample_lights<T: Tally>(&self, path: &Path, at: &SurfaceInteraction, scratch: &mut Scratch<T>) {
+    pub(super) fn sample_lights<T: Tally>(
+        &self,
+        path: &Path,
+        at: &SurfaceInteraction,
+        scratch: &mut Scratch<T>,
+    ) {
         scratch.lights.clear();
         scratch.shadows.clear();
         let effects = &self.plan.effects;
@@ -266,7 +271,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     /// Direct light by the student's `shade`, which asks for a shadow ray per light; `record` receives those
     /// that are traced.
     #[inline(always)]
-    fn shade<T: Tally>(
+    pub(super) fn shade<T: Tally>(
         &self,
         path: &Path,
         at: &SurfaceInteraction,
@@ -276,7 +281,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     ) -> Vec3 {
         let Scratch { tally, lights, shadows, .. } = scratch;
         let to_viewer = -self.unit(path.ray.direction);
-        let ambient = self.job.scene.ambient;
+        let ambient = self.plan.ambient;
         F::shade(&at.surface, to_viewer, material, ambient, lights, |light, shadow_ray| {
             if !shadows[light] {
                 return true;
@@ -339,7 +344,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
 
     /// The unit vector along `direction`, by `safe_normalize` of stage 10 if it is written.
     #[inline(always)]
-    fn unit(&self, direction: Vec3) -> Vec3 {
+    pub(super) fn unit(&self, direction: Vec3) -> Vec3 {
         match self.plan.safe_units {
             true => F::safe_normalize(direction).unwrap_or(direction),
             false => direction.normalize(),
@@ -349,7 +354,7 @@ impl<F: StudentFunctions> Frame<'_, F> {
     /// `ray`, which leaves the surface, with the origin that `offset_origin` of stage 10 gives if it is written;
     /// otherwise with its own.
     #[inline(always)]
-    fn off_surface(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
+    pub(super) fn off_surface(&self, at: &SurfaceInteraction, ray: Ray) -> Ray {
         let Surface { point, error, geometric_normal, .. } = at.surface;
         match self.plan.offsets {
             true => Ray { origin: F::offset_origin(point, error, geometric_normal, ray.direction), ..ray },

@@ -4,6 +4,7 @@ use super::intersection::{ShapeTests, SphereTest, TriangleTest};
 use super::written::Written;
 use crate::effects::Effects;
 use crate::kit::{Function, RenderJob, StudentFunctions, View};
+use crate::light_path::PathEffects;
 use crate::material::{Emitter, Light, Material};
 use crate::scene::{
     Accelerator, Background, Node, Precision, Quality, Sampler, Scene, SphereMethod, TextureFilter,
@@ -48,6 +49,13 @@ pub struct Plan {
     pub mipmaps: bool,
     /// Whether a material that is shown emits light. Without any, no emission is added at a hit.
     pub emission: bool,
+    /// The ambient light that surfaces reflect: that of the scene, or none where indirect light is computed, for which it
+    /// stands.
+    pub ambient: Vec3,
+    /// What paths of indirect light need; `None` if no path bounces off a diffuse surface, or if it is left out.
+    pub paths: Option<PathEffects>,
+    /// Whether `jittered` of stage 6 is written; otherwise the random numbers of paths are not stratified.
+    pub jittered: bool,
     /// What the picture will lack, one sentence each; empty if nothing.
     pub notes: Vec<String>,
 }
@@ -80,6 +88,9 @@ impl Plan {
             images: written.has(Function::texture_color),
             mipmaps: false,
             emission: !scene.emitters().is_empty(),
+            ambient: scene.ambient,
+            paths: None,
+            jittered: written.has(Function::jittered),
             effects,
             notes,
         };
@@ -90,6 +101,7 @@ impl Plan {
         plan.leave_out_distribution(scene, written);
         plan.leave_out_images(scene, written);
         plan.leave_out_spaces(scene);
+        plan.leave_out_indirect_light(scene, written);
         let images = plan.effects.materials.iter().any(|material| material.texture);
         plan.mipmaps = images && scene.quality.texture_filter == TextureFilter::Mipmap;
         plan
@@ -290,6 +302,37 @@ impl Plan {
             self.world.nurbs_point.is_none() && shows(scene, |shape| matches!(shape, Shape::Nurbs { .. })),
             "B-spline and NURBS surfaces are left out: `nurbs_point` or `bspline_basis` of stage 8 is not written yet",
         );
+    }
+
+    /// Decides whether paths compute indirect light.
+    fn leave_out_indirect_light<F: StudentFunctions>(&mut self, scene: &Scene, written: &Written<F>) {
+        if !self.effects.indirect_light {
+            return;
+        }
+        // Paths need the student's step, and the functions that start their rays.
+        let spawns: &[Function] = if self.offsets { &[] } else { &[Function::spawn_ray] };
+        let needed = [&[Function::step, Function::shadow_ray], spawns].concat();
+        if let Some(missing) = needed.into_iter().find(|&function| !written.has(function)) {
+            let note = format!("indirect light is left out: {missing} is not written yet");
+            return self.notes.push(note);
+        }
+        // Without the analysis, assume that the paths need everything: the picture is the same and costs more.
+        let mut paths = match written.has(Function::paths_called_for) {
+            true => F::paths_called_for(scene),
+            false => PathEffects {
+                diffuse: vec![true; scene.materials.len()],
+                sampled: vec![true; scene.materials.len()],
+                environment: true,
+            },
+        };
+        let is_sampled = paths.environment && matches!(scene.background, Background::Map(_));
+        if is_sampled && !written.has(Function::emitted_contribution) {
+            let missing = Function::emitted_contribution;
+            self.notes.push(format!("the environment map is found by chance: {missing} is not written yet"));
+            paths.environment = false;
+        }
+        self.ambient = Vec3::ZERO;
+        self.paths = paths.bounces().then_some(paths);
     }
 
     fn note_if(&mut self, missing: bool, what: &str) {

@@ -1,11 +1,12 @@
 //! Random choices on the path of a ray, by the functions of stage 6: a point of an area light, a direction
 //! from a rough surface.
 
+use crate::emitter::EmitterShape;
 use crate::kit::{Bounce, LightSample, SecondaryRay, StudentFunctions, Surface};
 use crate::material::{AreaShape, Emitter, Light};
 use crate::random::{Points, Purpose};
 use crate::rounding::gamma;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// Sample `part` of `parts` of the area light `light`, number `index` in the scene, with outline `shape`: the
 /// light that arrives at `surface` from a random point of it, divided by `parts`.
@@ -29,10 +30,6 @@ pub fn sample_area_light<F: StudentFunctions>(
 }
 
 /// The sample of a visible light at `point`, ending before the surface that shows the light.
-///
-/// A shadow ray ends a little before its light. Where it runs almost along a flat light, that is less than the rounding error
-/// of its hit with the light, which would block its own light. The end moves by that error: some roundings of the
-/// coordinates, divided by the cosine at the light. It stays in the second half of the distance.
 #[cold]
 pub fn before_its_surface(sample: LightSample, shape: &AreaShape, point: Vec3) -> LightSample {
     let normal = match shape {
@@ -41,10 +38,30 @@ pub fn before_its_surface(sample: LightSample, shape: &AreaShape, point: Vec3) -
         // A ray ends at the near side of a sphere. Less than one in a million of the directions to it is so grazing.
         AreaShape::Sphere(_) => return sample,
     };
-    let cosine = normal.normalize_or_zero().as_vec3().dot(sample.direction).abs();
-    let reach = point.abs().max_element() + sample.distance;
+    LightSample { distance: before_flat(normal, sample.direction, sample.distance, point), ..sample }
+}
+
+/// The distance from `point` in `direction` up to just before `emitter`, which is at `distance`.
+pub fn before_emitter(emitter: &EmitterShape, direction: Vec3, distance: f32, point: Vec3) -> f32 {
+    let edges = match emitter {
+        EmitterShape::Sphere(_) => return distance,
+        EmitterShape::Triangle(triangle) => (triangle.b - triangle.a, triangle.c - triangle.a),
+        EmitterShape::Parallelogram { edges, .. } => *edges,
+    };
+    before_flat(edges.0.as_dvec3().cross(edges.1.as_dvec3()), direction, distance, point)
+}
+
+/// The distance from `point` in `direction` up to just before a flat light, which is at `distance` and has a `normal` of any
+/// length.
+///
+/// A shadow ray ends a little before its light. Where it runs almost along a flat light, that is less than the rounding error
+/// of its hit with the light, which would block its own light. The end moves by that error: some roundings of the
+/// coordinates, divided by the cosine at the light. It stays in the second half of the distance.
+fn before_flat(normal: DVec3, direction: Vec3, distance: f32, point: Vec3) -> f32 {
+    let cosine = normal.normalize_or_zero().as_vec3().dot(direction).abs();
+    let reach = point.abs().max_element() + distance;
     let error = gamma(16) * reach / cosine;
-    LightSample { distance: (sample.distance - error).max(0.5 * sample.distance), ..sample }
+    (distance - error).max(0.5 * distance)
 }
 
 /// The outline of an area light; `None` for point lights and directional lights.

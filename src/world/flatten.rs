@@ -6,7 +6,6 @@ use super::meshes::{Meshes, Ready};
 use super::transforms::{normal_matrix, plane_axes, uniform_scale, unit};
 use super::{
     Geometry, InfinitePlane, Instance, Primitive, SharedMesh, Slot, Solid, SolidShape, World, WorldFunctions,
-    what_is_not_simulated,
 };
 use crate::effects::Effects;
 use crate::graph::{Graph, GraphNode, Placement};
@@ -33,7 +32,6 @@ pub(super) fn flatten(scene: &Scene, effects: &Effects, functions: &WorldFunctio
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
             textures: scene.textures.clone(),
-            notes: what_is_not_simulated(scene),
             // The graph has one root, above all roots of the scene.
             graph: searched.then(|| Graph { nodes: vec![GraphNode::default()] }),
             ..World::default()

@@ -275,15 +275,6 @@ impl World {
     }
 }
 
-/// What the scene asks for and no built stage simulates, one sentence each; empty if nothing.
-pub fn what_is_not_simulated(scene: &Scene) -> Vec<String> {
-    let mut notes = Vec::new();
-    if scene.indirect_light {
-        notes.push("light bounced between surfaces is left out: stage 11, not built yet".into());
-    }
-    notes
-}
-
 /// The camera of `scene` with the aspect ratio of its film, for a film whose size has been changed. The
 /// vertical field of view stays the same.
 pub fn camera_for(scene: &Scene) -> Camera {

@@ -7,13 +7,14 @@
 
 use checks::statistics::FALSE_ALARMS;
 use checks::{Check, Trial};
-use glam::{Vec2, Vec3, vec2};
+use glam::{Vec2, Vec3, vec2, vec3};
 use raykata::emitter::{EmitterSample, EmitterShape};
 use raykata::frame::Watch;
 use raykata::kit::{
-    Answer, Door, EmitterQuery, Kit, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery, StudentKit,
-    Transport,
+    Answer, BsdfQuery, Door, EmitterQuery, Kit, PhongLobeQuery, Request, RouletteQuery, SphereSampleQuery,
+    StepQuery, StudentKit, Transport,
 };
+use raykata::light_path::{BsdfSample, Lobe, PathStep};
 use std::f32::consts::{PI, TAU};
 use std::thread;
 
@@ -26,7 +27,7 @@ fn seeds() -> u64 {
 const CAUGHT: u64 = 99;
 
 /// The statistical checks, and how many chi-square and t-tests each makes.
-const STATISTICAL: [(&str, u32); 16] = [
+const STATISTICAL: [(&str, u32); 24] = [
     ("jittered_samples_cover_the_pixel_evenly", 2),
     ("places_on_the_disk_are_even", 2),
     ("places_on_a_rectangle_are_even", 1),
@@ -43,6 +44,14 @@ const STATISTICAL: [(&str, u32); 16] = [
     ("polygon_lights_give_lamberts_irradiance", 4),
     ("sphere_lights_give_their_irradiance", 2),
     ("paths_in_an_integrating_sphere_find_its_light", 1),
+    ("bsdf_samples_keep_the_light", 5),
+    ("diffuse_samples_use_fresh_numbers", 1),
+    ("paths_in_a_furnace_find_all_light", 2),
+    ("paths_in_a_corner_find_its_sky", 4),
+    ("steps_in_an_integrating_sphere_find_its_light", 1),
+    ("steps_count_sampled_light_once", 2),
+    ("steps_find_light_in_a_mirror", 2),
+    ("steps_in_an_empty_cornell_box_agree_with_radiosity", 2),
 ];
 
 /// The reference, except for the answers of one function.
@@ -195,6 +204,52 @@ fn roulette(request: &Request, factor: fn(&RouletteQuery) -> f32) -> Option<Answ
 
 fn right_roulette(query: &RouletteQuery) -> f32 {
     solutions::stage11_light_transport::survives(query.weight, query.bounce, query.u)
+}
+
+/// The reference's steps of other queries, and with other answers.
+fn stepped(
+    request: &Request,
+    before: fn(&mut StepQuery),
+    after: fn(&StepQuery, &mut PathStep),
+) -> Option<Answer> {
+    let Request::Step(queries) = request else { return None };
+    Some(Answer::Step(each(queries, |query| {
+        let mut asked = query.clone();
+        before(&mut asked);
+        let StepQuery { path, vertex, max_depth, numbers } = &asked;
+        let mut step = solutions::stage11_paths::step(path, vertex, *max_depth, numbers);
+        after(query, &mut step);
+        step
+    })))
+}
+
+/// A diffuse step in another direction, from a function that gives the cosine and the turn.
+fn turned(query: &StepQuery, step: &mut PathStep, place: fn(Vec2) -> (f32, f32)) {
+    if let Some(next) = step.next.as_mut().filter(|next| next.lobe == Lobe::Diffuse) {
+        let (cosine, turn) = place(vec2(query.numbers.bsdf.y, query.numbers.bsdf.z));
+        next.direction = around(query.vertex.surface.shading_normal, cosine, turn);
+    }
+}
+
+/// Scales the light of a shadow ray.
+fn brighter(step: &mut PathStep, factor: f32) {
+    if let Some(shadow) = &mut step.shadow {
+        shadow.light *= factor;
+    }
+}
+
+/// The reference's samples of lobes, with other random numbers, and changed.
+fn lobes(
+    request: &Request,
+    numbers: fn(Vec3) -> Vec3,
+    change: fn(&BsdfQuery, &mut BsdfSample),
+) -> Option<Answer> {
+    let Request::SampleBsdf(queries) = request else { return None };
+    Some(Answer::SampleBsdf(each(queries, |query| {
+        let mut sample = solutions::stage11_paths::sample_bsdf(&query.scattering, numbers(query.u))?;
+        change(query, &mut sample);
+        Some(sample)
+    })))
 }
 
 /// The area of a flat emitter; 1 for a sphere.
@@ -351,6 +406,106 @@ const WRONG: &[Wrong] = &[
     ("sphere light: 1 % too bright", "sphere_lights_give_their_irradiance", |r| {
         light(r, |u| u, |_, sample| sample.pdf / 1.01)
     }),
+    ("lobes: weights not divided", "bsdf_samples_keep_the_light", |r| {
+        lobes(
+            r,
+            |u| u,
+            |query, sample| {
+                if sample.lobe == Lobe::Diffuse {
+                    sample.weight = query.scattering.diffuse;
+                }
+            },
+        )
+    }),
+    ("lobes: chosen by a squared number", "bsdf_samples_keep_the_light", |r| {
+        lobes(r, |u| u.with_x(u.x * u.x), |_, _| ())
+    }),
+    ("lobes: chosen by u^1.1", "bsdf_samples_keep_the_light", |r| {
+        lobes(r, |u| u.with_x(u.x.powf(1.1)), |_, _| ())
+    }),
+    ("lobes: the number that chose the lobe gives the height", "diffuse_samples_use_fresh_numbers", |r| {
+        lobes(r, |u| vec3(u.x, u.x, u.z), |_, _| ())
+    }),
+    ("lobes: the number that chose the lobe gives the turn", "diffuse_samples_use_fresh_numbers", |r| {
+        lobes(r, |u| vec3(u.x, u.y, u.x), |_, _| ())
+    }),
+    ("furnace: found light counts in full", "paths_in_a_furnace_find_all_light", |r| {
+        stepped(r, |query| query.vertex.emitter = None, |_, _| ())
+    }),
+    ("furnace: sampled light counts in full", "paths_in_a_furnace_find_all_light", |r| {
+        stepped(r, |_| (), |_, step| brighter(step, 2.0))
+    }),
+    ("furnace: ends after 4 bounces", "paths_in_a_furnace_find_all_light", |r| {
+        stepped(r, |query| query.max_depth = 4, |_, _| ())
+    }),
+    ("corner: uniform directions", "paths_in_a_corner_find_its_sky", |r| {
+        stepped(r, |_| (), |query, step| turned(query, step, |u| (u.x, u.y)))
+    }),
+    ("corner: θ even", "paths_in_a_corner_find_its_sky", |r| {
+        stepped(r, |_| (), |query, step| turned(query, step, |u| ((0.5 * PI * u.x).cos(), u.y)))
+    }),
+    ("corner: one bounce", "paths_in_a_corner_find_its_sky", |r| {
+        stepped(r, |query| query.max_depth = 1, |_, _| ())
+    }),
+    ("sphere of steps: uniform directions", "steps_in_an_integrating_sphere_find_its_light", |r| {
+        stepped(r, |_| (), |query, step| turned(query, step, |u| (u.x, u.y)))
+    }),
+    ("sphere of steps: θ even", "steps_in_an_integrating_sphere_find_its_light", |r| {
+        stepped(r, |_| (), |query, step| turned(query, step, |u| ((0.5 * PI * u.x).cos(), u.y)))
+    }),
+    ("sphere of steps: ends after 4 bounces", "steps_in_an_integrating_sphere_find_its_light", |r| {
+        stepped(r, |query| query.max_depth = 4, |_, _| ())
+    }),
+    ("sampled lights: found light counts in full", "steps_count_sampled_light_once", |r| {
+        stepped(r, |query| query.vertex.emitter = None, |_, _| ())
+    }),
+    ("sampled lights: found light is left out", "steps_count_sampled_light_once", |r| {
+        stepped(
+            r,
+            |_| (),
+            |query, step| {
+                if query.path.bounces > 0 {
+                    step.light = Vec3::ZERO;
+                }
+            },
+        )
+    }),
+    ("sampled lights: 5 % too bright", "steps_count_sampled_light_once", |r| {
+        stepped(r, |_| (), |_, step| brighter(step, 1.05))
+    }),
+    ("mirror: its density is a number", "steps_find_light_in_a_mirror", |r| {
+        stepped(
+            r,
+            |query| {
+                if query.path.bounces > 0 && query.path.pdf == f32::INFINITY {
+                    query.path.pdf = 1.0;
+                }
+            },
+            |_, _| (),
+        )
+    }),
+    ("mirror: found light is left out", "steps_find_light_in_a_mirror", |r| {
+        stepped(
+            r,
+            |_| (),
+            |query, step| {
+                if query.path.bounces > 0 {
+                    step.light = Vec3::ZERO;
+                }
+            },
+        )
+    }),
+    ("Cornell box: direct light only", "steps_in_an_empty_cornell_box_agree_with_radiosity", |r| {
+        stepped(r, |query| query.max_depth = 1, |_, _| ())
+    }),
+    ("Cornell box: ends after 3 bounces", "steps_in_an_empty_cornell_box_agree_with_radiosity", |r| {
+        stepped(r, |query| query.max_depth = 3, |_, _| ())
+    }),
+    (
+        "Cornell box: sampled light 5 % too bright",
+        "steps_in_an_empty_cornell_box_agree_with_radiosity",
+        |r| stepped(r, |_| (), |_, step| brighter(step, 1.05)),
+    ),
 ];
 
 #[test]

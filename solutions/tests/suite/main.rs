@@ -9,6 +9,7 @@ mod distribution;
 mod edges;
 mod frames;
 mod heckbert;
+mod indirect;
 mod instances;
 mod leaks;
 mod light;

@@ -1,6 +1,9 @@
 //! An effect costs and changes nothing where the scene does not need it: proved for all 2⁹ sets of the nine
 //! effects of `scenes/effects.toml`. `raykata explain scenes/effects.toml --subsets` prints what each set
 //! costs.
+//!
+//! Indirect light is the tenth effect. It changes most pixels, so it is judged by other laws, for a set of sets in which every
+//! two effects are present together, absent together, and each without the other.
 
 use crate::scene::scene;
 use glam::{Vec3, vec3};
@@ -76,7 +79,11 @@ struct Frame {
 }
 
 fn frame(set: Set) -> Frame {
-    let job = RenderJob { scene: only(set), view: View::Shaded, seed: 3, threads: 1, count: true };
+    frame_of(only(set))
+}
+
+fn frame_of(scene: Scene) -> Frame {
+    let job = RenderJob { scene, view: View::Shaded, seed: 3, threads: 1, count: true };
     let rendering = solutions::Kit.door().render(&job, &Unwatched).expect("not cancelled");
     let film = job.scene.film;
     let pixels = (0..film.height).flat_map(|y| (0..film.width).map(move |x| (x, y)));
@@ -229,4 +236,101 @@ fn counts_are_what_the_rays_add_up_to(set: Set, frame: &Frame) {
         + each(Effect::AreaLights, 2 * 2 * hits)
         + each(Effect::Glossy, 2 * blurred);
     assert_eq!(counts.random_numbers, numbers, "without {:?}", set.absent().collect::<Vec<_>>());
+}
+
+/// Sets in which each pair of the nine effects has all four combinations: all sets with at most one effect, and all with at
+/// most two effects absent.
+fn covering() -> Vec<Set> {
+    let present = |set: &Set| set.0.count_ones() as usize;
+    Set::all().filter(|set| present(set) <= 1 || present(set) + 2 >= EFFECTS.len()).collect()
+}
+
+#[test]
+fn the_covering_sets_have_every_combination_of_two_effects() {
+    let sets = covering();
+    assert_eq!(sets.len(), 1 + 9 + 36 + 9 + 1);
+    for one in EFFECTS {
+        for other in EFFECTS.into_iter().filter(|&other| other != one) {
+            for wanted in [(false, false), (false, true), (true, false), (true, true)] {
+                assert!(sets.iter().any(|set| (set.has(one), set.has(other)) == wanted), "{one} {other}");
+            }
+        }
+    }
+}
+
+/// The scene of a set, with indirect light.
+fn with_indirect_light(set: Set) -> Scene {
+    let mut scene = only(set);
+    scene.indirect_light = true;
+    scene
+}
+
+#[test]
+fn indirect_light_changes_no_camera_ray_and_traces_only_what_the_set_needs() {
+    for set in covering() {
+        let scene = with_indirect_light(set);
+        let case = || format!("without {:?}", set.absent().collect::<Vec<_>>());
+        // Taking indirect light out gives the scene of before, and so its rays, counts and pixels.
+        assert_eq!(Effect::IndirectLight.removed_from(&scene), only(set));
+        let (with, without) = (frame_of(scene.clone()), frame(set));
+        // The camera rays and their hits are the same, because no effect changes the random numbers of another.
+        assert_eq!(with.counts.primary, without.counts.primary, "{}", case());
+        for (path, tree) in with.trees.iter().zip(&without.trees) {
+            assert_eq!(path[0], tree[0], "{}", case());
+        }
+        // A path has one ray per bounce, and no ray of an effect that the set lacks.
+        let depth = scene.quality.max_depth;
+        let of_kind = |kind| with.trees.iter().flatten().filter(|ray| ray.kind == kind).count() as u64;
+        for path in &with.trees {
+            let rays = path.iter().filter(|ray| ray.kind != RayKind::Shadow);
+            assert!(rays.enumerate().all(|(bounce, ray)| ray.depth == bounce as u32 && ray.depth <= depth));
+        }
+        let counts = with.counts;
+        assert!(counts.indirect > 0, "{}", case());
+        assert_eq!(counts.indirect, of_kind(RayKind::Indirect), "{}", case());
+        assert_eq!(counts.reflection, of_kind(RayKind::Reflection), "{}", case());
+        assert_eq!(counts.transmission, of_kind(RayKind::Transmission), "{}", case());
+        assert_eq!(counts.shadow, of_kind(RayKind::Shadow), "{}", case());
+        assert!(set.has(Effect::Shadows) || counts.shadow == 0, "{}", case());
+        assert!(
+            set.has(Effect::Mirrors) || set.has(Effect::Transmission) || counts.reflection == 0,
+            "{}",
+            case()
+        );
+        assert!(set.has(Effect::Transmission) || counts.transmission == 0, "{}", case());
+        random_numbers_are_those_of_the_vertices(set, &scene, &with);
+    }
+}
+
+/// The counts of random numbers and image reads of paths are exactly those that follow from their vertices.
+fn random_numbers_are_those_of_the_vertices(set: Set, scene: &Scene, frame: &Frame) {
+    let each = |effect: Effect, numbers: u64| if set.has(effect) { numbers } else { 0 };
+    let (mut numbers, mut reads) = (0, 0);
+    for path in &frame.trees {
+        numbers += each(Effect::Lens, 2) + each(Effect::Motion, 1);
+        for (index, ray) in path.iter().enumerate().filter(|(_, ray)| ray.kind != RayKind::Shadow) {
+            let Some((_, name)) = &ray.hit else { continue };
+            let is = |names: &[&str]| names.contains(&name.as_str());
+            // Two samples of the area light, with two numbers each.
+            numbers += each(Effect::AreaLights, 2 * 2);
+            reads += each(Effect::Textures, u64::from(is(&["floor", "toy"])));
+            if ray.depth == scene.quality.max_depth {
+                continue;
+            }
+            // The glass has no diffuse lobe. There are no emitters to sample.
+            let is_diffuse = !is(&["glass"]);
+            let secondary = (is(&["mirror", "brushed"]) && set.has(Effect::Mirrors))
+                || (is(&["glass"]) && set.has(Effect::Transmission));
+            let lobes = u64::from(is_diffuse) + u64::from(secondary);
+            numbers += 2 * u64::from(is_diffuse) + u64::from(lobes > 1);
+            numbers += u64::from(lobes > 0 && ray.depth >= 2);
+            // Two numbers for the direction of a rough reflection.
+            let next = path.iter().find(|next| next.parent == Some(index) && next.kind != RayKind::Shadow);
+            let is_glossy = is(&["brushed"]) && next.is_some_and(|next| next.kind == RayKind::Reflection);
+            numbers += each(Effect::Glossy, 2 * u64::from(is_glossy));
+        }
+    }
+    let case = format!("without {:?}", set.absent().collect::<Vec<_>>());
+    assert_eq!(frame.counts.random_numbers, numbers, "{case}");
+    assert_eq!(frame.counts.texture_reads, reads, "{case}");
 }

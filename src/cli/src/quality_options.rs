@@ -103,6 +103,9 @@ pub struct QualityOptions {
     spheres: Option<SphereMethod>,
     precision: Option<Precision>,
     min_contribution: Option<f32>,
+    next_event: Option<bool>,
+    roulette_from: Option<u32>,
+    clamp: Option<f32>,
     memory: Memory,
 }
 
@@ -155,6 +158,8 @@ const SPHERES: [(&str, SphereMethod); 3] = [
     ("stable-roots", SphereMethod::StableRoots),
 ];
 
+const SWITCH: [(&str, bool); 2] = [("on", true), ("off", false)];
+
 const PRECISIONS: [(&str, Precision); 2] = [("single", Precision::Single), ("double", Precision::Double)];
 
 impl QualityOptions {
@@ -183,6 +188,10 @@ impl QualityOptions {
         Opt::value("--spheres", "NAME", "Ray/sphere test.").choices(&names(&SPHERES)),
         Opt::value("--precision", "NAME", "Precision of ray/shape tests.").choices(&names(&PRECISIONS)),
         Opt::value("--min-contribution", "X", "Weight below which rays are not traced, 0 to 1."),
+        Opt::value("--next-event", "NAME", "Whether paths of indirect light sample emitters.")
+            .choices(&names(&SWITCH)),
+        Opt::value("--roulette-from", "N", "Bounces from which on Russian roulette ends paths."),
+        Opt::value("--clamp", "X", "The largest channel of a sample of indirect light; 0 sets no limit."),
         Memory::OPTION,
     ];
 
@@ -204,6 +213,9 @@ impl QualityOptions {
             spheres: given.choice("--spheres", &SPHERES)?,
             precision: given.choice("--precision", &PRECISIONS)?,
             min_contribution: given.parsed("--min-contribution", parse_share)?,
+            next_event: given.choice("--next-event", &SWITCH)?,
+            roulette_from: given.number("--roulette-from", 2..=1000)?,
+            clamp: given.parsed("--clamp", parse_clamp)?,
             memory: Memory::read(given)?,
         })
     }
@@ -239,6 +251,9 @@ impl QualityOptions {
         quality.sphere_method = self.spheres.unwrap_or(quality.sphere_method);
         quality.precision = self.precision.unwrap_or(quality.precision);
         quality.min_contribution = self.min_contribution.unwrap_or(quality.min_contribution);
+        quality.next_event = self.next_event.unwrap_or(quality.next_event);
+        quality.roulette_from = self.roulette_from.unwrap_or(quality.roulette_from);
+        quality.clamp = self.clamp.unwrap_or(quality.clamp);
         Ok(())
     }
 }
@@ -258,6 +273,9 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
             ("--texture-filter", named(serde_json::to_value(quality.texture_filter))),
             ("--depth", quality.max_depth.to_string()),
             ("--min-contribution", quality.min_contribution.to_string()),
+            ("--next-event", if quality.next_event { "on" } else { "off" }.to_owned()),
+            ("--roulette-from", quality.roulette_from.to_string()),
+            ("--clamp", quality.clamp.to_string()),
             ("--triangles", named(serde_json::to_value(quality.triangle_method))),
             ("--spheres", named(serde_json::to_value(quality.sphere_method))),
             ("--precision", named(serde_json::to_value(quality.precision))),
@@ -274,6 +292,11 @@ pub fn arguments(own: &Quality, wanted: &Quality) -> String {
 fn parse_exposure(text: &str) -> Result<f32, String> {
     let stops = text.parse().ok().filter(|stops| (-100.0..=100.0).contains(stops));
     stops.ok_or_else(|| "an exposure is a number of stops from -100 to 100, such as -0.5".into())
+}
+
+fn parse_clamp(text: &str) -> Result<f32, String> {
+    let limit = text.parse().ok().filter(|limit: &f32| limit.is_finite() && *limit >= 0.0);
+    limit.ok_or_else(|| "a limit of light is a number of at least 0, such as 10".into())
 }
 
 fn parse_share(text: &str) -> Result<f32, String> {
@@ -339,6 +362,9 @@ mod tests {
             texture_filter: TextureFilter::Mipmap,
             max_depth: 9,
             min_contribution: 0.03,
+            next_event: false,
+            roulette_from: 8,
+            clamp: 10.0,
             triangle_method: TriangleMethod::InsideByDirection,
             sphere_method: SphereMethod::StableRoots,
             precision: Precision::Double,

@@ -194,6 +194,10 @@ fn tell(out: &Path, job: &RenderJob, rendering: &Rendering) {
         println!("  shadow rays      {}", Thousands(counts.shadow));
         println!("  reflected rays   {}", Thousands(counts.reflection));
         println!("  refracted rays   {}", Thousands(counts.transmission));
+        if job.scene.indirect_light {
+            println!("  indirect rays    {}", Thousands(counts.indirect));
+            println!("  absorbed paths   {}", Thousands(counts.absorbed));
+        }
         println!("  hits             {}", Thousands(counts.hits));
         println!("  random numbers   {}", Thousands(counts.random_numbers));
         println!("  image reads      {}", Thousands(counts.texture_reads));

@@ -87,16 +87,20 @@ pub fn run(options: &Options) -> Result<()> {
     let (width, height) = (scene.film.width, scene.film.height);
     let n = pictures.len() as u32;
     let mut strip = Film::new(n * width + (n - 1) * GAP, height + caption::HEIGHT);
-    println!("{:>15}  {:>14}  {:>14}  {:>9}", "picture", "reflected rays", "refracted rays", "seconds");
+    println!(
+        "{:>15}  {:>14}  {:>14}  {:>14}  {:>9}",
+        "picture", "reflected rays", "refracted rays", "indirect rays", "seconds"
+    );
     for (column, (what, scene)) in pictures.into_iter().enumerate() {
         let job = RenderJob { scene, view: View::Shaded, seed: 0, threads: 0, count: true };
         let rendering =
             kit_error::catch(|| kit.render(&job, &Unwatched))?.context("the frame was cancelled")?;
         let (counts, seconds) = (rendering.counts, rendering.render_seconds);
         println!(
-            "{what:>15}  {:>14}  {:>14}  {seconds:>9.3}",
+            "{what:>15}  {:>14}  {:>14}  {:>14}  {seconds:>9.3}",
             Thousands(counts.reflection),
-            Thousands(counts.transmission)
+            Thousands(counts.transmission),
+            Thousands(counts.indirect)
         );
         let left = column as u32 * (width + GAP);
         paste(&rendering.film, &mut strip, left);

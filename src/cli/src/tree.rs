@@ -127,6 +127,7 @@ fn label(ray: &TracedRay) -> String {
         RayKind::Primary => "primary",
         RayKind::Reflection => "reflection",
         RayKind::Transmission => "transmission",
+        RayKind::Indirect => "indirect",
         RayKind::Shadow => return format!("shadow, {}", if ray.hit.is_some() { "occluded" } else { "lit" }),
     };
     let weight = match ray.weight {

@@ -196,7 +196,7 @@ fn background(value: Value, textures: &mut Vec<Texture>) -> Result<Background, L
     Ok(Background::Map(EnvironmentMap { texture: textures.len() - 1, rotation, scale }))
 }
 
-const QUALITY_KEYS: [&str; 17] = [
+const QUALITY_KEYS: [&str; 20] = [
     "samples_per_pixel",
     "sampler",
     "light_samples",
@@ -204,6 +204,9 @@ const QUALITY_KEYS: [&str; 17] = [
     "texture_filter",
     "max_depth",
     "min_contribution",
+    "next_event",
+    "roulette_from",
+    "clamp",
     "accelerator",
     "savings",
     "copies",
@@ -231,6 +234,9 @@ pub(super) fn quality(value: Option<Value>) -> Result<Quality, LoadError> {
             }
             "max_depth" => quality.max_depth = value.whole(0..=MAX_DEPTH)?,
             "min_contribution" => quality.min_contribution = value.share()?,
+            "next_event" => quality.next_event = value.truth()?,
+            "roulette_from" => quality.roulette_from = value.whole(2..=MAX_DEPTH)?,
+            "clamp" => quality.clamp = value.not_negative()?,
             "accelerator" => {
                 quality.accelerator = value.choice(&Accelerator::ALL.map(|one| (one.name(), one)))?
             }

@@ -15,6 +15,7 @@ pub mod nasty;
 pub mod offset;
 pub mod paste;
 pub mod picture;
+pub mod radiosity;
 pub mod rubric;
 pub mod statistics;
 pub mod symmetry;

@@ -173,10 +173,21 @@ pub fn has_mean(
     expected: f64,
     mistakes: impl Fn(f64) -> Mistakes,
 ) -> CheckResult {
-    if mean_score(values, expected).abs() <= TWO_SIDED {
+    has_mean_within(what, values, (expected, 0.0), mistakes)
+}
+
+/// Checks that the mean of `values` is `expected.0`, which itself is only known up to `expected.1`. `mistakes` gets the mean.
+pub fn has_mean_within(
+    what: &str,
+    values: &[f64],
+    (expected, slack): (f64, f64),
+    mistakes: impl Fn(f64) -> Mistakes,
+) -> CheckResult {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    // The number in the range of the expected mean that is nearest to the mean. A mean that is NaN fails.
+    if mean_score(values, mean.clamp(expected - slack, expected + slack)).abs() <= TWO_SIDED {
         return Ok(());
     }
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
     let input = format!("{what}: the mean over {} pairs u", values.len());
     let broken = Broken::with_texts(
         input,

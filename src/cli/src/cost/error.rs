@@ -20,6 +20,11 @@ pub struct Errors {
     /// Mean structural similarity of the pictures as a screen shows them (MSSIM, Wang and others, 2004): 1
     /// for equal pictures.
     pub similarity: f64,
+    /// The mean of the signed differences over all channels of all pixels, in linear light: noise cancels in it, and what
+    /// is left is the bias.
+    pub bias: f64,
+    /// The standard error of `bias`, from the differences of the pixels, whose random numbers are independent.
+    pub bias_error: f64,
     /// The number of pixels with NaN. They count as black.
     pub not_a_number: usize,
 }
@@ -30,7 +35,18 @@ pub fn errors(film: &Film, right: &Film) -> Result<Errors> {
     let count = (3 * right.pixels.len()).max(1) as f64;
     let square: f64 = pairs().map(|(yours, right)| (yours - right).powi(2)).sum();
     let relative: f64 = pairs().map(|(yours, right)| (yours - right).powi(2) / (right * right + DARK)).sum();
+    let pixels = right.pixels.len().max(1) as f64;
+    let signed = || {
+        let of_pixel = |(yours, right): (&Vec3, &Vec3)| {
+            channels(*yours, *right).iter().map(|(yours, right)| (yours - right) / 3.0).sum::<f64>()
+        };
+        film.pixels.iter().zip(&right.pixels).map(of_pixel)
+    };
+    let bias = signed().sum::<f64>() / pixels;
+    let variance = signed().map(|difference| (difference - bias).powi(2)).sum::<f64>() / pixels;
     Ok(Errors {
+        bias,
+        bias_error: (variance / pixels).sqrt(),
         rmse: (square / count).sqrt(),
         relative_mse: relative / count,
         similarity: similarity(&shown(film)?, &shown(right)?),
@@ -143,7 +159,8 @@ mod tests {
     #[test]
     fn an_error_everywhere_is_its_own_mean() {
         let off = errors(&grey(0.75), &grey(0.5)).unwrap();
-        assert_eq!(off.rmse, 0.25);
+        assert_eq!((off.rmse, off.bias, off.bias_error), (0.25, 0.25, 0.0));
+        assert_eq!(errors(&grey(0.5), &grey(0.75)).unwrap().bias, -0.25);
         assert!((off.relative_mse - 0.0625 / 0.26).abs() < 1e-12);
         assert!(off.similarity < 1.0);
         assert_eq!(heat(&grey(0.75), &grey(0.5), 0.25).get_pixel(3, 3).0, [255, 255, 235]);

@@ -24,13 +24,15 @@ pub fn write(out: &Path, report: &Report<'_>) -> Result<()> {
 
 /// All points as CSV, one per line.
 fn table(report: &Report<'_>) -> String {
-    const HEADS: [&str; 15] = [
+    const HEADS: [&str; 17] = [
         "parameter",
         "ladder",
         "value",
         "rmse",
         "relative_mse",
         "similarity",
+        "bias",
+        "bias_error",
         "seconds",
         "spread",
         "rays",
@@ -45,6 +47,8 @@ fn table(report: &Report<'_>) -> String {
     for series in &report.measured.series {
         for (value, index) in &series.levels {
             let point = &report.measured.points[*index];
+            let pixels = f64::from(report.width) * f64::from(report.height);
+            let (bias, bias_error) = point.bias(report.reference_error, pixels);
             let judged = |number: fn(&Verdicts) -> u64| {
                 point.hits.as_ref().map_or(String::new(), |hits| number(hits).to_string())
             };
@@ -55,6 +59,8 @@ fn table(report: &Report<'_>) -> String {
                 point.error().to_string(),
                 point.errors.relative_mse.to_string(),
                 point.errors.similarity.to_string(),
+                bias.to_string(),
+                bias_error.to_string(),
                 point.seconds.to_string(),
                 point.spread.to_string(),
                 point.counts.rays().to_string(),

@@ -41,6 +41,8 @@ pub struct Point {
     pub errors: Errors,
     /// The root mean square error of each round.
     pub rmse: Vec<f64>,
+    /// The bias of each round, with its standard error.
+    pub biases: Vec<(f64, f64)>,
     pub counts: Counts,
     /// The oracle's verdicts on the hits, for parameters that decide only how they are found.
     pub hits: Option<Verdicts>,
@@ -65,13 +67,23 @@ impl Point {
         self.rmse.iter().sum::<f64>() / self.rmse.len().max(1) as f64
     }
 
+    /// The mean bias over all rounds, and its standard error. `of_reference` is the error of the reference per channel of a
+    /// pixel, of which there are `pixels`: the error of its mean is the same for all points, and adds to each.
+    pub fn bias(&self, of_reference: f64, pixels: f64) -> (f64, f64) {
+        let rounds = self.biases.len().max(1) as f64;
+        let mean = self.biases.iter().map(|(bias, _)| bias).sum::<f64>() / rounds;
+        let variance = self.biases.iter().map(|(_, error)| error.powi(2)).sum::<f64>() / rounds.powi(2);
+        (mean, (variance + of_reference.powi(2) / pixels.max(1.0)).sqrt())
+    }
+
     /// A point for tests, with these values.
     #[cfg(test)]
     pub fn made_up(setting: Setting, error: f64, seconds: f64, leaks: u64) -> Point {
         Point {
             setting,
-            errors: Errors { rmse: error, relative_mse: 0.0, similarity: 1.0, not_a_number: 0 },
+            errors: Errors { rmse: error, similarity: 1.0, ..Errors::default() },
             rmse: vec![error],
+            biases: vec![(0.0, 0.0)],
             counts: Counts::default(),
             hits: Some(Verdicts { rays: 1000, wrong: leaks, leaks }),
             seconds,
@@ -173,6 +185,7 @@ impl Bench<'_> {
         Ok(Some(Point {
             setting: setting.clone(),
             rmse: vec![errors.rmse],
+            biases: vec![(errors.bias, errors.bias_error)],
             errors,
             counts: frame.counts,
             hits: None,
@@ -233,7 +246,9 @@ impl Bench<'_> {
                 let Some(frame) = self.frame(&point.setting.apply(scene), seed, false)? else { break };
                 point.times.push(frame.render_seconds);
                 if round > 0 {
-                    point.rmse.push(errors(&frame.film, &right.film)?.rmse);
+                    let errors = errors(&frame.film, &right.film)?;
+                    point.rmse.push(errors.rmse);
+                    point.biases.push((errors.bias, errors.bias_error));
                 }
                 bar.inc(1);
             }
@@ -250,6 +265,7 @@ impl Bench<'_> {
                 (point.seconds, point.spread) = (median, (high - low) / 2.0);
             }
             point.rmse.truncate(measured.rounds.max(1) as usize);
+            point.biases.truncate(measured.rounds.max(1) as usize);
         }
         Ok(measured)
     }

@@ -61,6 +61,8 @@ pub struct Report<'a> {
     own_sampler: &'static str,
     reference_samples: u32,
     reference_error: f64,
+    /// Whether the report shows the bias, which matters where paths are cut off.
+    has_bias: bool,
     #[serde(flatten)]
     measured: &'a Measured,
     /// The indices of the points on the Pareto front, from the fastest on.
@@ -184,6 +186,7 @@ pub fn run(options: &Options, program: &str, numerics: Option<&Numerics<'_>>) ->
         own_sampler: ladder::sampler_name(full.quality.sampler),
         reference_samples: right.samples,
         reference_error: right.own_error,
+        has_bias: full.indirect_light,
         measured: &measured,
         pareto_front: pareto_front(&measured.points),
         own: measured.points.iter().position(|point| point.setting == Setting::of(&small)),

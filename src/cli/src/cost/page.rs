@@ -6,7 +6,7 @@ use super::error::{heat, shown};
 use super::files::{expected_slope, plots};
 use super::ladder::Parameter;
 use super::measure::Series;
-use super::table::{about_hits, about_kit_times, goal, named, verdict, waste};
+use super::table::{about_hits, about_kit_times, bias, goal, named, verdict, waste};
 use crate::html::{around, base64, element, escape};
 use anyhow::{Context, Result};
 use image::RgbImage;
@@ -139,6 +139,7 @@ fn ladder(report: &Report<'_>, series: &Series) -> Result<String> {
     }
     let mut columns = vec!["", "RMSE"];
     columns.extend(if geometric { &[][..] } else { &["relative MSE", "similarity"] });
+    columns.extend(report.has_bias.then_some("bias"));
     columns.extend(["ms", "rays per pixel", "tests per ray"]);
     columns.extend(if geometric { &["wrong hits", "leaks"][..] } else { &[] });
     let levels = series.levels.iter().map(|(value, index)| level(report, value, *index, geometric));
@@ -166,6 +167,9 @@ fn level(report: &Report<'_>, value: &str, index: usize, is_geometric: bool) -> 
     if !is_geometric {
         cells.push(format!("{:.2e}", point.errors.relative_mse));
         cells.push(format!("{:.4}", point.errors.similarity));
+    }
+    if report.has_bias {
+        cells.push(bias(report, index));
     }
     cells.push(format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread));
     cells.push(format!("{:.2}", rays as f64 / (f64::from(report.width) * f64::from(report.height))));

@@ -4,7 +4,7 @@
 //! difference between the two means estimates the error of the reference. Each batch is kept, so a stopped
 //! run continues where it was.
 
-use super::ladder::LEAST_DEPTH;
+use super::ladder::least_depth;
 use super::measure::Bench;
 use crate::report::bar_of_steps;
 use anyhow::{Context, Result};
@@ -48,8 +48,10 @@ pub fn converged(scene: &Scene) -> Scene {
         sampler: Sampler::LowDiscrepancy,
         light_samples: scene.quality.light_samples.max(1),
         texture_filter: TextureFilter::Bilinear,
-        max_depth: scene.quality.max_depth.max(LEAST_DEPTH),
+        max_depth: scene.quality.max_depth.max(least_depth(&scene)),
         min_contribution: scene.quality.min_contribution.min(0.0003),
+        next_event: true,
+        clamp: 0.0,
         accelerator: Accelerator::Bvh,
         split: Split::SurfaceArea,
         ..scene.quality

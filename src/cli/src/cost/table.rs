@@ -16,10 +16,11 @@ pub fn print(report: &Report<'_>) {
          quartiles; rays are per pixel, tests per ray\n",
         report.scene, report.width, report.height, report.measured.rounds,
     );
-    println!(
-        "{:<25}{:>8}{:>8}{:>14}{:>6}{:>7}{:>6}{:>6}",
-        "", "RMSE", "similar", "ms", "rays", "tests", "wrong", "leaks"
-    );
+    let [similar, tests] = match report.has_bias {
+        true => [format!("{:>15}", "bias"), String::new()],
+        false => [format!("{:>8}", "similar"), format!("{:>7}", "tests")],
+    };
+    println!("{:<25}{:>8}{similar}{:>14}{:>6}{tests}{:>6}{:>6}", "", "RMSE", "ms", "rays", "wrong", "leaks");
     for series in report.measured.series.iter().filter(|series| !series.levels.is_empty()) {
         println!("{}", heading(series));
         if let Some(slope) = slope(report, series) {
@@ -30,15 +31,21 @@ pub fn print(report: &Report<'_>) {
             let rays = point.counts.rays();
             let tests = point.counts.box_tests + point.counts.primitive_tests;
             let hits = point.hits.filter(|_| series.parameter.is_geometric());
+            // A table of 80 columns has room for the bias in place of two other columns.
+            let [similar, tests] = match report.has_bias {
+                true => [format!("{:>15}", bias(report, *index)), String::new()],
+                false => [
+                    format!("{:>8.4}", point.errors.similarity),
+                    format!("{:>7.1}", tests as f64 / rays.max(1) as f64),
+                ],
+            };
             println!(
-                "  {name:<21}{}{}{:>8.5}{:>8.4}{:>14}{:>6.2}{:>7.1}{:>6}{:>6}",
+                "  {name:<21}{}{}{:>8.5}{similar}{:>14}{:>6.2}{tests}{:>6}{:>6}",
                 if report.own == Some(*index) { "*" } else { " " },
                 if report.pareto_front.contains(index) { "•" } else { " " },
                 point.error(),
-                point.errors.similarity,
                 format!("{:.2} ± {:.2}", 1e3 * point.seconds, 1e3 * point.spread),
                 rays as f64 / (f64::from(report.width) * f64::from(report.height)),
-                tests as f64 / rays.max(1) as f64,
                 hits.map_or(String::new(), |hits| hits.wrong.to_string()),
                 hits.map_or(String::new(), |hits| hits.leaks.to_string()),
             );
@@ -48,6 +55,12 @@ pub fn print(report: &Report<'_>) {
         }
     }
     println!("\n* the scene's own value");
+    if report.has_bias {
+        println!(
+            "bias: the mean signed difference from the reference, and its standard error.\n  It stays when samples are \
+             added: error² = bias² + variance / samples"
+        );
+    }
     println!(
         "• no other value is both faster and more accurate (Pareto front); values that\n  leak are left out"
     );
@@ -67,6 +80,13 @@ pub fn print(report: &Report<'_>) {
     if report.partial {
         println!("\nstopped before the end: the report shows what had been measured until then");
     }
+}
+
+/// The bias of a point with its standard error.
+pub fn bias(report: &Report<'_>, index: usize) -> String {
+    let pixels = f64::from(report.width) * f64::from(report.height);
+    let (bias, error) = report.measured.points[index].bias(report.reference_error, pixels);
+    format!("{bias:+.4}±{error:.4}")
 }
 
 /// What the hits were judged by, if any were judged.

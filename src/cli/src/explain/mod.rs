@@ -1,6 +1,7 @@
 //! `raykata explain`: the effects that a scene needs and the parts that need them, the cost of each effect,
 //! and the effects that are left out.
 
+mod indirect;
 mod needs;
 mod subsets;
 mod why;
@@ -13,7 +14,8 @@ use anyhow::{Context, Result};
 use raykata::count::Counts;
 use raykata::effects::{Effect, Effects};
 use raykata::frame::Unwatched;
-use raykata::kit::{BoundQuery, Kit, RenderJob, View, kit_error};
+use raykata::kit::{BoundQuery, Kit, KitError, RenderJob, View, kit_error};
+use raykata::light_path::PathEffects;
 use raykata::scene::Scene;
 use std::path::PathBuf;
 
@@ -78,9 +80,23 @@ struct Explained<'a> {
     scene: &'a Scene,
     kit: &'a dyn Kit,
     effects: Effects,
+    /// What the paths of indirect light need; `None` if the scene has none, or if that function is not written yet.
+    paths: Option<PathEffects>,
 }
 
 impl Explained<'_> {
+    /// The analysis of `scene` by the kit.
+    fn new<'a>(scene: &'a Scene, kit: &'a dyn Kit) -> Result<Explained<'a>> {
+        let effects = kit_error::catch(|| kit.effects(std::slice::from_ref(scene)))?.remove(0);
+        let paths = match kit_error::catch(|| kit.paths_called_for(std::slice::from_ref(scene))) {
+            _ if !effects.indirect_light => None,
+            Ok(mut paths) => Some(paths.remove(0)),
+            Err(KitError::NotWritten { .. }) => None,
+            Err(error) => return Err(error.into()),
+        };
+        Ok(Explained { scene, kit, effects, paths })
+    }
+
     fn called_for(&self) -> Vec<Effect> {
         Effect::ALL.into_iter().filter(|&effect| self.effects.calls_for(effect)).collect()
     }
@@ -93,16 +109,14 @@ pub fn run(options: &Options) -> Result<()> {
     let root = root()?;
     let source = Source::prepare(&root, options.kit.or_reference(&root), Need::Frames)?;
     let kit = &*source.fresh();
-    let effects = kit_error::catch(|| kit.effects(std::slice::from_ref(&scene)))?.remove(0);
-    let explained = Explained { scene: &scene, kit, effects };
+    let explained = Explained::new(&scene, kit)?;
     println!("{}: {}\n", options.scene.display(), size(&scene));
     if !options.subsets {
         asked(&explained);
     }
     // Measure a smaller picture, whose shares of time are those of the whole one.
     let small = if options.full { scene.clone() } else { smaller(&scene) };
-    let effects = kit_error::catch(|| kit.effects(std::slice::from_ref(&small)))?.remove(0);
-    let measured = Explained { scene: &small, kit, effects };
+    let measured = Explained::new(&small, kit)?;
     if small.film != scene.film || small.quality != scene.quality {
         let measured = format!("measured with {}; `--full` measures the whole picture", size(&small));
         println!("{}\n", wrapped(&measured, 0));
@@ -113,7 +127,8 @@ pub fn run(options: &Options) -> Result<()> {
     cost(&measured, options.rounds)?;
     needs::samples(&measured)?;
     needs::rays_per_hit(&measured)?;
-    bounds(&measured)
+    bounds(&measured)?;
+    indirect::depth(&measured)
 }
 
 /// The size of a picture, in words.
@@ -147,6 +162,9 @@ fn asked(explained: &Explained<'_>) {
     }
     for (what, parts) in why::seen(scene, effects) {
         println!("  {what:<14}  {}", wrapped(&parts, REASON_COLUMN));
+    }
+    if effects.indirect_light {
+        indirect::asked(explained);
     }
     println!("\nnot simulated     because");
     for effect in Effect::ALL.into_iter().filter(|&effect| !effects.calls_for(effect)) {
@@ -257,8 +275,11 @@ fn signed(with: u64, without: u64) -> String {
 
 /// Prints the predicted and the counted numbers of rays.
 fn bounds(explained: &Explained<'_>) -> Result<()> {
-    let Explained { scene, kit, effects } = explained;
+    let Explained { scene, kit, effects, .. } = explained;
     let query = BoundQuery { scene: (*scene).clone(), effects: effects.clone() };
+    if effects.indirect_light {
+        return indirect::bounds(explained);
+    }
     let most = kit_error::catch(|| kit.most_rays(std::slice::from_ref(&query)))?.remove(0);
     let (counted, _) = render(*kit, (*scene).clone())?;
     println!("{:<16}  {:>20}  {:>13}", "rays", "at most, predicted", "counted");
@@ -268,18 +289,27 @@ fn bounds(explained: &Explained<'_>) -> Result<()> {
         ("reflected", most.reflection, counted.reflection),
         ("refracted", most.transmission, counted.transmission),
     ];
+    bounds_table(&lines);
+    println!("  {}", wrapped(&about_hits(&counted), 2));
+    Ok(())
+}
+
+/// Prints lines of predicted and counted rays.
+fn bounds_table(lines: &[(&str, u64, u64)]) {
     for (what, most, counted) in lines {
         let most =
-            if most == u64::MAX { "too many to count".to_owned() } else { Thousands(most).to_string() };
-        println!("  {what:<16}  {most:>18}  {:>13}", Thousands(counted).to_string());
+            if *most == u64::MAX { "too many to count".to_owned() } else { Thousands(*most).to_string() };
+        println!("  {what:<16}  {most:>18}  {:>13}", Thousands(*counted).to_string());
     }
-    let seen = counted.primary + counted.reflection + counted.transmission;
-    let note = format!(
+}
+
+/// How many rays hit a surface, in words.
+fn about_hits(counted: &Counts) -> String {
+    let seen = counted.rays() - counted.shadow;
+    format!(
         "{} of {} rays other than shadow rays hit a surface. Shadow rays start only there, and only to lights in \
          front of it.",
         Thousands(counted.hits),
         Thousands(seen)
-    );
-    println!("  {}", wrapped(&note, 2));
-    Ok(())
+    )
 }

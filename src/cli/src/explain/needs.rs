@@ -9,7 +9,7 @@ use raykata::kit::{HitsQuery, KitError, MaterialHits, RenderJob, View, kit_error
 
 /// Prints, for each material that is shown, the rays that one of its hits needs if all lights are in front of it.
 pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
-    let Explained { scene, kit, effects } = explained;
+    let Explained { scene, kit, effects, paths } = explained;
     let samples: Vec<u64> = effects.lights.iter().map(|light| u64::from(light.samples)).collect();
     let shown = scene.shown();
     let materials: Vec<usize> = (0..scene.materials.len())
@@ -26,10 +26,20 @@ pub fn rays_per_hit(explained: &Explained<'_>) -> Result<()> {
         "{:<24}  {:>18}  {:>11}  {:>11}",
         "rays per hit", "to lights, at most", "reflected", "refracted"
     );
+    let mut is_path = false;
     for (material, rays) in materials.into_iter().zip(rays) {
         let name = scene.material_names.get(material).filter(|name| !name.is_empty());
         let name = name.map_or("(without a material)".to_owned(), |name| format!("`{name}`"));
-        println!("  {name:<22}  {:>18}  {:>11}  {:>11}", rays.shadow, rays.reflection, rays.transmission);
+        let diffuse = paths.as_ref().is_some_and(|paths| paths.diffuse.get(material) == Some(&true));
+        is_path |= diffuse;
+        let diffuse = if diffuse { "  a diffuse ray" } else { "" };
+        println!(
+            "  {name:<22}  {:>18}  {:>11}  {:>11}{diffuse}",
+            rays.shadow, rays.reflection, rays.transmission
+        );
+    }
+    if is_path {
+        println!("  A path of indirect light continues with one of the rays other than those to lights.");
     }
     println!();
     Ok(())

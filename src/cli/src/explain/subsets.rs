@@ -8,14 +8,22 @@ use raykata::effects::Effect;
 /// Prints one line for each set of the effects that the scene needs, from none to all.
 pub fn print(explained: &Explained<'_>) -> Result<()> {
     let called = explained.called_for();
-    if called.len() > 9 {
+    if called.len() > 10 {
         bail!("the scene needs {} effects: {} sets are too many", called.len(), 1u64 << called.len());
     }
     for (effect, letter) in called.iter().zip('A'..) {
         println!("  {letter}  {effect}");
     }
-    let head =
-        ["from camera", "to lights", "reflected", "refracted", "random numbers", "image reads", "box tests"];
+    let head = [
+        "from camera",
+        "to lights",
+        "reflected",
+        "refracted",
+        "indirect",
+        "random numbers",
+        "image reads",
+        "box tests",
+    ];
     let head: Vec<String> = head.iter().map(|title| format!("{title:>14}")).collect();
     println!("\n{:<width$}  {}", "effects", head.join("  "), width = called.len().max(7));
     let bar = bar_of_steps(1 << called.len());
@@ -34,6 +42,7 @@ pub fn print(explained: &Explained<'_>) -> Result<()> {
             counts.shadow,
             counts.reflection,
             counts.transmission,
+            counts.indirect,
             counts.random_numbers,
             counts.texture_reads,
             counts.box_tests,

@@ -70,8 +70,13 @@ pub fn seen(scene: &Scene, effects: &Effects) -> Vec<(&'static str, String)> {
         ("background", background.into_iter().collect()),
         ("texture filter", filter.into_iter().collect()),
     ];
+    // Paths of indirect light sample emitters and the environment map.
+    let costs = |what| match scene.indirect_light && ["emission", "background"].contains(&what) {
+        true => "",
+        false => "; costs no ray",
+    };
     let some = parts.into_iter().filter(|(_, parts)| !parts.is_empty());
-    some.map(|(what, parts)| (what, format!("{}; costs no ray", list(&parts)))).collect()
+    some.map(|(what, parts)| (what, format!("{}{}", list(&parts), costs(what)))).collect()
 }
 
 /// The reason why no part of `scene` needs `effect`.
@@ -129,7 +134,7 @@ fn light_name(scene: &Scene, light: usize) -> String {
 }
 
 /// The name of a material, and the first nodes that have it.
-fn material(scene: &Scene, index: usize) -> String {
+pub fn material(scene: &Scene, index: usize) -> String {
     let mut nodes: Vec<String> = scene
         .shown()
         .iter()

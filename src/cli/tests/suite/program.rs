@@ -262,6 +262,28 @@ fn a_scene_is_explained_and_predictions_hold() {
 }
 
 #[test]
+fn indirect_light_is_explained_and_its_rays_stay_below_the_prediction() {
+    let output =
+        raykata(&["explain", "scenes/cornell.toml", "--size", "20x20", "--spp", "2", "--rounds", "1"]);
+    let (said, complained) = printed(&output);
+    assert!(output.status.success(), "{complained}");
+    for line in [
+        "  indirect light  [environment]: indirect_light",
+        "  sampled lights  `light` (light in the ceiling)",
+        "depth             the largest diffuse reflectance is",
+    ] {
+        assert!(said.contains(line), "no `{line}` in\n{said}");
+    }
+    // 800 paths with at most 12 bounces each: 800 × (1 + 12) rays are predicted.
+    let all = said.lines().find(|line| line.contains("of all paths")).expect("a line about all paths");
+    let numbers: Vec<u64> =
+        all.split_whitespace().filter_map(|word| word.replace(',', "").parse().ok()).collect();
+    let [predicted, counted] = numbers[..] else { panic!("{all}") };
+    assert_eq!(predicted, 10_400, "{said}");
+    assert!((800..predicted).contains(&counted), "{said}");
+}
+
+#[test]
 fn every_set_of_effects_has_its_line() {
     let output = raykata(&["explain", "scenes/stage5.toml", "--size", "24x15", "--spp", "1", "--subsets"]);
     let (said, complained) = printed(&output);

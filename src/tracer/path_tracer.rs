@@ -1,0 +1,372 @@
+//! The light along one random path (path tracing): at each surface the path collects light and continues in one direction,
+//! as the student's `step` says. It takes the place of the tree of rays where a scene asks for indirect light.
+
+use super::emitters::Emitters;
+use super::environment::EnvironmentTable;
+use super::frame::Frame;
+use super::hit::Hit;
+use super::interaction::SurfaceInteraction;
+use super::path::{Path, Scratch};
+use super::random_choices::{before_emitter, sample_rough_surface};
+use super::record::Record;
+use crate::count::{Event, Tally};
+use crate::kit::{LightSample, Limits, RayKind, SecondaryRay, StudentFunctions};
+use crate::light_path::{
+    ChosenEmitter, LightCandidate, Lobe, NextRay, PathEffects, PathState, PathVertex, Scattering,
+    ShadowQuestion, StepNumbers,
+};
+use crate::material::Material;
+use crate::random::{Points, Purpose};
+use crate::ray::Ray;
+use crate::scene::{Background, EnvironmentMap, Scene};
+use crate::world::World;
+use glam::{Vec2, Vec3};
+
+/// What the paths of a frame sample. It is built once and shared by all threads.
+pub struct IndirectLight {
+    /// The surfaces that are sampled; none without next-event estimation.
+    emitters: Emitters,
+    /// The environment map with the table from which it is sampled, and the probability of the choice to sample it.
+    environment: Option<(EnvironmentMap, EnvironmentTable, f32)>,
+    /// For each material whether diffuse rays leave its surfaces.
+    diffuse: Vec<bool>,
+    /// For each material whether it is that of a visible light, which `shade` samples.
+    is_light: Vec<bool>,
+}
+
+/// The limits of `scatter` for a path, whose length `step` limits.
+const UNLIMITED: Limits = Limits { max_depth: u32::MAX, min_contribution: 0.0 };
+
+/// The number of bounces at which the student's `survives` begins to end paths.
+const ROULETTE_BEGINS: u32 = 3;
+
+impl IndirectLight {
+    /// Collects what the paths of `scene`, flattened to `world`, sample as far as `paths` calls for it.
+    pub fn new(scene: &Scene, world: &World, paths: &PathEffects) -> IndirectLight {
+        let mut is_light = vec![false; scene.materials.len()];
+        for visible in &scene.visible_lights {
+            is_light[visible.material] = true;
+        }
+        let samples = scene.quality.next_event;
+        let is_sampled =
+            |material: usize| samples && paths.sampled.get(material) == Some(&true) && !is_light[material];
+        let emitters = Emitters::new(world, is_sampled);
+        let environment = match scene.background {
+            Background::Map(map) if samples && paths.environment => {
+                let table = EnvironmentTable::new(&map, &world.textures[map.texture]);
+                // The map has no power that could be compared with that of emitters: its distance is infinite.
+                table.map(|table| (map, table, if emitters.is_empty() { 1.0 } else { 0.5 }))
+            }
+            _ => None,
+        };
+        IndirectLight { emitters, environment, diffuse: paths.diffuse.clone(), is_light }
+    }
+
+    /// The probability with which a vertex samples the environment map and not an emitter.
+    fn share_of_environment(&self) -> f32 {
+        self.environment.as_ref().map_or(0.0, |(_, _, share)| *share)
+    }
+
+    /// The emitter to which `point` of the surface that is hit belongs; `None` if it is not sampled.
+    #[cold]
+    fn emitter_at(&self, hit: &Hit, point: Vec3) -> Option<ChosenEmitter> {
+        let mut chosen = self.emitters.at(hit.target, point)?;
+        chosen.probability *= 1.0 - self.share_of_environment();
+        Some(chosen)
+    }
+
+    /// Whether there is more than one light to choose from.
+    fn has_choice(&self) -> bool {
+        self.emitters.len() + usize::from(self.environment.is_some()) > 1
+    }
+}
+
+impl<F: StudentFunctions> Frame<'_, F> {
+    /// The linear radiance that arrives along `path`, whose closest hit is `hit`: an unbiased random estimate of all light,
+    /// direct and indirect, up to the largest depth. With a limit on the light of a sample it is darkened to that limit.
+    ///
+    /// Source: Kajiya, "The Rendering Equation", 1986.
+    #[inline(never)]
+    pub fn radiance_of_path<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        path: Path,
+        hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let color = self.follow(indirect, path, hit, scratch, record);
+        let (limit, largest) = (self.quality().clamp, color.max_element());
+        if limit > 0.0 && largest > limit { limit / largest * color } else { color }
+    }
+
+    /// Follows `path` from hit to hit, and adds up the light that it collects.
+    fn follow<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        mut path: Path,
+        mut hit: Option<Hit>,
+        scratch: &mut Scratch<T>,
+        record: &mut impl Record,
+    ) -> Vec3 {
+        let mut color = Vec3::ZERO;
+        // The direction of a camera ray is certain.
+        let (mut origin, mut pdf) = (path.ray.origin, f32::INFINITY);
+        // The emitter on which the ray starts.
+        let mut left: Option<ChosenEmitter> = None;
+        loop {
+            let direction = self.unit(path.ray.direction);
+            let Some(found) = hit else {
+                record.miss(&path);
+                return color + path.weight * self.background_of_path(indirect, direction, pdf, scratch);
+            };
+            // Compute the surface interaction and its material.
+            scratch.note(Event::Hit);
+            let world = &self.intersector.scene.world;
+            let at = SurfaceInteraction::new::<F>(world, self.looks, &path.ray, &found);
+            let number = record.hit(&path, found.t, at.material);
+            let material = self.material(&path, &found, &at, &mut scratch.tally);
+            // Add the light of `[[lights]]`, which no ray finds by chance, without ambient light.
+            if !self.plan.effects.materials[at.material].lights.is_empty() {
+                self.sample_lights(&path, &at, scratch);
+                let light = self.shade(&path, &at, &material, scratch, |ray, blocked| {
+                    record.shadow(&path, number, ray, blocked);
+                });
+                color += path.weight * light;
+            }
+            // Let the student's `step` collect other light and choose how the path continues.
+            let (bounces, max_depth) = self.depth_of_step(path.depth);
+            let state = PathState { origin, direction, weight: path.weight, bounces, pdf };
+            let may_bounce = path.depth < self.limits.max_depth;
+            let scattering = self.scattering(indirect, direction, &at, &material, may_bounce);
+            let (mut light, numbers) =
+                self.numbers_of_step(indirect, &scattering, &path.points, &state, scratch);
+            let is_seen = !indirect.is_light[at.material] || pdf == f32::INFINITY;
+            let emission = if is_seen { material.emission } else { Vec3::ZERO };
+            let emitter = match emission == Vec3::ZERO {
+                true => None,
+                false => indirect.emitter_at(&found, at.surface.point),
+            };
+            // A point of an emitter does not sample this emitter: it sees none of it, or the inside of a sphere, and whether it
+            // lies inside or outside is a matter of rounding. So a ray from there finds the emitter by chance only.
+            if matches!((light, emitter), (Some(LightCandidate::Emitter(other)), Some(own)) if other == own) {
+                light = None;
+            }
+            let by_chance = emitter.is_some() && emitter == left;
+            left = emitter;
+            let emitter = if by_chance { None } else { emitter };
+            let vertex = PathVertex { surface: at.surface, scattering, emission, emitter, light };
+            let step = F::step(&state, &vertex, max_depth, &numbers);
+            color += step.light;
+            // Trace the shadow ray to the light that was sampled.
+            if let Some(question) = &step.shadow {
+                color += self.unoccluded(question, &path, &at, light, scratch, |ray, blocked| {
+                    record.shadow(&path, number, ray, blocked);
+                });
+            }
+            // Continue with the next ray.
+            let Some(next) = step.next else {
+                let reflects =
+                    vertex.scattering.diffuse != Vec3::ZERO || !vertex.scattering.secondary.is_empty();
+                if may_bounce && reflects {
+                    scratch.note(Event::Absorbed);
+                }
+                return color;
+            };
+            let Some(next_path) = self.next_path(&next, &path, &found, number, &at, &material, scratch)
+            else {
+                return color;
+            };
+            (origin, pdf) = (at.surface.point, next.pdf);
+            path = next_path;
+            hit = self.closest_hit(&path.ray, scratch);
+        }
+    }
+
+    /// The bounces so far and the largest depth, as `step` gets them: both are moved by the same number, so that `survives`,
+    /// which begins at a fixed number of bounces, begins where the quality setting says. A camera ray has no bounces.
+    fn depth_of_step(&self, depth: u32) -> (u32, u32) {
+        let from = self.quality().roulette_from;
+        let bounces = match depth {
+            0 => 0,
+            _ => (depth + ROULETTE_BEGINS).saturating_sub(from).max(1),
+        };
+        (bounces, bounces + (self.limits.max_depth - depth))
+    }
+
+    /// How the surface scatters light that arrives in `direction`; it scatters none at the end of the longest path.
+    fn scattering(
+        &self,
+        indirect: &IndirectLight,
+        direction: Vec3,
+        at: &SurfaceInteraction,
+        material: &Material,
+        may_bounce: bool,
+    ) -> Scattering {
+        let takes = &self.plan.effects.materials[at.material];
+        let normal = at.surface.shading_normal;
+        let secondary = match may_bounce && (takes.mirror || takes.transmission) {
+            true => F::scatter(direction, normal, at.entering, material, Vec3::ONE, 0, &UNLIMITED),
+            false => Vec::new(),
+        };
+        let is_diffuse = may_bounce && indirect.diffuse.get(at.material) == Some(&true);
+        let diffuse = if is_diffuse { material.diffuse } else { Vec3::ZERO };
+        Scattering { diffuse, normal, secondary }
+    }
+
+    /// The light that may be sampled at a vertex, and the random numbers of its step. Numbers that cannot matter are 0 and are
+    /// not looked up.
+    fn numbers_of_step<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        scattering: &Scattering,
+        points: &Points,
+        state: &PathState,
+        scratch: &mut Scratch<T>,
+    ) -> (Option<LightCandidate>, StepNumbers) {
+        let mut numbers = StepNumbers { light: Vec2::ZERO, bsdf: Vec3::ZERO, roulette: 0.0 };
+        let is_diffuse = scattering.diffuse != Vec3::ZERO;
+        // Choose a light, and sample the environment map; `step` samples any other light.
+        let mut light = None;
+        if is_diffuse && (!indirect.emitters.is_empty() || indirect.environment.is_some()) {
+            let choice = match indirect.has_choice() {
+                true => self.numbers(points, Purpose::EmitterChoice, 1, scratch).x,
+                false => 0.0,
+            };
+            numbers.light = self.numbers(points, Purpose::EmitterPoint, 2, scratch);
+            light = self.choose_light(indirect, choice, numbers.light, scratch);
+        }
+        // Look up the numbers of the direction, of the lobe if there are several, and of Russian roulette.
+        let lobes = usize::from(is_diffuse) + scattering.secondary.len();
+        let roulette = lobes > 0 && state.bounces + 1 >= ROULETTE_BEGINS;
+        let used = u64::from(lobes > 1) + u64::from(roulette);
+        if used > 0 {
+            let pair = self.numbers(points, Purpose::Lobe, used, scratch);
+            (numbers.bsdf.x, numbers.roulette) = (pair.x, pair.y);
+        }
+        if is_diffuse {
+            let pair = self.numbers(points, Purpose::Direction, 2, scratch);
+            (numbers.bsdf.y, numbers.bsdf.z) = (pair.x, pair.y);
+        }
+        (light, numbers)
+    }
+
+    /// Two random numbers for `purpose`, `0 <= u < 1` each, of which `used` are used and counted.
+    fn numbers<T: Tally>(
+        &self,
+        points: &Points,
+        purpose: Purpose,
+        used: u64,
+        scratch: &mut Scratch<T>,
+    ) -> Vec2 {
+        (0..used).for_each(|_| scratch.note(Event::RandomNumber));
+        let stratum = points.stratum(purpose, 0, 1);
+        if self.plan.jittered { F::jittered(&stratum) } else { stratum.u }
+    }
+
+    /// The light that the random number `choice` chooses; `u` samples the environment map.
+    fn choose_light<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        choice: f32,
+        u: Vec2,
+        scratch: &mut Scratch<T>,
+    ) -> Option<LightCandidate> {
+        let share = indirect.share_of_environment();
+        if let Some((map, table, _)) = indirect.environment.as_ref().filter(|_| choice < share) {
+            let mut sample = table.sample(u)?;
+            sample.radiance = self.environment_color(map, sample.direction, scratch);
+            sample.pdf *= share;
+            return Some(LightCandidate::Environment(sample));
+        }
+        let mut chosen = indirect.emitters.choose((choice - share) / (1.0 - share))?;
+        chosen.probability *= 1.0 - share;
+        Some(LightCandidate::Emitter(chosen))
+    }
+
+    /// The part of the background that counts for a path which leaves the scene in `direction`, sampled with density `pdf`:
+    /// a sampled environment map has been counted in part.
+    fn background_of_path<T: Tally>(
+        &self,
+        indirect: &IndirectLight,
+        direction: Vec3,
+        pdf: f32,
+        scratch: &mut Scratch<T>,
+    ) -> Vec3 {
+        let background = self.background(direction, scratch);
+        match &indirect.environment {
+            None => background,
+            Some((_, table, share)) => F::emitted_contribution(background, pdf, share * table.pdf(direction)),
+        }
+    }
+
+    /// The light of a shadow ray, or none if an object is in the way; `record` receives a ray that is traced.
+    fn unoccluded<T: Tally>(
+        &self,
+        question: &ShadowQuestion,
+        path: &Path,
+        at: &SurfaceInteraction,
+        light: Option<LightCandidate>,
+        scratch: &mut Scratch<T>,
+        mut record: impl FnMut(&Ray, bool),
+    ) -> Vec3 {
+        // End the ray before the surface of its own emitter.
+        let ShadowQuestion { direction, distance, light: radiance } = *question;
+        let distance = match &light {
+            Some(LightCandidate::Emitter(chosen)) => {
+                before_emitter(&chosen.emitter.shape, direction, distance, at.surface.point)
+            }
+            _ => distance,
+        };
+        let sample = LightSample { direction, distance, radiance };
+        let Some(ray) = F::shadow_ray(&at.surface, &sample) else { return Vec3::ZERO };
+        scratch.note(Event::Shadow);
+        let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
+        let blocked = self.intersector.any_hit(&ray, &mut scratch.tally);
+        record(&ray, blocked);
+        if blocked { Vec3::ZERO } else { radiance }
+    }
+
+    /// The path along the ray `next`. `None` if a diffuse ray would start into the surface, which happens where the shading
+    /// normal differs from the geometric one.
+    #[allow(clippy::too_many_arguments)]
+    fn next_path<T: Tally>(
+        &self,
+        next: &NextRay,
+        path: &Path,
+        hit: &Hit,
+        number: usize,
+        at: &SurfaceInteraction,
+        material: &Material,
+        scratch: &mut Scratch<T>,
+    ) -> Option<Path> {
+        let takes = &self.plan.effects.materials[at.material];
+        let NextRay { lobe, direction, weight, .. } = *next;
+        let bounce = lobe.bounce();
+        let mut secondary = SecondaryRay { bounce, direction, weight };
+        let (event, kind) = match lobe {
+            Lobe::Diffuse => (Event::Indirect, RayKind::Indirect),
+            Lobe::Reflection => (Event::Reflection, RayKind::Reflection),
+            Lobe::Transmission => (Event::Transmission, RayKind::Transmission),
+        };
+        if lobe == Lobe::Diffuse && direction.dot(at.surface.geometric_normal) <= 0.0 {
+            return None;
+        }
+        // Spread the ideal reflected or refracted ray of a rough surface.
+        if lobe != Lobe::Diffuse && takes.glossy {
+            scratch.note(Event::RandomNumber);
+            scratch.note(Event::RandomNumber);
+            let (surface, points) = (&at.surface, &path.points);
+            secondary = sample_rough_surface::<F>(&secondary, surface, material.roughness, points, (0, 1));
+        }
+        scratch.note(event);
+        let ray = match self.plan.offsets {
+            true => Ray::new(at.surface.point, secondary.direction),
+            false => F::spawn_ray(&at.surface, &secondary),
+        };
+        let ray = self.off_surface(at, Ray { time: path.ray.time, ..ray });
+        let cone = self.cone_beyond(path, hit, at, material, bounce);
+        let (points, depth) = (path.points.beyond_vertex(), path.depth + 1);
+        Some(Path { ray, points, weight: secondary.weight, depth, kind, parent: Some(number), cone })
+    }
+}

@@ -1,0 +1,405 @@
+//! What the paths of a scene need: `paths_called_for`, by scenes whose answer follows from how they were made.
+
+use checks::Trial;
+use checks::broken::{Broken, CheckResult, all_hold};
+use glam::{Affine3A, Vec3, vec3};
+use raykata::camera::{Camera, Shutter};
+use raykata::light_path::PathEffects;
+use raykata::material::{AreaShape, Emitter, Falloff, Light, Material};
+use raykata::scene::{Background, EnvironmentMap, Gradient, Node, Scene, VisibleLight};
+use raykata::shape::{Plane, Shape, Sphere};
+
+const RED: Vec3 = Vec3::X;
+const GREEN: Vec3 = Vec3::Y;
+
+fn sphere() -> Shape {
+    Shape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 })
+}
+
+fn plane() -> Shape {
+    Shape::Plane(Plane { point: Vec3::NEG_Y, normal: Vec3::Y })
+}
+
+fn light(color: Vec3) -> Light {
+    let emitter = Emitter::Point { position: vec3(0.0, 5.0, 0.0), falloff: Falloff::None };
+    Light { emitter, color, intensity: 1.0, shadows: true }
+}
+
+fn diffuse(color: Vec3) -> Material {
+    Material { diffuse: color, ambient: Vec3::ZERO, ..Material::default() }
+}
+
+/// A black surface that emits light.
+fn glowing(color: Vec3) -> Material {
+    Material { emission: color, ..diffuse(Vec3::ZERO) }
+}
+
+/// A scene with indirect light and a black background, and a shape of each of these materials. Their indices begin at 1,
+/// because no shape has material 0.
+fn scene(shapes: &[(Shape, Material)]) -> Scene {
+    let camera = Camera::new(vec3(0.0, 1.0, 5.0), Vec3::NEG_Z, Vec3::Y, 40.0, 1.0)
+        .expect("a camera that looks along -z");
+    let mut scene = Scene { indirect_light: true, ..Scene::empty(camera) };
+    for (shape, material) in shapes {
+        scene.materials.push(material.clone());
+        scene.material_names.push(format!("material {}", scene.materials.len() - 1));
+        scene.roots.push(scene.nodes.len());
+        let material = Some(scene.materials.len() - 1);
+        scene.nodes.push(Node { shape: Some(shape.clone()), material, ..Node::default() });
+    }
+    scene
+}
+
+/// The materials that diffuse rays leave, those that are sampled, and whether the environment map is.
+type Needs = (&'static [usize], &'static [usize], bool);
+
+const NOTHING: Needs = (&[], &[], false);
+
+/// A scene, what its paths need, and what a mistake makes of it.
+struct Case {
+    what: &'static str,
+    scene: Scene,
+    needs: Needs,
+    mistakes: Vec<(Needs, &'static str)>,
+}
+
+/// How much of a colour of the scenes is used for a hidden seed. What a scene needs does not depend on it.
+fn judge_all(trial: &Trial<'_>, cases: Vec<Case>) -> CheckResult {
+    let hidden = (0.1..1.0f32, 0.1..1.0f32, 1..9u32, 0..3usize);
+    let (of_light, of_material, depth, turn) = trial.varied((1.0, 1.0, 5, 0), hidden);
+    // The channels of all colours change places.
+    let turned = |color: Vec3| {
+        let channels = color.to_array();
+        Vec3::from_array([0, 1, 2].map(|channel| channels[(channel + turn) % 3]))
+    };
+    let vary = |case: Case| {
+        let mut scene = case.scene;
+        for light in &mut scene.lights {
+            light.color = of_light * turned(light.color);
+        }
+        for material in &mut scene.materials {
+            material.diffuse = of_material * turned(material.diffuse);
+            material.emission = of_light * turned(material.emission);
+        }
+        match &mut scene.background {
+            Background::Color(color) => *color = of_light * turned(*color),
+            Background::Gradient(gradient) => {
+                for color in [&mut gradient.zenith, &mut gradient.horizon, &mut gradient.nadir] {
+                    *color = of_light * turned(*color);
+                }
+            }
+            Background::Map(map) => map.scale *= of_light,
+        }
+        if scene.quality.max_depth > 0 {
+            scene.quality.max_depth = depth;
+        }
+        Case { scene, ..case }
+    };
+    let cases: Vec<Case> = cases.into_iter().map(vary).collect();
+    let scenes: Vec<Scene> = cases.iter().map(|case| case.scene.clone()).collect();
+    let judge = |(case, yours): (&Case, PathEffects)| {
+        let n = case.scene.materials.len();
+        let flags = |indices: &[usize]| (0..n).map(|index| indices.contains(&index)).collect::<Vec<bool>>();
+        let effects = |(diffuse, sampled, environment): Needs| PathEffects {
+            diffuse: flags(diffuse),
+            sampled: flags(sampled),
+            environment,
+        };
+        let expected = effects(case.needs);
+        if yours == expected {
+            return Ok(());
+        }
+        let has_length = yours.diffuse.len() == n && yours.sampled.len() == n;
+        let part = |effects: &PathEffects| match () {
+            () if yours.diffuse != expected.diffuse => format!("diffuse: {:?}", effects.diffuse),
+            () if yours.sampled != expected.sampled => format!("sampled: {:?}", effects.sampled),
+            () => format!("environment: {}", effects.environment),
+        };
+        let input = format!("paths_called_for of {}", case.what);
+        let entries =
+            (!has_length, "there is one entry per material of the scene, also for those without effects");
+        let mistakes = case.mistakes.iter().map(|(wrong, text)| (yours == effects(*wrong), *text));
+        Err(Broken::with_texts(input, part(&yours), part(&expected), "the definition")
+            .explained_by(std::iter::once(entries).chain(mistakes)))
+    };
+    all_hold(cases.iter().zip(trial.kit.paths_called_for(&scenes)).map(judge).collect())
+}
+
+fn case(what: &'static str, scene: Scene, needs: Needs, mistakes: &[(Needs, &'static str)]) -> Case {
+    Case { what, scene, needs, mistakes: mistakes.to_vec() }
+}
+
+pub(super) fn no_paths_without_indirect_light(trial: &Trial<'_>) -> CheckResult {
+    let wall = || (sphere(), diffuse(Vec3::ONE));
+    let emitter = || (sphere(), glowing(Vec3::ONE));
+    let lit = scene(&[wall(), emitter()]);
+    let mut shallow = lit.clone();
+    shallow.quality.max_depth = 0;
+    const WALL: Needs = (&[1], &[], false);
+    const BOTH: Needs = (&[1], &[2], false);
+    const OFF: &str = "nothing is needed without scene.indirect_light";
+    const DARK: &str = "nothing emits light, so no path finds any";
+    const FLAT: &str = "with max_depth 0 no path has a bounce";
+    let off = Scene { indirect_light: false, ..lit.clone() };
+    let mut black_lights = scene(&[wall()]);
+    black_lights.lights.push(light(Vec3::ZERO));
+    black_lights.lights.push(Light { intensity: 0.0, ..light(Vec3::ONE) });
+    let mut ambient = scene(&[wall()]);
+    ambient.ambient = Vec3::ONE;
+    judge_all(
+        trial,
+        vec![
+            case("a diffuse sphere and one that emits light, with indirect light", lit, BOTH, &[]),
+            case(
+                "the same without indirect light",
+                off,
+                NOTHING,
+                &[(BOTH, OFF), (WALL, OFF), ((&[], &[2], false), OFF)],
+            ),
+            case(
+                "the same with max_depth 0",
+                shallow,
+                NOTHING,
+                &[(BOTH, FLAT), (WALL, FLAT), ((&[], &[2], false), FLAT)],
+            ),
+            case("a diffuse sphere in the dark", scene(&[wall()]), NOTHING, &[(WALL, DARK)]),
+            case(
+                "a sphere that emits light and reflects none",
+                scene(&[emitter()]),
+                NOTHING,
+                &[
+                    ((&[], &[1], false), "a light is sampled only if a surface reflects its light"),
+                    (WALL, "a black surface reflects no light"),
+                ],
+            ),
+            case(
+                "a diffuse sphere under a black light and one of intensity 0",
+                black_lights,
+                NOTHING,
+                &[(WALL, "these lights emit nothing: use radiance()"), (WALL, DARK)],
+            ),
+            case(
+                "a diffuse sphere in ambient light",
+                ambient,
+                NOTHING,
+                &[(WALL, "ambient light stands for indirect light: it is not a source of it"), (WALL, DARK)],
+            ),
+        ],
+    )
+}
+
+pub(super) fn every_source_of_light_calls_for_paths(trial: &Trial<'_>) -> CheckResult {
+    let wall = || (sphere(), diffuse(Vec3::ONE));
+    let with = |background: Background| Scene { background, ..scene(&[wall()]) };
+    let gradient = |zenith, horizon, nadir| Background::Gradient(Gradient { zenith, horizon, nadir });
+    let map = |scale| Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale });
+    let mut lit = scene(&[wall()]);
+    lit.lights.push(light(RED));
+    let (zero, one) = (Vec3::ZERO, Vec3::ONE);
+    const WALL: Needs = (&[1], &[], false);
+    const WITH_MAP: Needs = (&[1], &[], true);
+    const LIGHTS: &str = "lights of the scene are light, too";
+    let background = [(NOTHING, "the background is light, too")];
+    let mut mirror = scene(&[wall(), (sphere(), Material { mirror: one, ..diffuse(zero) })]);
+    mirror.lights.push(light(one));
+    let mut glass =
+        scene(&[(sphere(), Material { transmission: one, specular: one, ..diffuse(zero) }), wall()]);
+    glass.lights.push(light(one));
+    judge_all(
+        trial,
+        vec![
+            case("a diffuse sphere under a red light", lit, WALL, &[(NOTHING, LIGHTS)]),
+            case("a diffuse sphere under a grey sky", with(Background::Color(0.1 * one)), WALL, &background),
+            case("a diffuse sphere over a bright ground", with(gradient(zero, zero, one)), WALL, &background),
+            case(
+                "a diffuse sphere under a bright zenith",
+                with(gradient(one, zero, zero)),
+                WALL,
+                &background,
+            ),
+            case(
+                "a diffuse sphere before a bright horizon",
+                with(gradient(zero, GREEN, zero)),
+                WALL,
+                &background,
+            ),
+            case(
+                "a diffuse sphere in a black gradient",
+                with(gradient(zero, zero, zero)),
+                NOTHING,
+                &[(WALL, "a black gradient is no light")],
+            ),
+            case(
+                "a diffuse sphere in an environment map",
+                with(map(1.0)),
+                WITH_MAP,
+                &[(NOTHING, "the background is light, too"), (WALL, "an environment map is sampled")],
+            ),
+            case(
+                "a diffuse sphere in an environment map of scale 0",
+                with(map(0.0)),
+                NOTHING,
+                &[
+                    (WALL, "a map of scale 0 is no light"),
+                    (WITH_MAP, "a map of scale 0 is no light"),
+                    ((&[], &[], true), "a map of scale 0 is no light"),
+                ],
+            ),
+            case(
+                "a diffuse sphere and a mirror under a light",
+                mirror,
+                WALL,
+                &[((&[1, 2], &[], false), "a mirror sends no diffuse rays"), (NOTHING, LIGHTS)],
+            ),
+            case(
+                "a glass sphere with a highlight, and a diffuse one",
+                glass,
+                (&[2], &[], false),
+                &[((&[1, 2], &[], false), "glass and highlights send no diffuse rays"), (NOTHING, LIGHTS)],
+            ),
+        ],
+    )
+}
+
+pub(super) fn paths_are_called_for_channel_by_channel(trial: &Trial<'_>) -> CheckResult {
+    const CHANNELS: &str = "compare channel by channel: a red light adds nothing to a green wall";
+    let wall = |color| (sphere(), diffuse(color));
+    let emitter = |color| (sphere(), glowing(color));
+    let mut red_light = scene(&[wall(GREEN), wall(RED)]);
+    red_light.lights.push(light(RED));
+    let map = Background::Map(EnvironmentMap { texture: 0, rotation: 0.0, scale: 1.0 });
+    let black = Scene { background: map, ..scene(&[wall(Vec3::ZERO)]) };
+    let two = scene(&[wall(RED), emitter(GREEN), emitter(RED)]);
+    let mixed = scene(&[wall(GREEN), emitter(RED + GREEN)]);
+    let sky = Scene { background: Background::Color(GREEN), ..scene(&[wall(GREEN), emitter(RED)]) };
+    const UNREFLECTED: &str = "nothing reflects the light of the map";
+    judge_all(
+        trial,
+        vec![
+            case(
+                "a green and a red sphere under a red light",
+                red_light,
+                (&[2], &[], false),
+                &[((&[1, 2], &[], false), CHANNELS)],
+            ),
+            case(
+                "a green sphere and a red emitter",
+                scene(&[wall(GREEN), emitter(RED)]),
+                NOTHING,
+                &[
+                    ((&[1], &[2], false), CHANNELS),
+                    ((&[], &[2], false), CHANNELS),
+                    ((&[1], &[], false), CHANNELS),
+                ],
+            ),
+            case(
+                "a red sphere, a green emitter and a red emitter",
+                two,
+                (&[1], &[3], false),
+                &[((&[1], &[2, 3], false), CHANNELS)],
+            ),
+            case("a green sphere and a yellow emitter", mixed, (&[1], &[2], false), &[]),
+            case(
+                "a green sphere and a red emitter under a green sky",
+                sky,
+                (&[1], &[], false),
+                &[((&[1], &[2], false), CHANNELS)],
+            ),
+            case(
+                "a black sphere in an environment map",
+                black,
+                NOTHING,
+                &[((&[], &[], true), UNREFLECTED), ((&[1], &[], true), UNREFLECTED)],
+            ),
+        ],
+    )
+}
+
+pub(super) fn lights_are_sampled_where_they_can_be(trial: &Trial<'_>) -> CheckResult {
+    let wall = || (sphere(), diffuse(Vec3::ONE));
+    let emitter = || (sphere(), glowing(Vec3::ONE));
+    let plain = scene(&[wall(), (plane(), glowing(Vec3::ONE))]);
+    // The same material on a plane and on a sphere.
+    let mut both = plain.clone();
+    both.nodes.push(Node { shape: Some(sphere()), material: Some(2), ..Node::default() });
+    both.roots.push(2);
+    // An emitter that no root reaches, and the material of an emitter that no shape has.
+    let mut hidden = scene(&[wall(), emitter()]);
+    hidden.roots.pop();
+    hidden.background = Background::Color(Vec3::ONE);
+    hidden.materials.push(glowing(Vec3::ONE));
+    hidden.material_names.push("unused".into());
+    let moving = |shutter: Option<Shutter>| {
+        let mut scene = scene(&[wall(), emitter()]);
+        scene.nodes[1].transform_end = Some(Affine3A::from_translation(Vec3::X));
+        scene.camera.shutter = shutter;
+        scene
+    };
+    // A visible light has a shape with a material that emits its light.
+    let mut visible = scene(&[wall(), emitter()]);
+    let shape = AreaShape::Sphere(Sphere { center: Vec3::ZERO, radius: 1.0 });
+    let area = Emitter::Area { shape, falloff: Falloff::InverseSquare };
+    visible.lights.push(Light { emitter: area, ..light(Vec3::ONE) });
+    visible.visible_lights.push(VisibleLight { light: 0, material: 2 });
+    let glow = Material { emission: Vec3::ONE, ..diffuse(Vec3::ONE) };
+    const WALL: Needs = (&[1], &[], false);
+    const BOTH: Needs = (&[1], &[2], false);
+    const STILL: &str = "a light moves only if the shutter closes later than it opens";
+    const SHOWN: &str = "only shapes that a root reaches are shown: use scene.shown()";
+    judge_all(
+        trial,
+        vec![
+            case(
+                "a diffuse sphere and a plane that emits light",
+                plain,
+                WALL,
+                &[(BOTH, "an infinite plane is not sampled")],
+            ),
+            case(
+                "a diffuse sphere, and a plane and a sphere of the same glowing material",
+                both,
+                BOTH,
+                &[(WALL, "a material is sampled if one of its shapes can be")],
+            ),
+            case(
+                "a diffuse sphere and an emitter that no root reaches, under a sky",
+                hidden,
+                WALL,
+                &[(BOTH, SHOWN), ((&[1], &[2, 3], false), SHOWN), ((&[1], &[3], false), SHOWN)],
+            ),
+            case(
+                "a diffuse sphere and an emitter that moves",
+                moving(Some(Shutter { open: 0.0, close: 1.0 })),
+                WALL,
+                &[(BOTH, "a light that moves is not sampled")],
+            ),
+            case(
+                "a diffuse sphere and an emitter that would move, without a shutter",
+                moving(None),
+                BOTH,
+                &[(WALL, STILL)],
+            ),
+            case(
+                "a diffuse sphere and an emitter that would move, with a shutter that closes when it opens",
+                moving(Some(Shutter { open: 0.5, close: 0.5 })),
+                BOTH,
+                &[(WALL, STILL)],
+            ),
+            case(
+                "a diffuse sphere and a visible light",
+                visible,
+                WALL,
+                &[(BOTH, "a visible light is sampled as a light, not as a surface")],
+            ),
+            case(
+                "one sphere that emits and reflects light",
+                scene(&[(sphere(), glow)]),
+                (&[1], &[1], false),
+                &[
+                    (WALL, "a surface that reflects light can be sampled as a light, too"),
+                    (NOTHING, "a surface can emit and reflect light"),
+                ],
+            ),
+        ],
+    )
+}

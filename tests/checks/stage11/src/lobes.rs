@@ -1,0 +1,406 @@
+//! The choice of a lobe: `sample_bsdf` and `bsdf_pdf`.
+
+use crate::directions::LARGEST;
+use checks::Trial;
+use checks::broken::{Broken, CheckResult};
+use checks::judge::{compare, compare_formulas};
+use checks::nasty;
+use checks::paste::Paste;
+use checks::statistics::{SAMPLES, covers_evenly, has_mean, pairs};
+use glam::{Vec3, vec3};
+use proptest::prelude::*;
+use raykata::kit::{Bounce, BsdfPdfQuery, BsdfQuery, SecondaryRay};
+use raykata::light_path::{BsdfSample, Lobe, Scattering};
+use std::f64::consts::{PI, TAU};
+
+/// A surface as Rust.
+pub(super) fn paste_scattering(scattering: &Scattering) -> String {
+    let ray = |ray: &SecondaryRay| {
+        format!(
+            "SecondaryRay {{ bounce: Bounce::{:?}, direction: {}, weight: {} }}",
+            ray.bounce,
+            ray.direction.paste(),
+            ray.weight.paste()
+        )
+    };
+    let secondary: Vec<String> = scattering.secondary.iter().map(ray).collect();
+    format!(
+        "&Scattering {{ diffuse: {}, normal: {}, secondary: vec![{}] }}",
+        scattering.diffuse.paste(),
+        scattering.normal.paste(),
+        secondary.join(", ")
+    )
+}
+
+fn paste(query: &BsdfQuery) -> String {
+    format!("sample_bsdf({}, {})", paste_scattering(&query.scattering), query.u.paste())
+}
+
+/// A surface with this normal and the reflectances of the three lobes. A lobe of reflectance 0 has a secondary ray, too.
+fn surface(normal: Vec3, diffuse: Vec3, reflection: Option<Vec3>, transmission: Option<Vec3>) -> Scattering {
+    let ray = |bounce, angle, turn, weight| SecondaryRay {
+        bounce,
+        direction: nasty::tilted(normal, angle, turn),
+        weight,
+    };
+    let reflected = reflection.map(|weight| ray(Bounce::Reflection, 0.7, 0.3, weight));
+    let refracted = transmission.map(|weight| ray(Bounce::Transmission, PI - 0.4, 0.8, weight));
+    Scattering { diffuse, normal, secondary: reflected.into_iter().chain(refracted).collect() }
+}
+
+/// Reflectances in steps of 1/8, black in one of three.
+fn reflectance() -> impl Strategy<Value = Vec3> + Clone {
+    let channel = || (0..=8i32).prop_map(|n| n as f32 / 8.0);
+    prop_oneof![
+        1 => Just(Vec3::ZERO),
+        1 => (0..3usize, 1..=8i32).prop_map(|(axis, n)| n as f32 / 8.0 * Vec3::AXES[axis]),
+        2 => (channel(), channel(), channel()).prop_map(|(x, y, z)| vec3(x, y, z)),
+    ]
+}
+
+/// Surfaces with any of the lobes.
+pub(super) fn surfaces() -> impl Strategy<Value = Scattering> + Clone {
+    let maybe = || prop_oneof![1 => Just(None), 3 => reflectance().prop_map(Some)];
+    (nasty::unit(), reflectance(), maybe(), maybe()).prop_map(
+        |(normal, diffuse, reflection, transmission)| surface(normal, diffuse, reflection, transmission),
+    )
+}
+
+fn number() -> impl Strategy<Value = f32> + Clone {
+    prop_oneof![6 => (0..64u32).prop_map(|n| (n as f32 + 0.5) / 64.0), 1 => Just(0.0f32), 1 => Just(LARGEST)]
+}
+
+/// The reflectance of a lobe.
+fn reflectance_of(scattering: &Scattering, lobe: Lobe) -> Vec3 {
+    let ray = |bounce: Bounce| {
+        scattering.secondary.iter().find(|ray| ray.bounce == bounce).map_or(Vec3::ZERO, |ray| ray.weight)
+    };
+    match lobe {
+        Lobe::Diffuse => scattering.diffuse,
+        Lobe::Reflection => ray(Bounce::Reflection),
+        Lobe::Transmission => ray(Bounce::Transmission),
+    }
+}
+
+const LOBES: [Lobe; 3] = [Lobe::Diffuse, Lobe::Reflection, Lobe::Transmission];
+
+/// The probability of a lobe in proportion to its largest channel.
+fn share(scattering: &Scattering, lobe: Lobe) -> f64 {
+    let largest = |lobe: Lobe| f64::from(reflectance_of(scattering, lobe).max_element());
+    largest(lobe) / LOBES.into_iter().map(largest).sum::<f64>()
+}
+
+/// The probability with which the lobe of a sample was chosen, as its weight states it.
+fn probability(scattering: &Scattering, sample: &BsdfSample) -> f64 {
+    let reflectance = reflectance_of(scattering, sample.lobe);
+    f64::from(reflectance.max_element()) / f64::from(sample.weight.max_element())
+}
+
+const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
+
+pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
+    let queries = (surfaces(), number(), number(), number())
+        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
+    trial.forall(800, queries, |queries| {
+        compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
+            let scattering = &query.scattering;
+            let is_black = LOBES.iter().all(|lobe| reflectance_of(scattering, *lobe) == Vec3::ZERO);
+            let Some(sample) = yours else {
+                return match is_black {
+                    true => Ok(()),
+                    false => Err(Broken::new(paste(query), yours, "a sample", "the definition")
+                        .explained_by([(
+                            true,
+                            "None only if all lobes are black: choose again, or scale the random number",
+                        )])),
+                };
+            };
+            if is_black {
+                let broken = Broken::new(paste(query), yours, None::<()>, "the definition");
+                return Err(broken.explained_by([
+                    (true, "all lobes are black: there is nothing to choose"),
+                    (true, CHOOSES_BLACK),
+                ]));
+            }
+            let reflectance = reflectance_of(scattering, sample.lobe);
+            let direction = sample.direction.as_dvec3();
+            let is_unit = (direction.length() - 1.0).abs() < 1e-5;
+            let ray = scattering
+                .secondary
+                .iter()
+                .find(|ray| sample.lobe != Lobe::Diffuse && ray.bounce == sample.lobe.bounce());
+            let keeps = match ray {
+                // A secondary ray keeps its direction, up to a normalization.
+                Some(ray) => (direction - ray.direction.as_dvec3()).length() < 1e-6,
+                None => direction.dot(scattering.normal.as_dvec3()) >= -1e-6,
+            };
+            let is_certain = sample.pdf == f32::INFINITY;
+            let certainty = is_certain == (sample.lobe != Lobe::Diffuse);
+            if reflectance != Vec3::ZERO && is_unit && keeps && certainty {
+                return Ok(());
+            }
+            let expected = "a lobe that reflects light, and a direction of it";
+            Err(Broken::with_texts(paste(query), format!("{sample:?}"), expected, "the definition")
+                .explained_by([
+                    (reflectance == Vec3::ZERO, CHOOSES_BLACK),
+                    (sample.weight.is_nan() || sample.direction.is_nan(), "you return NaN"),
+                    (
+                        sample.lobe == Lobe::Diffuse && is_certain,
+                        "a diffuse direction is not certain: its density is finite",
+                    ),
+                    (
+                        sample.lobe != Lobe::Diffuse && !is_certain,
+                        "a reflected or refracted direction is certain: its density is infinite",
+                    ),
+                    (!keeps && sample.lobe == Lobe::Diffuse, "your diffuse direction goes below the surface"),
+                    (!keeps, "a reflected or refracted ray keeps its direction"),
+                    (!is_unit, "your direction does not have unit length"),
+                ]))
+        })
+    })
+}
+
+/// Judges the weight of a sample by itself: reflectance divided by one probability, which is large enough, and the density of a
+/// diffuse direction that contains the same probability.
+fn judge_weight(query: &BsdfQuery, sample: &BsdfSample) -> bool {
+    let scattering = &query.scattering;
+    let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
+    let probability = probability(scattering, sample);
+    let weight = sample.weight.as_dvec3();
+    // Some roundings of single precision.
+    let is_scaled =
+        (weight * probability - reflectance).abs().max_element() <= 1e-5 * reflectance.max_element();
+    let in_range =
+        probability <= 1.0 + 1e-5 && probability >= 0.25 * share(scattering, sample.lobe) * (1.0 - 1e-5);
+    is_scaled && in_range
+}
+
+pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> CheckResult {
+    let queries = (surfaces(), number(), number(), number())
+        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
+    trial.forall(800, queries, |queries| {
+        compare_formulas(
+            queries,
+            trial.kit.sample_bsdf(queries),
+            |query, yours| {
+                // Another check judges whether there is a sample.
+                let Some(sample) = yours else { return Ok(()) };
+                if reflectance_of(&query.scattering, sample.lobe) == Vec3::ZERO
+                    || judge_weight(query, &sample)
+                {
+                    return Ok(());
+                }
+                let reflectance = reflectance_of(&query.scattering, sample.lobe);
+                let share = share(&query.scattering, sample.lobe);
+                let yours = format!("weight {} for {:?}", sample.weight, sample.lobe);
+                let expected = format!(
+                    "{reflectance} divided by one probability in {:.3}..=1, for example {share:.3}",
+                    0.25 * share
+                );
+                Err(Broken::with_texts(paste(query), yours, expected, "the definition"))
+            },
+            |query, yours| {
+                let Some(sample) = yours else { return vec![(true, ""); 4] };
+                let scattering = &query.scattering;
+                let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
+                let share = share(scattering, sample.lobe);
+                let near = |factor: f64| {
+                    (sample.weight.as_dvec3() - factor * reflectance).abs().max_element()
+                        <= 1e-4 * factor * reflectance.max_element()
+                };
+                let largest = reflectance.max_element();
+                vec![
+                    (near(share), "you multiply by the probability of the choice: divide by it"),
+                    (
+                        near(1.0 / largest),
+                        "you divide by the reflectance, not by the probability of the choice",
+                    ),
+                    (
+                        near(1.0 / share / PI),
+                        "the weight of a diffuse direction has no π: it cancels against the density",
+                    ),
+                    (sample.weight.is_nan(), "you return NaN"),
+                ]
+            },
+        )
+    })
+}
+
+/// A surface with three lobes, whose shares are all at least 1/4.
+fn layered(trial: &Trial<'_>) -> Scattering {
+    let hidden = (nasty::unit(), 0.5..0.7f32, 0.45..0.6f32);
+    let (normal, diffuse, mirror) = trial.varied((vec3(0.6, 0.0, -0.8), 0.6, 0.5), hidden);
+    surface(normal, vec3(diffuse, 0.2, 0.1), Some(vec3(0.3, mirror, 0.1)), Some(vec3(0.2, 0.1, 0.5)))
+}
+
+fn samples_of(trial: &Trial<'_>, scattering: &Scattering, count: usize) -> Vec<Option<BsdfSample>> {
+    let u = pairs(trial.seed, 2 * count);
+    let query = |u: &[glam::Vec2]| BsdfQuery { scattering: scattering.clone(), u: u[0].extend(u[1].x) };
+    trial.kit.sample_bsdf(&u.chunks(2).map(query).collect::<Vec<_>>())
+}
+
+pub(super) fn bsdf_samples_keep_the_light(trial: &Trial<'_>) -> CheckResult {
+    let layered = layered(trial);
+    let two = Scattering { secondary: layered.secondary[..1].to_vec(), ..layered.clone() };
+    for (what, scattering, lobes) in [("two lobes", &two, 2), ("three lobes", &layered, 3)] {
+        let samples = samples_of(trial, scattering, SAMPLES);
+        for lobe in LOBES.into_iter().take(lobes) {
+            let reflectance = f64::from(reflectance_of(scattering, lobe).max_element());
+            // The largest channel of the weights of one lobe, relative to its reflectance: 1 on average.
+            let value = |sample: &Option<BsdfSample>| match sample {
+                Some(sample) if sample.lobe == lobe => f64::from(sample.weight.max_element()) / reflectance,
+                _ => 0.0,
+            };
+            let values: Vec<f64> = samples.iter().map(value).collect();
+            let chosen = values.iter().filter(|value| **value != 0.0).count();
+            let what = format!(
+                "sample_bsdf of a surface with {what}, weights of {lobe:?} relative to its reflectance"
+            );
+            has_mean(&what, &values, 1.0, |mean| {
+                let frequency = chosen as f64 / values.len() as f64;
+                vec![
+                    (chosen == 0, "you never choose this lobe"),
+                    (mean.is_nan(), "you return NaN"),
+                    (
+                        (mean - frequency).abs() < 1e-3,
+                        "your weight is not divided by the probability of the choice",
+                    ),
+                    (true, "the lobe is not chosen with the probability by which its weight is divided"),
+                ]
+            })?;
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn diffuse_samples_use_fresh_numbers(trial: &Trial<'_>) -> CheckResult {
+    let scattering = layered(trial);
+    let normal = scattering.normal.as_dvec3().normalize();
+    let (x, y) = normal.any_orthonormal_pair();
+    let places: Vec<(f64, f64)> = samples_of(trial, &scattering, 2 * SAMPLES)
+        .into_iter()
+        .flatten()
+        .filter(|sample| sample.lobe == Lobe::Diffuse)
+        .map(|sample| {
+            let direction = sample.direction.as_dvec3();
+            (direction.cross(normal).length_squared(), direction.dot(y).atan2(direction.dot(x)) / TAU + 0.5)
+        })
+        .collect();
+    // Each lobe is chosen with a probability of at least a quarter of 1/4, and each cell expects more than 20 samples.
+    if places.len() < 64 * 20 {
+        let input = format!("sample_bsdf of {} for {} numbers u", paste_scattering(&scattering), 2 * SAMPLES);
+        let yours = format!("{} diffuse samples", places.len());
+        return Err(Broken::with_texts(input, yours, "at least a sixteenth", "the definition"));
+    }
+    covers_evenly(
+        "the diffuse directions of sample_bsdf",
+        &places,
+        ["sin² θ", "the angle around the normal"],
+        |_| Vec::new(),
+    )
+}
+
+pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
+    let strategy = (surfaces(), number(), number(), number())
+        .prop_filter("a diffuse surface", |(scattering, ..)| scattering.diffuse != Vec3::ZERO)
+        .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
+    trial.forall(800, strategy, |queries| {
+        let samples = trial.kit.sample_bsdf(queries);
+        let direction = |sample: &Option<BsdfSample>| sample.map_or(Vec3::Z, |sample| sample.direction);
+        let pdf_queries: Vec<BsdfPdfQuery> = queries
+            .iter()
+            .zip(&samples)
+            .map(|(query, sample)| BsdfPdfQuery {
+                scattering: query.scattering.clone(),
+                direction: direction(sample),
+            })
+            .collect();
+        let answers: Vec<_> = samples.into_iter().zip(trial.kit.bsdf_pdf(&pdf_queries)).collect();
+        compare_formulas(
+            &pdf_queries,
+            answers,
+            |query, (sample, yours)| {
+                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
+                    return Ok(());
+                };
+                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
+                // The probability of the diffuse lobe follows from the weight of the sample.
+                let expected = probability(&query.scattering, &sample) * cosine / PI;
+                // Roundings of the products in the cosine, and of the probability.
+                let near = |pdf: f32| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
+                if near(yours) && near(sample.pdf) {
+                    return Ok(());
+                }
+                let input =
+                    format!("bsdf_pdf({}, {})", paste_scattering(&query.scattering), query.direction.paste());
+                let yours = format!("{yours:?}, and pdf {:?} of sample_bsdf", sample.pdf);
+                Err(Broken::with_texts(
+                    input,
+                    yours,
+                    format!("{expected:?} for both"),
+                    "probability · cos θ / π",
+                ))
+            },
+            |query, (sample, yours)| {
+                let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
+                    return vec![(true, ""); 4];
+                };
+                let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
+                let probability = probability(&query.scattering, &sample);
+                let near =
+                    |pdf: f32, expected: f64| (f64::from(pdf) - expected).abs() <= 1e-6 + 1e-5 * expected;
+                let both = |expected: f64| near(*yours, expected) && near(sample.pdf, expected);
+                vec![
+                    (both(cosine / PI), "the probability of the diffuse lobe is missing in both densities"),
+                    (near(*yours, cosine / PI), "the probability of the diffuse lobe is missing in bsdf_pdf"),
+                    (
+                        near(sample.pdf, cosine / PI),
+                        "the probability of the diffuse lobe is missing in the pdf of sample_bsdf",
+                    ),
+                    (
+                        near(*yours, cosine / PI / probability),
+                        "you divide by the probability of the diffuse lobe: multiply by it",
+                    ),
+                ]
+            },
+        )
+    })
+}
+
+pub(super) fn bsdf_pdf_of_other_directions_is_zero(trial: &Trial<'_>) -> CheckResult {
+    // Below the surface, by at least 0.1; and all directions of a surface without diffuse reflection. One direction of four is
+    // above a diffuse surface.
+    let queries = (surfaces(), 0..=12i32, 0..=15i32, 0..4i32).prop_map(|(scattering, angle, turn, which)| {
+        let direction =
+            nasty::tilted(scattering.normal, f64::from(angle) / 8.5, f64::from(turn) / 16.0 + 0.01);
+        let diffuse = match which {
+            0 => Vec3::ZERO,
+            _ if scattering.diffuse == Vec3::ZERO => Vec3::ONE,
+            _ => scattering.diffuse,
+        };
+        let direction = if which < 2 || which == 3 && angle % 2 == 0 { direction } else { -direction };
+        BsdfPdfQuery { scattering: Scattering { diffuse, ..scattering }, direction }
+    });
+    trial.forall(400, queries, |queries| {
+        compare(queries, trial.kit.bsdf_pdf(queries), |query, yours| {
+            let scattering = &query.scattering;
+            let above = scattering.normal.dot(query.direction) > 0.0;
+            let reflects = above && scattering.diffuse != Vec3::ZERO;
+            if if reflects { yours > 0.0 && yours.is_finite() } else { yours == 0.0 } {
+                return Ok(());
+            }
+            let input = format!("bsdf_pdf({}, {})", paste_scattering(scattering), query.direction.paste());
+            let expected = if reflects { "a density above 0" } else { "0.0" };
+            Err(Broken::with_texts(input, format!("{yours:?}"), expected, "the definition").explained_by([
+                (yours.is_nan(), "you return NaN: a black surface has no probabilities"),
+                (!above && yours < 0.0, "your density is negative below the surface"),
+                (!above && yours > 0.0, "a direction below the surface is never sampled: its density is 0"),
+                (
+                    above && !reflects && yours > 0.0,
+                    "a surface without diffuse reflection samples no diffuse direction",
+                ),
+                (reflects && yours == 0.0, "this direction is sampled: its density is above 0"),
+            ]))
+        })
+    })
+}
