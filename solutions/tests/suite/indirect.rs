@@ -97,7 +97,7 @@ fn a_white_thing_under_a_white_sky_cannot_be_seen() {
     }
 }
 
-/// A floor, a wall and a ball under an emitter of this shape.
+/// A floor, a wall and a sphere under an emitter of this shape.
 fn lit_by(shape: &str, rest: &str) -> Scene {
     indirect(
         "",
