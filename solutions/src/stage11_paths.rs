@@ -3,7 +3,7 @@
 //! A path starts at the camera and continues at each surface in a random direction. At each surface it also samples a light
 //! (next event estimation). Light of an emitter is found in both ways, by a sample of the emitter and by a ray that happens to
 //! hit it, and multiple importance sampling weights them, so that all light counts once. The scaffold traces the rays
-//! and calls [`step`] at each surface.
+//! and calls [`step`] at each surface. The parts of a step are in [`stage11_light_transport`](crate::stage11_light_transport).
 //!
 //! Like the rest of stage 11, this goes beyond the slides. Sources: Kajiya, "The Rendering Equation" (1986), Veach, "Robust
 //! Monte Carlo Methods for Light Transport Simulation" (1997), and "Physically Based Rendering" (pbr-book.org).
@@ -43,7 +43,7 @@ fn choice(scattering: &Scattering, reflectance: Vec3) -> f32 {
 ///
 /// The lobes are the diffuse one with the reflectance `scattering.diffuse`, and the rays of `scattering.secondary` with the
 /// reflectance `weight`. A diffuse direction has the density `cos θ / π`, as that of
-/// [`cosine_direction`](crate::stage11_light_transport::cosine_direction) has; a secondary ray keeps its direction.
+/// `cosine_direction` has; a secondary ray keeps its direction.
 ///
 /// The lobe is chosen at random. A lobe whose reflectance is 0 in all channels is never chosen; `None` if there is no other
 /// lobe. A lobe whose largest channel is the fraction s of the sum of the largest channels of all lobes is chosen with a
@@ -112,7 +112,7 @@ pub fn bsdf_pdf(scattering: &Scattering, direction: Vec3) -> f32 {
 /// `kd / π · L · cos θ / pdf · w`, channel by channel.
 ///
 /// `diffuse` is kd, θ is the angle between `normal` and the direction of the sample, and L and pdf are the sample's radiance and
-/// density. w is [`mis_weight`](crate::stage11_light_transport::mis_weight) of two densities: own is `sample.pdf`, and other
+/// density. w is `mis_weight` of two densities: own is `sample.pdf`, and other
 /// is `bsdf_pdf`, with which a ray of the surface has the same direction. A light that rays cannot hit has `bsdf_pdf`
 /// 0, and w is 1. The result is 0 if the sample is not above the surface. `sample.pdf` is above 0 and finite.
 ///
@@ -133,7 +133,7 @@ pub fn sample_light_contribution(diffuse: Vec3, normal: Vec3, sample: &EmitterSa
 }
 
 /// The part of the radiance `emission` that counts for a ray that has happened to hit the emitter:
-/// [`mis_weight`](crate::stage11_light_transport::mis_weight) of the densities `pdf` and `light_pdf`, times `emission`.
+/// `mis_weight` of the densities `pdf` and `light_pdf`, times `emission`.
 ///
 /// `pdf` is the density with which the direction of the ray was sampled. It is infinite for rays of the camera and for
 /// reflected and refracted rays, whose light counts in full, because no sample of a light can find it. `light_pdf` is the
@@ -154,16 +154,16 @@ pub fn emitted_contribution(emission: Vec3, pdf: f32, light_pdf: f32) -> Vec3 {
 ///
 /// - `light`: [`emitted_contribution`] of `vertex.emission`, times the weight of the path. The density of the ray is
 ///   `path.pdf`. That of the light is the probability of `vertex.emitter` times its
-///   [`light_pdf`](crate::stage11_light_transport::light_pdf) from `path.origin` along `path.direction`; without such an
+///   `light_pdf` from `path.origin` along `path.direction`; without such an
 ///   emitter it is 0.
 /// - If the path has `max_depth` bounces, it ends here: there is neither `shadow` nor `next`.
-/// - `shadow`: a sample of `vertex.light`, by [`sample_light`](crate::stage11_light_transport::sample_light) from the point of the
+/// - `shadow`: a sample of `vertex.light`, by `sample_light` from the point of the
 ///   surface with `numbers.light`, or as it is for an environment map. The density of a sample of an emitter is multiplied
 ///   by the probability of the emitter. `shadow.light` is [`sample_light_contribution`] times the weight of the path, with
 ///   [`bsdf_pdf`] of the surface for the sample's direction. There is no shadow ray if this light is 0 in all channels,
 ///   or if the direction is not above the surface by both normals of `vertex.surface`.
 /// - `next`: a sample by [`sample_bsdf`] with `numbers.bsdf`. Its weight is multiplied by the weight of the path, and by the
-///   factor of [`survives`](crate::stage11_light_transport::survives) for this product, `path.bounces + 1` surfaces and
+///   factor of `survives` for this product, `path.bounces + 1` surfaces and
 ///   `numbers.roulette`. The path ends if the weight is 0 in all channels, or if a diffuse direction is not above
 ///   `vertex.surface.geometric_normal`.
 ///

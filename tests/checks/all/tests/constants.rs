@@ -6,6 +6,7 @@ use all_checks::STAGES;
 use checks::{Check, rubric};
 use raykata::kit::types::*;
 use raykata::kit::{GramScalars, Kit, Linked, SolidHit, StudentFunctions, StudentKit, TriangleHit};
+use raykata::light_path::{Lobe, NextRay, ShadowQuestion};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -116,11 +117,22 @@ fields! {
     RayCounts { primary, shadow, reflection, transmission }
     Ray { origin, direction, t_min, t_max, time }
     EmitterSample { direction, distance, radiance, pdf }
+    BsdfSample { lobe, direction, weight, pdf }
+    NextRay { lobe, direction, weight, pdf }
+    ShadowQuestion { direction, distance, light }
+    PathStep { light, shadow, next }
+    PathEffects { diffuse, sampled, environment }
 }
 
 impl Constant for Bounce {
     fn constant(_: u8) -> Bounce {
         Bounce::Reflection
+    }
+}
+
+impl Constant for Lobe {
+    fn constant(kind: u8) -> Lobe {
+        if kind == ZERO { Lobe::Diffuse } else { Lobe::Reflection }
     }
 }
 

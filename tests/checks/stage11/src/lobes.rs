@@ -306,6 +306,10 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
         .prop_map(|(scattering, x, y, z)| BsdfQuery { scattering, u: vec3(x, y, z) });
     trial.forall(800, strategy, |queries| {
         let samples = trial.kit.sample_bsdf(queries);
+        // Among hundreds of samples of diffuse surfaces some are diffuse.
+        let is_diffuse =
+            |sample: &Option<BsdfSample>| sample.is_some_and(|sample| sample.lobe == Lobe::Diffuse);
+        let none_is_diffuse = queries.len() > 100 && !samples.iter().any(is_diffuse);
         let direction = |sample: &Option<BsdfSample>| sample.map_or(Vec3::Z, |sample| sample.direction);
         let pdf_queries: Vec<BsdfPdfQuery> = queries
             .iter()
@@ -321,7 +325,14 @@ pub(super) fn bsdf_pdf_is_that_of_the_sample(trial: &Trial<'_>) -> CheckResult {
             answers,
             |query, (sample, yours)| {
                 let Some(sample) = sample.filter(|sample| sample.lobe == Lobe::Diffuse) else {
-                    return Ok(());
+                    let input = format!("sample_bsdf for {} diffuse surfaces", queries.len());
+                    let broken = Broken::with_texts(
+                        input,
+                        "no diffuse sample",
+                        "some diffuse samples",
+                        "the definition",
+                    );
+                    return if none_is_diffuse { Err(broken) } else { Ok(()) };
                 };
                 let cosine = query.scattering.normal.as_dvec3().dot(sample.direction.as_dvec3()).max(0.0);
                 // The probability of the diffuse lobe follows from the weight of the sample.
