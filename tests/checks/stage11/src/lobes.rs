@@ -96,6 +96,20 @@ fn probability(scattering: &Scattering, sample: &BsdfSample) -> f64 {
     f64::from(reflectance.max_element()) / f64::from(sample.weight.max_element())
 }
 
+fn is_black(scattering: &Scattering) -> bool {
+    LOBES.iter().all(|lobe| reflectance_of(scattering, *lobe) == Vec3::ZERO)
+}
+
+/// Judges an answer without a sample: only a surface whose lobes are all black has none.
+pub(super) fn missing(query: &BsdfQuery) -> CheckResult {
+    if is_black(&query.scattering) {
+        return Ok(());
+    }
+    let broken = Broken::new(paste(query), None::<BsdfSample>, "a sample", "the definition");
+    Err(broken
+        .explained_by([(true, "None only if all lobes are black: choose again, or scale the random number")]))
+}
+
 const CHOOSES_BLACK: &str = "you choose a lobe whose reflectance is 0";
 
 pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> CheckResult {
@@ -104,18 +118,8 @@ pub(super) fn bsdf_samples_choose_lobes_that_reflect(trial: &Trial<'_>) -> Check
     trial.forall(800, queries, |queries| {
         compare(queries, trial.kit.sample_bsdf(queries), |query, yours| {
             let scattering = &query.scattering;
-            let is_black = LOBES.iter().all(|lobe| reflectance_of(scattering, *lobe) == Vec3::ZERO);
-            let Some(sample) = yours else {
-                return match is_black {
-                    true => Ok(()),
-                    false => Err(Broken::new(paste(query), yours, "a sample", "the definition")
-                        .explained_by([(
-                            true,
-                            "None only if all lobes are black: choose again, or scale the random number",
-                        )])),
-                };
-            };
-            if is_black {
+            let Some(sample) = yours else { return missing(query) };
+            if is_black(scattering) {
                 let broken = Broken::new(paste(query), yours, None::<()>, "the definition");
                 return Err(broken.explained_by([
                     (true, "all lobes are black: there is nothing to choose"),
@@ -183,8 +187,7 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
             queries,
             trial.kit.sample_bsdf(queries),
             |query, yours| {
-                // Another check judges whether there is a sample.
-                let Some(sample) = yours else { return Ok(()) };
+                let Some(sample) = yours else { return missing(query) };
                 if reflectance_of(&query.scattering, sample.lobe) == Vec3::ZERO
                     || judge_weight(query, &sample)
                 {
@@ -200,7 +203,8 @@ pub(super) fn bsdf_weights_are_divided_by_the_probability(trial: &Trial<'_>) -> 
                 Err(Broken::with_texts(paste(query), yours, expected, "the definition"))
             },
             |query, yours| {
-                let Some(sample) = yours else { return vec![(true, ""); 4] };
+                // A missing sample agrees with each of these mistakes only where there has to be none.
+                let Some(sample) = yours else { return vec![(missing(query).is_ok(), ""); 4] };
                 let scattering = &query.scattering;
                 let reflectance = reflectance_of(scattering, sample.lobe).as_dvec3();
                 let share = share(scattering, sample.lobe);

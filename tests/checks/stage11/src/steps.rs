@@ -4,7 +4,7 @@
 //! judge how `step` puts them together.
 
 use crate::emitters::layouts;
-use crate::lobes::surfaces;
+use crate::lobes::{missing, surfaces};
 use checks::Trial;
 use checks::broken::{Broken, CheckResult};
 use checks::generate::magnitude;
@@ -557,7 +557,7 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
             |query, ((step, sample), [factor, ..])| {
                 let Some(sample) = sample else {
                     return match step.next {
-                        None => Ok(()),
+                        None => missing(&ask(query)),
                         Some(_) => Err(Broken::new(
                             describe(query),
                             step.next,
@@ -597,7 +597,9 @@ pub(super) fn steps_continue_with_the_weight_of_the_sample(trial: &Trial<'_>) ->
                 Err(Broken::with_texts(describe(query), yours, expected, source))
             },
             |query, ((step, sample), [factor, early, late])| {
-                let Some(sample) = sample else { return vec![(step.next.is_none(), ""); 8] };
+                let Some(sample) = sample else {
+                    return vec![(step.next.is_none() && missing(&ask(query)).is_ok(), ""); 8];
+                };
                 let whole = (query.path.weight * sample.weight).as_dvec3();
                 let below = sample.lobe == Lobe::Diffuse && above(query, sample) < 0.0;
                 let unless_below = |weight: DVec3| if below { DVec3::ZERO } else { weight };
