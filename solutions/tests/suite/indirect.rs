@@ -23,7 +23,7 @@ fn indirect(environment: &str, rest: &str) -> Scene {
 }
 
 /// The mean of all channels of all pixels and its standard error, from the differences between pixels, which have independent
-/// random numbers. So the error is at least that of the mean, whatever the picture shows.
+/// random numbers. So the error is at least that of the mean, in every picture.
 fn mean(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let n = values.clone().count() as f64;
     let mean = values.clone().sum::<f64>() / n;

@@ -36,7 +36,7 @@ pub fn asked(explained: &Explained<'_>) {
     }
 }
 
-/// Prints the predicted and the counted numbers of rays. A path has one ray per bounce, whatever its kind.
+/// Prints the predicted and the counted numbers of rays. A path has one ray per bounce, diffuse, reflected or refracted.
 pub fn bounds(explained: &Explained<'_>) -> Result<()> {
     let Explained { scene, kit, effects, paths } = explained;
     let (counted, _) = render(*kit, (*scene).clone())?;

@@ -142,7 +142,7 @@ pub(super) fn paths_in_a_furnace_find_all_light(trial: &Trial<'_>) -> CheckResul
 }
 
 pub(super) fn paths_of_a_white_corner_lose_nothing(trial: &Trial<'_>) -> CheckResult {
-    // Two white planes under a white sky: whatever the directions, each path ends in the sky with all of its light.
+    // Two white planes under a white sky: for all directions, each path ends in the sky with all of its light.
     let angle = trial.varied(1.2, 0.9..1.5f64);
     let second = dvec3(angle.sin(), -angle.cos(), 0.0);
     let white = Paint { diffuse: Vec3::ONE, ..Paint::default() };
